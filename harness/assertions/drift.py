@@ -72,8 +72,7 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
             continue
         zero = error[gripped[0]]
         first = int(gripped[0])
-        held = during & (np.arange(count) >= first) & (times < released_at(run, record))
-        held[first] = True
+        held = (np.arange(count) >= first) & (times < released_at(run, record))
         is_held |= held
         drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
         if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:

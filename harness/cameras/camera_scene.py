@@ -21,8 +21,6 @@ class CameraScene:
     """The robot and the simulated objects, posed as in a recorded sample or by the caller.
 
     Attributes:
-        picture: The model that renderers draw.
-        object_names: Names of the objects.
         labels: Label of every link and object in segmentations.
         geom_labels: Label of each geom of `picture`.
     """
@@ -63,11 +61,6 @@ class CameraScene:
         return poses
 
     def view(self, camera: Camera, poses: Mapping[str, SE3]) -> View | None:
-        """The view of a camera; None while its carrier is not in the scene.
-
-        Args:
-            camera: The camera that is simulated.
-            poses: The result of `pose`.
-        """
+        """The view of a camera; None while its carrier is not in the scene."""
         carrier = poses.get(camera.frame)
         return None if carrier is None else view_of(camera, carrier)

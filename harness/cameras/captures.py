@@ -51,11 +51,7 @@ def take_pictures(
     quality, as in its compressed stream. A camera whose carrier is not in the scene takes none.
 
     Args:
-        description: The description of the robot.
-        objects: All objects of the scenario.
-        run: The run, its cameras included.
         looks: The requested pictures, in order of time.
-        activity: Called for each picture.
     """
     if not looks:
         return (), {}

@@ -37,9 +37,6 @@ def draw_failure(
     it. Objects are where they were when the step failed, attached ones move with their link.
 
     Args:
-        description: The description of the robot.
-        world_objects: All objects of the scenario.
-        run: The run with its recorded signals.
         step: A failed step that has an explanation.
         backend: `auto`, `egl`, `osmesa` or `rays`.
     """

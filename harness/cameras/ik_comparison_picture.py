@@ -40,13 +40,11 @@ def draw_ik_comparison(
     The frame's axes x, y, z are red, green, blue; an orange line connects the link with it.
 
     Args:
-        description: The description of the robot.
         link: The link whose pose the target fixes.
         target: The target pose T_world_link.
         expected: Joint positions that reach the target, description order; None when unknown.
         reached: The answer's joint positions; None draws the arm at `expected` alone.
         file: The file to write; its folder exists.
-        caption: Text below the picture.
         backend: `auto`, `egl`, `osmesa` or `rays`.
     """
     solid = expected if reached is None else reached

@@ -25,8 +25,6 @@ def outline_pixels(picture: PictureModel, name: str, view: View, width: int, hei
 
     Args:
         picture: The posed scene; rays meet the object's geoms alone.
-        name: Name of the object.
-        view: The view of the camera.
         width: Width of the picture [pixels].
         height: Height of the picture [pixels].
     """

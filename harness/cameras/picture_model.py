@@ -73,7 +73,6 @@ def build_picture_model(
     """Compile the visuals of a robot and its world.
 
     Args:
-        description: The description of the robot.
         objects: All objects; a plane among them becomes the floor.
         floor_height: The z coordinate of the floor [m].
         width: Largest width of a picture [pixels].

@@ -27,10 +27,6 @@ def scene_poses(
     Simulated objects have their pose in the physics, others their pose in the planning scene.
 
     Args:
-        description: The description of the robot.
-        world_objects: All objects of the scenario.
-        run: The run with its recorded signals.
-        sample: Index into the signals.
         step: Selects one of several steps that share the sample. Changes by steps without duration
             at the moment a motion ends are not part of the motion's end.
     """

@@ -40,7 +40,6 @@ def make_renderer(
     """The best renderer that this machine supports.
 
     Args:
-        picture: The model to draw.
         width: Width of the pictures [pixels].
         height: Height of the pictures [pixels].
         backend: `auto`, or the only one to try: `egl`, `osmesa`, `rays`.
@@ -71,7 +70,6 @@ def render_overview(
     """A picture of a posed model, in a view that contains all given spheres.
 
     Args:
-        picture: The model to draw.
         points: Centres of the spheres, shape (N, 3) [m].
         radii: Radii of the spheres, shape (N,) [m].
         width: Width of the picture [pixels].

@@ -26,7 +26,6 @@ def save_robot_picture(
     """Draw a robot at joint positions, in description order.
 
     Args:
-        description: The robot, with its visuals.
         joint_positions: Joint positions, shape (n,).
         file: A PNG or JPEG file.
         backend: `auto`, `egl`, `osmesa` or `rays`.

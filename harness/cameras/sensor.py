@@ -18,9 +18,6 @@ def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) ->
 
     Args:
         picture: The rendered picture, RGB, shape (height, width, 3), uint8.
-        camera: The camera that is simulated.
-        seed: The seed of the run.
-        sample: Index into the signals.
 
     Returns:
         RGB, or one channel of a grey camera, uint8.

@@ -24,7 +24,7 @@ WIDTH, HEIGHT = 640, 480
 STATES = 40
 """Recorded states that the viewpoint is fitted to."""
 
-SHADOW_SIZE = 2048
+SHADOW_SIZE = 1024
 """Resolution of shadows [pixels]."""
 
 FARTHEST_IN_VIEW = 1.3
@@ -62,11 +62,7 @@ def draw_stills(
     Objects that only the planning scene has are translucent.
 
     Args:
-        description: The robot, with its visuals.
-        world_objects: All objects of the scenario.
-        run: The run with its recorded signals.
         backend: `auto`, `egl`, `osmesa` or `rays`.
-        activity: Called for each picture.
     """
     steps = [step for step in run.steps if step.status != "not reached"]
     if not steps or not len(run.signals.times):

@@ -33,12 +33,8 @@ def record_videos(
     """A video of each camera, the files by path, and findings on the videos.
 
     Args:
-        description: The description of the robot.
-        objects: All objects of the scenario.
-        run: The run, its cameras included.
         rates: Frames per second of simulated time, by camera.
         backend: `auto`, `egl`, `osmesa` or `rays`.
-        activity: Called for each frame.
     """
     if not rates:
         return (), {}, ()

@@ -45,7 +45,6 @@ def view_of(camera: Camera, carrier: SE3) -> View:
     """The view of a camera.
 
     Args:
-        camera: The camera that is simulated.
         carrier: T_world_frame of the camera's frame.
     """
     pose = carrier @ camera.optical_pose @ FLIP

@@ -11,7 +11,7 @@ from harness.core.printable import printable
 from harness.core.suggestion import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from _typeshed import SupportsWrite
 
@@ -56,6 +56,25 @@ class Parser(argparse.ArgumentParser):
         (file or sys.stdout).write(self.format_help())
 
 
+class CommandParser(Parser):
+    """The parser of one command, which learns its options when the command is used.
+
+    Attributes:
+        add_options: Adds them; imports the module of the command.
+    """
+
+    add_options: Callable[[argparse.ArgumentParser], None] | None = None
+
+    def parse_known_args(
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse the arguments of the command."""
+        add, self.add_options = self.add_options, None
+        if add is not None:
+            add(self)
+        return super().parse_known_args(args, namespace)
+
+
 def folder(text: str) -> Path:
     """A folder that exists."""
     if not Path(text).is_dir():
@@ -65,87 +84,60 @@ def folder(text: str) -> Path:
 
 def override_argument(text: str) -> tuple[str, str]:
     """`PATH=VALUE` of `--set`."""
-    path, equals, value = text.partition("=")
-    if not equals or not path.strip():
-        raise argparse.ArgumentTypeError(f"'{text}' is not PATH=VALUE, as in robot.model=ur5e")
-    return path.strip(), value
+    return pair(text, "PATH=VALUE", "robot.model=ur5e")
 
 
-def names_of(text: str) -> list[str]:
-    """Names with commas between them, each once."""
-    names = [name.strip() for name in text.split(",") if name.strip()]
-    if not names:
-        raise argparse.ArgumentTypeError("no planner is named")
-    return list(dict.fromkeys(names))
+def positive_number(what: str) -> Callable[[str], float]:
+    """The type of an option that is a finite number of something above 0."""
+
+    def number_of(text: str) -> float:
+        try:
+            number = float(text)
+        except ValueError:
+            number = float("nan")
+        if not 0 < number < float("inf"):
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number of {what} above 0")
+        return number
+
+    return number_of
 
 
-def object_topic(text: str) -> tuple[str, str]:
-    """`NAME=TOPIC` of an object's pose."""
-    name, equals, topic = text.partition("=")
-    if not equals or not name.strip() or not topic.strip():
-        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=TOPIC, as in red_box=/red_box/pose")
-    return name.strip(), topic.strip()
+seconds = positive_number("seconds")
 
 
-def whole_number(text: str) -> int:
-    """A number from 1."""
-    if not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 1")
-    return int(text)
-
-
-def batch_size(text: str) -> int:
-    """A number from 2 to 1000."""
-    if not text.isdigit() or not 2 <= int(text) <= 1000:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 2 to 1000")
-    return int(text)
-
-
-def port_number(text: str) -> int:
-    """A TCP port; 0 is any that is free."""
-    if not text.isdigit() or int(text) > 65535:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a port from 0 to 65535")
-    return int(text)
-
-
-def metres(text: str) -> float:
-    """A length above 0 [m]."""
-    return _positive(text, "metres")
-
-
-def radians(text: str) -> float:
-    """An angle above 0 [rad]."""
-    return _positive(text, "radians")
-
-
-def seconds(text: str) -> float:
-    """A duration above 0 [s]."""
-    return _positive(text, "seconds")
-
-
-def factor(text: str) -> float:
-    """A factor above 0."""
-    return _positive(text, "simulated seconds in a second")
-
-
-def share(text: str) -> float:
+def share_of_one(text: str) -> float:
     """A share above 0, at most 1."""
-    number = _positive(text, "a share")
+    number = positive_number("a share")(text)
     if number > 1:
         raise argparse.ArgumentTypeError(f"'{text}' is more than 1")
     return number
 
 
-def rate(text: str) -> float:
-    """Messages a second, above 0."""
-    return _positive(text, "messages a second")
+def whole_number(text: str) -> int:
+    """A number from 1."""
+    return _between(text, 1, None, "number")
 
 
-def _positive(text: str, what: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = float("nan")
-    if not 0 < number < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number of {what} above 0")
-    return number
+def batch_size(text: str) -> int:
+    """A number from 2 to 1000."""
+    return _between(text, 2, 1000, "number")
+
+
+def port_number(text: str) -> int:
+    """A TCP port; 0 is any that is free."""
+    return _between(text, 0, 65535, "port")
+
+
+def _between(text: str, least: int, most: int | None, what: str) -> int:
+    if not text.isdigit() or int(text) < least or (most is not None and int(text) > most):
+        to = "" if most is None else f" to {most}"
+        raise argparse.ArgumentTypeError(f"'{text}' is not a {what} from {least}{to}")
+    return int(text)
+
+
+def pair(text: str, form: str, example: str) -> tuple[str, str]:
+    """`NAME=VALUE`, both without the spaces around them."""
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not {form}, as in {example}")
+    return name.strip(), value

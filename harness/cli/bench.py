@@ -5,18 +5,36 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from harness.cli.output import complain, guarded, only_json_on_stdout, say, say_text
+from harness.cli.arguments import whole_number
+from harness.cli.output import complain, only_json_on_stdout, say, say_text
+from harness.cli.shared_options import add_json, add_paths, add_report_dir
 from harness.core.errors import SpecError
 from harness.suite.discovery import UsageError, discover
 from harness.suite.outcome import EXIT_CODES
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness bench`."""
+    add_paths(command)
+    add = command.add_argument
+    text = "planners and pipelines to compare (default: all that `harness list planners` names)"
+    add("--planners", metavar="A,B", type=_planner_names, default=[], help=text)
+    text = "plan with seeds 1 to N (default: 5)"
+    add("--seeds", metavar="N", type=whole_number, default=5, help=text)
+    add_report_dir(command, "write files into DIR/bench")
+    add("--no-report", action="store_true", help="write no files")
+    add_json(command)
+
+
+def _planner_names(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if not names:
+        raise argparse.ArgumentTypeError("no planner is named")
+    return list(dict.fromkeys(names))
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Plan every free motion with every planner and seed; print, plot, and keep the numbers."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     from harness.planning.search.find_pipeline import planner_names, with_planner
     from harness.ports.motion_planning import PlanningOptions
 
@@ -38,12 +56,12 @@ def _run(arguments: argparse.Namespace) -> int:
 def _bench(
     arguments: argparse.Namespace, files: list[Path], planners: list[str]
 ) -> tuple[int, object]:
-    from harness.bench.collect import Motion, collect
-    from harness.bench.results import PICTURE, document, write_results
+    from harness.bench.collect import MotionTrials, collect
+    from harness.bench.results import PICTURE, document, write_bench
     from harness.bench.summary import motion_line, planner_table
 
     seeds = list(range(1, arguments.seeds + 1))
-    motions: list[Motion] = []
+    motions: list[MotionTrials] = []
     code = 0
     for file in files:
         try:
@@ -65,6 +83,6 @@ def _bench(
     say_text(planner_table(motions, planners))
     if not arguments.no_report:
         folder = Path(arguments.report_dir) / "bench"
-        write_results(folder, motions, planners, seeds)
+        write_bench(folder, motions, planners, seeds)
         say(f"picture: {folder / PICTURE}", f"numbers: {folder / 'results.json'}")
     return code, document(motions, planners, seeds)

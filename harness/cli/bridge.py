@@ -1,4 +1,4 @@
-"""`harness bridge` and `harness replay`: external programs command a scenario's robot."""
+"""`harness bridge`: external programs command a scenario's robot."""
 
 from __future__ import annotations
 
@@ -7,8 +7,15 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
-from harness.suite.discovery import UsageError, discover
+from harness.cli.arguments import seconds
+from harness.cli.files import one_scenario
+from harness.cli.output import complain, output, say, say_text
+from harness.cli.shared_options import (
+    add_overrides,
+    add_package_path,
+    add_plugin,
+    add_served_robot,
+)
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -17,22 +24,16 @@ if TYPE_CHECKING:
     from harness.session.run_request import RunRequest
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Serve a scenario's cell, or run a recorded command stream again."""
-    work = _replay if arguments.command == "replay" else _bridge
-    return guarded(lambda: work(arguments), ticks=False)
-
-
-def one_scenario(name: str) -> Path:
-    """The scenario file that an argument names.
-
-    Raises:
-        UsageError: It names none, or several.
-    """
-    found = discover([name])
-    if len(found) != 1:
-        raise UsageError(f"'{name}' holds {len(found)} scenarios; name one")
-    return found[0]
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness bridge`."""
+    command.add_argument("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
+    add_served_robot(command)
+    text = "end after this simulated time where no step is `external` (default: 600)"
+    command.add_argument("--duration", metavar="SECONDS", type=seconds, default=None, help=text)
+    add_overrides(command)
+    add_package_path(command)
+    add_plugin(command)
+    command.set_defaults(ticks=False)
 
 
 def bridge_request(
@@ -51,7 +52,11 @@ def bridge_request(
     if not arguments.no_report:
         folder = report_folders([file], Path(arguments.report_dir))[0]
     request = RunRequest(
-        file, overrides=dict(arguments.overrides), seed=arguments.seed, report_dir=folder
+        file,
+        overrides=dict(arguments.overrides),
+        seed=arguments.seed,
+        report_dir=folder,
+        page=not arguments.no_page,
     )
     loaded = read_scenario(file, request.overrides, request.seed).loaded
     if loaded is not None and not any(isinstance(s, External) for s in loaded.scenario.steps):
@@ -73,7 +78,8 @@ def bridge_request(
     )
 
 
-def _bridge(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
+    """Serve a scenario's cell until its steps have ended."""
     from dataclasses import replace
 
     from harness.ros.bridge import run_bridge
@@ -120,36 +126,3 @@ def show_case(case: CaseResult, request: RunRequest) -> None:
         say_text(failure(case, style, source=source_lines(request.file)))
     if case.report_dir:
         say(f"report: {report_link(case, style)}")
-
-
-def _replay(arguments: argparse.Namespace) -> int:
-    folder = Path(arguments.run)
-    if not (folder / "run.json").is_file():
-        raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
-    from harness.recording.store import read_run
-    from harness.ros.replay import replay
-
-    target = Path(arguments.report_dir) if arguments.report_dir else None
-    recorded = read_run(folder)
-    case = replay(folder, target)
-    is_equal = case.digest == recorded.digest
-    count = sum(command.kind != "end" for command in recorded.run.commands)
-    if arguments.json:
-        with only_json_on_stdout() as write_json:
-            write_json(
-                {
-                    "format": "armharness-replay/1",
-                    "outcome": case.outcome,
-                    "commands": count,
-                    "digest": case.digest,
-                    "recorded_digest": recorded.digest,
-                    "is_equal": is_equal,
-                }
-            )
-    else:
-        say(f"{count} commands replayed; {case.outcome}")
-        if case.outcome not in ("passed", "failed"):
-            say(case.message)
-        same = "equal to the recorded one" if is_equal else f"recorded: {recorded.digest[:12]}"
-        say(f"digest {case.digest[:12]}, {same}")
-    return 0 if is_equal else EXIT_CODES["failed"]

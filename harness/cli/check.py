@@ -8,7 +8,8 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-from harness.cli.output import guarded, only_json_on_stdout, output, say, say_text
+from harness.cli.output import only_json_on_stdout, output, say, say_text
+from harness.cli.shared_options import add_format, add_paths, add_seed
 from harness.suite.discovery import discover
 from harness.suite.header import read_header
 from harness.suite.outcome import EXIT_CODES
@@ -17,12 +18,15 @@ MOST_CASES = 100
 """Parametrised cases of a file that are checked; running them checks the rest."""
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness check`."""
+    add_paths(command)
+    add_seed(command)
+    add_format(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Check files; problems of all of them are reported."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
     from harness.reporting.suite.cause import short_problem
     from harness.reporting.suite.github import problem_annotation

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
-from harness.cli.output import guarded, only_json_on_stdout, say
-from harness.suite.discovery import UsageError
+from harness.cli.files import run_folder
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.shared_options import add_json
 from harness.suite.outcome import EXIT_CODES
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness compare`."""
+    command.add_argument("first", metavar="RUN", help="the report folder of a run")
+    command.add_argument("second", metavar="RUN", help="the report folder of another run")
+    add_json(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare two runs' folders; exit code 1 when they are not the same."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    folders = [Path(arguments.first), Path(arguments.second)]
-    for folder in folders:
-        if not (folder / "run.json").is_file():
-            raise UsageError(f"'{folder}' is no run's folder: it has no run.json")
+    folders = [run_folder(arguments.first), run_folder(arguments.second)]
     from harness.recording.compare import compare
     from harness.recording.store import blames_changes, read_run
     from harness.reporting.comparison import comparison_lines

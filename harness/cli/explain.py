@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.output import guarded, say_text
+from harness.cli.output import say_text
+from harness.cli.shared_options import add_paths, add_seed
 from harness.suite.discovery import discover
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness explain`."""
+    add_paths(command)
+    add_seed(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the program of each file."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
     from harness.session.check import explain_file
 

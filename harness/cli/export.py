@@ -8,7 +8,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import guarded, say
+from harness.cli.arguments import positive_number
+from harness.cli.files import refuse_existing, refusing_unwritable, run_folder, write_text
+from harness.cli.output import say
 from harness.suite.discovery import UsageError
 
 if TYPE_CHECKING:
@@ -18,18 +20,27 @@ if TYPE_CHECKING:
 METADATA = "metadata.yaml"
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness export`."""
+    add = command.add_argument
+    add("run", metavar="RUN", help="the run's report folder")
+    add("--bag", metavar="DIR", help="write a rosbag2 into this new folder")
+    add("--urdf", metavar="FILE", help="write the robot's URDF")
+    text = "store the bag in this format (default: mcap, compressed)"
+    add("--storage", choices=("mcap", "sqlite3"), default="mcap", help=text)
+    text = "write joints, frames and clock at this rate (default: 100)"
+    rate = positive_number("messages a second")
+    add("--rate", metavar="HZ", type=rate, default=100.0, help=text)
+    text = "write the cameras' pictures uncompressed too"
+    add("--raw-images", action="store_true", help=text)
+    text = "how the URDF names mesh files: as package://, or where they are on this machine"
+    add("--meshes", choices=("package", "file"), default="package", help=text)
+    add("--force", action="store_true", help="overwrite what exists")
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Write the bag, the URDF, or both; all or nothing."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    from harness.recording.store import RUN
-
-    path = Path(arguments.run)
-    folder = path if path.is_dir() else path.parent
-    if not path.exists() or not (folder / RUN).is_file():
-        raise UsageError(f"'{arguments.run}' is no run's folder: it has no {RUN}")
+    folder = run_folder(arguments.run)
     if not arguments.bag and not arguments.urdf:
         raise UsageError("nothing to export: say --bag DIR, --urdf FILE, or both")
     targets = [Path(name) for name in (arguments.bag, arguments.urdf) if name]
@@ -54,16 +65,13 @@ def _export(arguments: argparse.Namespace, stored: StoredRun) -> None:
         size = sum(file.stat().st_size for file in bag.iterdir())
         say(f"wrote {bag}: {size / 1e6:.1f} MB")
     if arguments.urdf:
-        _write_text(Path(arguments.urdf), urdf_of(stored.run, options.meshes))
+        write_text(Path(arguments.urdf), urdf_of(stored.run, options.meshes))
         say(f"wrote {arguments.urdf}")
 
 
 def _refuse_taken(target: Path, *, is_forced: bool) -> None:
     """Only a bag is replaced by a bag, and only with --force."""
-    if not target.exists():
-        return
-    if not is_forced:
-        raise UsageError(f"'{target}' is there already; nothing was written (--force overwrites)")
+    refuse_existing(target, is_forced=is_forced)
     if target.is_dir() and not (target / METADATA).is_file():
         raise UsageError(f"'{target}' is a folder and no bag; it is not replaced")
 
@@ -72,7 +80,7 @@ def _write_bag(bag: Path, stored: StoredRun, options: BagOptions) -> None:
     """Write it next to its place, then move it there."""
     from harness.reporting.rosbag.write import write_bag
 
-    try:
+    with refusing_unwritable():
         bag.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=bag.parent, prefix=f".{bag.name}.") as place:
             written = Path(place) / bag.name
@@ -82,13 +90,3 @@ def _write_bag(bag: Path, stored: StoredRun, options: BagOptions) -> None:
             elif bag.exists():
                 bag.unlink()
             written.rename(bag)
-    except OSError as error:
-        raise UsageError(f"cannot write '{error.filename}': {error.strerror}") from error
-
-
-def _write_text(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8", newline="")
-    except OSError as error:
-        raise UsageError(f"cannot write '{error.filename}': {error.strerror}") from error

@@ -7,27 +7,82 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import guarded, only_json_on_stdout, say
-from harness.suite.discovery import UsageError, discover
+from harness.cli.arguments import pair, seconds
+from harness.cli.files import one_scenario
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.shared_options import (
+    add_json,
+    add_overrides,
+    add_package_path,
+    add_plugin,
+    add_served_robot,
+)
+from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
     from harness.grading.grade import Grade, Graded
 
+DOUBTS = ("publishers", "tf", "frames", "steps", "velocities")
+EXAMPLE = "red_box=/red_box/pose"
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness grade`."""
+    add = command.add_argument
+    add("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
+    add_plugin(command)
+    text = "a rosbag2 folder, .mcap or .db3 file; or give --node"
+    add("bag", metavar="BAG", nargs="?", default="", help=text)
+    add_served_robot(command)
+    text = "give the nodes this simulated time where no step is `external` (default: 60)"
+    add("--timeout", metavar="SECONDS", type=seconds, default=60.0, help=text)
+    text = "read the joint positions from this topic (default: /joint_states)"
+    add("--joint-states", metavar="TOPIC", default="/joint_states", help=text)
+    text = (
+        "read poses of objects by name from this topic: TFMessage, as Gazebo's bridge sends them,"
+        " or ModelStates"
+    )
+    add("--objects", metavar="TOPIC", action="append", default=[], help=text)
+    add(
+        "--object",
+        metavar="NAME=TOPIC",
+        dest="object_poses",
+        action="append",
+        type=_object_topic,
+        default=[],
+        help="read the pose of one object from this topic",
+    )
+    add_overrides(command)
+    text = f"award points in spite of a doubt about the recording: {', '.join(DOUBTS)}"
+    add(
+        "--allow",
+        metavar="DOUBT",
+        dest="allowed",
+        action="append",
+        default=[],
+        choices=DOUBTS,
+        help=text,
+    )
+    add_package_path(command)
+    add_json(command)
+
+
+def _object_topic(text: str) -> tuple[str, str]:
+    """`NAME=TOPIC` of an object's pose."""
+    name, topic = pair(text, "NAME=TOPIC", EXAMPLE)
+    if not topic.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=TOPIC, as in {EXAMPLE}")
+    return name, topic.strip()
+
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge a recording and print points with reasons."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     if bool(arguments.bag) == bool(arguments.nodes):
         raise UsageError("give either a recording (BAG) or a command (--node) to grade")
     if arguments.nodes:
         return _run_node(arguments)
-    scenarios = discover([arguments.scenario])
-    if len(scenarios) != 1:
-        raise UsageError(f"'{arguments.scenario}' holds {len(scenarios)} scenarios; name one")
+    scenario = one_scenario(arguments.scenario)
     from harness.grading.bag.content import BagTopics
     from harness.grading.grade import grade_bag
 
@@ -37,10 +92,10 @@ def _run(arguments: argparse.Namespace) -> int:
     options = dict(arguments.overrides), arguments.allowed
     if arguments.json:
         with only_json_on_stdout() as write_json:
-            grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
+            grade = grade_bag(scenario, Path(arguments.bag), topics, *options)
             write_json(_document(grade))
         return _code(grade)
-    grade = grade_bag(scenarios[0], Path(arguments.bag), topics, *options)
+    grade = grade_bag(scenario, Path(arguments.bag), topics, *options)
     _print_grade(grade)
     return _code(grade)
 
@@ -85,6 +140,8 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
             if step.status == "failed":
                 say(f"{step.id} failed, {step.error_code}: {step.message}")
         _print_grade(grade)
+        if code != _code(grade):
+            say("not passed: every point is earned, but a step failed")
         if case.report_dir:
             say(f"report: {case.report_dir}")
     show_wall(result)

@@ -7,17 +7,46 @@ import re
 import sys
 from pathlib import Path
 
-from harness.cli.output import guarded, only_json_on_stdout, say
-from harness.cli.robot_options import source_of
+from harness.cli.arguments import positive_number, seconds, whole_number
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.robot_options import ROBOT, add_robot_options, source_of
+from harness.cli.shared_options import add_json, add_plugin, add_report_dir
 from harness.suite.outcome import EXIT_CODES
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness ik-test`."""
+    add = command.add_argument
+    text = (
+        "module:function, file.py:function, a name of `harness list ik-solvers`, or `own` for the"
+        " robot's own solver"
+    )
+    add("solver", metavar="SOLVER", help=text)
+    add_plugin(command)
+    add("--robot", metavar="ROBOT", required=True, help=ROBOT)
+    add_robot_options(command)
+    text = "place this link at the targets (default: the TCP)"
+    add("--link", metavar="LINK", default="", help=text)
+    text = "the function claims to return every solution for a target"
+    add("--branches", action="store_true", help=text)
+    text = "try N cases of each property (default: 100)"
+    add("--examples", metavar="N", type=whole_number, default=100, help=text)
+    text = "draw the cases with this seed (default: 0)"
+    add("--seed", metavar="N", type=int, default=0, help=text)
+    length, angle = positive_number("metres"), positive_number("radians")
+    text = "accept answers within this distance of the target [m] (default: 0.0001)"
+    add("--position-tolerance", metavar="M", type=length, default=1e-4, help=text)
+    text = "accept answers within this angle of the target [rad] (default: 0.001)"
+    add("--orientation-tolerance", metavar="RAD", type=angle, default=1e-3, help=text)
+    text = "count a call as hanging after this wall time (default: 5)"
+    add("--call-limit", metavar="SECONDS", type=seconds, default=5.0, help=text)
+    add_report_dir(command)
+    add("--no-report", action="store_true", help="write no report and no pictures")
+    add_json(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Test the function; 1 when anything is found."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     sys.path.insert(0, str(Path.cwd()))  # a module is found in the folder where one works
     from harness.iktest.kit import IkTest, run_ik_test
     from harness.iktest.text import report_lines

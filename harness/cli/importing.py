@@ -7,19 +7,42 @@ import os
 import tempfile
 from pathlib import Path
 
-from harness.cli.output import guarded, say
-from harness.cli.robot_options import source_of
+from harness.cli.files import refuse_existing, refusing_unwritable
+from harness.cli.output import say
+from harness.cli.robot_options import add_robot_options, source_of
 from harness.suite.discovery import SUFFIX, UsageError
 
 MOST_NOTES = 20
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness import`."""
+    add = command.add_argument
+    text = "the format of FILE"
+    add("kind", choices=("sdf", "scene", "srdf", "moveit"), help=text)
+    text = (
+        "an SDF world, a MoveIt .scene or an SRDF; for `moveit`, any number of PlanningScene and"
+        " MotionPlanRequest files in YAML"
+    )
+    add("files", metavar="FILE", nargs="+", help=text)
+    text = (
+        "write to this path (default: FILE's name with .yaml; of an SRDF a folder of FILE's name;"
+        " for `moveit` the folder `scenarios` next to the first FILE)"
+    )
+    add("-o", "--output", metavar="FILE", help=text)
+    text = "look models up in this folder before GZ_SIM_RESOURCE_PATH"
+    add("--model-path", metavar="DIR", action="append", default=[], help=text)
+    add("--force", action="store_true", help="overwrite what exists")
+    text = (
+        "the robot of an SRDF or of MoveIt's files: a URDF, xacro or MJCF; for `moveit` also a"
+        " bundled name"
+    )
+    add("--robot", metavar="FILE", default="", help=text)
+    add_robot_options(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Write a world file or a robot's folder; what is left out of the other file is reported."""
-    return guarded(lambda: _import(arguments))
-
-
-def _import(arguments: argparse.Namespace) -> int:
     if arguments.kind == "moveit":
         return _moveit(arguments)
     if arguments.srdf:
@@ -121,22 +144,22 @@ def _comment(source: Path, notes: tuple[object, ...]) -> str:
 def _write(files: dict[Path, bytes], *, is_forced: bool) -> None:
     """Write all files, or none where one is there already or cannot be written."""
     for path in files:
-        if path.exists() and not is_forced:
-            raise UsageError(f"'{path}' is there already; nothing was written (--force overwrites)")
+        refuse_existing(path, is_forced=is_forced)
     written: list[tuple[str, Path]] = []
     try:
-        for path, content in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-                written.append((file.name, path))
-                file.write(content)
-            Path(file.name).chmod(0o666 & ~_umask())
-        for name, path in written:
-            Path(name).replace(path)
-    except OSError as error:
+        with refusing_unwritable():
+            for path, content in files.items():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+                    written.append((file.name, path))
+                    file.write(content)
+                Path(file.name).chmod(0o666 & ~_umask())
+            for name, path in written:
+                Path(name).replace(path)
+    except UsageError:
         for name, _ in written:
             Path(name).unlink(missing_ok=True)
-        raise UsageError(f"cannot write '{error.filename}': {error.strerror}") from error
+        raise
 
 
 def _umask() -> int:

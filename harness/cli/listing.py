@@ -5,18 +5,21 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterable
 
-from harness.cli.output import complain, guarded, say
+from harness.cli.output import complain, say
+from harness.cli.shared_options import add_plugin
 
 Rows = Iterable[tuple[str, ...]]
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness list`."""
+    command.add_argument("kind", choices=tuple(LISTINGS))
+    add_plugin(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Print one line for each thing of a kind."""
-    return guarded(lambda: _run(LISTINGS[arguments.kind]()))
-
-
-def _run(rows: Rows) -> int:
-    table = list(rows)
+    table = list(LISTINGS[arguments.kind]())
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for row in table:
         cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))

@@ -12,7 +12,33 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from contextlib import AbstractContextManager
     from pathlib import Path
-    from types import FrameType
+    from types import FrameType, ModuleType
+
+COMMANDS = {
+    "run": "run scenarios and judge them",
+    "merge": "merge the parts of a suite that ran with --shard",
+    "results": "query, compare and export the results of many runs",
+    "search": "search for conditions under which a scenario fails",
+    "check": "validate scenarios and the reach of their goals",
+    "explain": "print the program that a scenario becomes",
+    "list": "list what a scenario may name",
+    "view": "open the page of a run",
+    "studio": "open a robot cell in the browser, and make a scenario",
+    "judge": "judge a saved run again",
+    "grade": "grade a recording of another program by a scenario",
+    "bridge": "let ROS 2 nodes command a scenario's robot",
+    "replay": "run the recorded commands of ROS 2 nodes again",
+    "compare": "report what changed from one saved run to another",
+    "new": "write a commented scenario that passes",
+    "export": "write a saved run as a rosbag2, and its robot as a URDF",
+    "import": "convert files of other programs",
+    "robot": "check a robot, or draw it",
+    "ik-test": "test a function that solves inverse kinematics",
+    "bench": "compare planners on the motions of scenarios",
+    "schema": "print the JSON Schema of scenario files",
+}
+MODULES = {"list": "listing", "import": "importing", "ik-test": "ik_test"}
+"""Commands whose module in `harness.cli` has another name."""
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
 130 interrupted (Ctrl-C, SIGTERM)"""
@@ -58,19 +84,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code of the command.
     """
     import gc
-    import importlib
 
     parsed = _parser().parse_args(arguments)
-    from harness.cli.output import OutputError, complain
+    from harness.cli.output import OutputError, complain, guarded
 
-    if parsed.module in ("run", "search", "studio"):
+    if parsed.command in ("run", "search", "studio"):
         gc.enable()
+    ticks = getattr(parsed, "ticks", True) and not getattr(parsed, "in_process", False)
     try:
         if not _load_plugins(getattr(parsed, "plugins", ())):
             return USAGE_EXIT_CODE
-        command = importlib.import_module(f"harness.cli.{parsed.module}")
+        run = _module(parsed.command).run
         with _package_path(getattr(parsed, "package_folders", ())):
-            code: int = command.run(parsed)
+            code = guarded(lambda: run(parsed), ticks=ticks)
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon_stdout()  # the reader of a pipe has left
@@ -169,8 +195,7 @@ def _load_plugins(modules: Sequence[str]) -> bool:
 
 def _parser() -> argparse.ArgumentParser:
     from harness import __version__
-    from harness.cli import options
-    from harness.cli.arguments import Parser
+    from harness.cli.arguments import CommandParser, Parser
 
     parser = Parser(
         prog="harness",
@@ -178,36 +203,21 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
     )
     parser.add_argument("--version", action="version", version=f"armharness {__version__}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-
-    def command(name: str, text: str, module: str = "") -> argparse.ArgumentParser:
-        added = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        added.set_defaults(module=module or name)
-        return added
-
-    options.for_run(command("run", "run scenarios and judge them"))
-    options.for_merge(command("merge", "merge the parts of a suite that ran with --shard"))
-    options.for_results(command("results", "query, compare and export the results of many runs"))
-    options.for_search(command("search", "search for conditions under which a scenario fails"))
-    options.for_check(command("check", "validate scenarios and the reach of their goals"))
-    options.for_explain(command("explain", "print the program that a scenario becomes"))
-    options.for_list(command("list", "list what a scenario may name", module="listing"))
-    options.for_view(command("view", "open the page of a run"))
-    options.for_studio(command("studio", "open a robot cell in the browser, and make a scenario"))
-    options.for_judge(command("judge", "judge a saved run again"))
-    options.for_grade(command("grade", "grade a recording of another program by a scenario"))
-    options.for_bridge(command("bridge", "let ROS 2 nodes command a scenario's robot"))
-    options.for_replay(
-        command("replay", "run the recorded commands of ROS 2 nodes again", module="bridge")
+    commands = parser.add_subparsers(
+        title="commands",
+        metavar="COMMAND",
+        dest="command",
+        required=True,
+        parser_class=CommandParser,
     )
-    options.for_compare(command("compare", "report what changed from one saved run to another"))
-    options.for_new(command("new", "write a commented scenario that passes"))
-    options.for_export(command("export", "write a saved run as a rosbag2, and its robot as a URDF"))
-    options.for_import(command("import", "convert files of other programs", module="importing"))
-    options.for_robot(command("robot", "check a robot, or draw it"))
-    options.for_ik_test(
-        command("ik-test", "test a function that solves inverse kinematics", module="ik_test")
-    )
-    options.for_bench(command("bench", "compare planners on the motions of scenarios"))
-    options.for_schema(command("schema", "print the JSON Schema of scenario files"))
+    for name, text in COMMANDS.items():
+        command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        command.add_options = lambda command, name=name: _module(name).add_options(command)
     return parser
+
+
+def _module(command: str) -> ModuleType:
+    """The module of a command, which has its options and what it does."""
+    from importlib import import_module
+
+    return import_module(f"harness.cli.{MODULES.get(command, command)}")

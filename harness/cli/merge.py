@@ -6,16 +6,22 @@ import argparse
 import time
 from pathlib import Path
 
-from harness.cli.output import complain, guarded
+from harness.cli.output import complain
+from harness.cli.shared_options import add_format, add_history, add_report_dir
+from harness.cli.suite_output import show_json, show_lines, show_results, write_suite_files
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness merge`."""
+    text = "a report folder of `harness run --shard`"
+    command.add_argument("folders", metavar="DIR", nargs="+", help=text)
+    add_report_dir(command, "write the results into this folder")
+    add_history(command)
+    add_format(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Merge the parts of a suite into one page, JUnit file and results."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    from harness.cli.run import show_json, show_lines, show_results, write_files
     from harness.suite.merge import merge_parts
 
     start = time.monotonic()
@@ -36,7 +42,7 @@ def _run(arguments: argparse.Namespace) -> int:
         seed=record.seed,
         samples=record.samples,
     )
-    page, columns = write_files(options, suite)
+    page, columns = write_suite_files(options, suite)
     if arguments.format == "json":
         show_json(suite)
     elif arguments.format == "full":

@@ -6,25 +6,30 @@ import argparse
 import shlex
 from pathlib import Path
 
-from harness.cli.output import guarded, output, say, say_text
-from harness.cli.robot_options import source_of
+from harness.cli.output import output, say, say_text
+from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.suite.discovery import SUFFIX, UsageError
 
 TEMPLATE = Path(__file__).parent / "templates" / "new.scenario.yaml"
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness new`."""
+    text = "the scenario file to write, for example first.scenario.yaml"
+    command.add_argument("file", metavar="FILE", help=text)
+    command.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
+    add_robot_options(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
-    """Write a scenario to a file that is not there yet."""
-    return guarded(lambda: _run(arguments, Path(arguments.file)))
-
-
-def _run(arguments: argparse.Namespace, file: Path) -> int:
+    """Write a scenario to a new file."""
+    file = Path(arguments.file)
     if not file.name.endswith(SUFFIX):
         stem = file.name.removesuffix(".yaml").removesuffix(".yml")
         better = file.with_name(f"{stem}{SUFFIX}")
         raise UsageError(f"the name of a scenario ends in {SUFFIX}: try '{better}'")
     if file.exists():
-        raise UsageError(f"'{file}' is there already; nothing was written")
+        raise UsageError(f"'{file}' exists already; nothing was written")
     is_new_folder = not file.parent.exists()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -188,7 +188,6 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
     """A command's work; errors that are raised on purpose are shown without a traceback.
 
     Args:
-        work: What the command does.
         ticks: Whether a terminal shows that the command is at work; not where a debugger may be.
     """
     try:

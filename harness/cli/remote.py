@@ -28,8 +28,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     from harness.cli.bridge import show_case
     from harness.ros.bridge import open_graph
     from harness.ros.domain import domain_of_user
-    from harness.ros.remote import RemoteOptions
-    from harness.ros.remote_run import run_on_robot
+    from harness.ros.remote import RemoteOptions, run_on_robot
     from harness.session.run_request import RunRequest
     from harness.suite.folders import report_folders
 

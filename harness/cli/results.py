@@ -10,7 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.cli.output import guarded, only_json_on_stdout, say
+from harness.cli.arguments import whole_number
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.shared_options import add_json
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -22,12 +24,36 @@ SHOWN = 20
 """Runs that are printed unless `--limit` says otherwise."""
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness results`."""
+    add = command.add_argument
+    add("folder", metavar="DIR", help="the report folder of a suite")
+    outcomes = ("passed", "failed", "invalid", "error")
+    add("--outcome", choices=outcomes, default="", help="select runs with this outcome")
+    text = "select runs whose file has this tag; repeatable"
+    add("--tag", metavar="TAG", dest="tags", action="append", default=[], help=text)
+    text = "select failures whose cause contains this text"
+    add("--cause", metavar="TEXT", default="", help=text)
+    text = (
+        "select runs in which this holds for a parameter, or for `margin`, `share`, `seed` or"
+        " `sim_time`; repeatable: --where 'friction<0.4' --where 'margin<1 mm'"
+    )
+    add("--where", metavar="NAME<VALUE", dest="conditions", action="append", default=[], help=text)
+    text = "print at most N runs (default: 20)"
+    add("--limit", metavar="N", type=whole_number, default=None, help=text)
+    text = (
+        "compare with another campaign on the same conditions: exit code 1 when that one has a"
+        " lower success rate"
+    )
+    add("--against", metavar="DIR", default="", help=text)
+    add("--csv", metavar="FILE", default="", help="write the selected runs as CSV")
+    text = "write the selected runs as Parquet; needs the extra `parquet`"
+    add("--parquet", metavar="FILE", default="", help=text)
+    add_json(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Query, compare or export results; exit code 1 when the second campaign is worse."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     from harness.campaigns.database import open_campaign
     from harness.campaigns.filters import Query
 

@@ -7,8 +7,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import guarded, only_json_on_stdout, say
-from harness.cli.robot_options import source_of
+from harness.cli.arguments import whole_number
+from harness.cli.files import refuse_existing, refusing_unwritable, write_text
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.robot_options import ROBOT, add_robot_options, source_of
+from harness.cli.shared_options import add_json
 from harness.suite.discovery import UsageError
 
 if TYPE_CHECKING:
@@ -19,14 +22,44 @@ SAMPLES, SAMPLES_FOR_SRDF = 2000, 10_000
 FORMAT = "armharness-robot/1"
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness robot`."""
+    actions = command.add_subparsers(dest="action", metavar="ACTION", required=True)
+    check = actions.add_parser(
+        "check",
+        help="check limits, masses, kinematics, self-collisions and reach",
+        description="Check a robot; the exit code is 1 when something is wrong.",
+    )
+    show = actions.add_parser("show", help="draw the robot", description="Draw a robot.")
+    for action in (check, show):
+        add = action.add_argument
+        add("robot", metavar="ROBOT", help=f"{ROBOT}; or a scenario")
+        add_robot_options(action)
+        text = "draw the robot in this named state (default: the start)"
+        add("--state", metavar="NAME", default="", help=text)
+        text = "write the picture to this PNG or JPEG file"
+        add("--image", metavar="FILE", default="", help=text)
+    add = check.add_argument
+    text = "check N random configurations (default: 2000; for an SRDF 10000)"
+    add("--samples", metavar="N", type=whole_number, default=None, help=text)
+    text = "draw the configurations with this seed (default: 0)"
+    add("--seed", metavar="N", type=int, default=0, help=text)
+    text = "write an SRDF that disables the pairs that need no collision check"
+    add("--write-srdf", metavar="FILE", default="", help=text)
+    add("--force", action="store_true", help="overwrite that file")
+    add_json(check)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Check or draw a robot."""
-    return guarded(lambda: COMMANDS[arguments.action](arguments))
+    return _check(arguments) if arguments.action == "check" else _show(arguments)
 
 
 def _check(arguments: argparse.Namespace) -> int:
     image = _picture(arguments.image) if arguments.image else None
-    srdf = _new_file(arguments.write_srdf, arguments.force) if arguments.write_srdf else None
+    srdf = Path(arguments.write_srdf) if arguments.write_srdf else None
+    if srdf is not None:
+        refuse_existing(srdf, is_forced=arguments.force)
     from harness.reporting.robot_report import page
     from harness.reporting.terminal import Style
     from harness.robot_tools.robot_check import check_robot
@@ -44,7 +77,7 @@ def _check(arguments: argparse.Namespace) -> int:
     )
     extra_lines: list[str] = []
     if srdf is not None:
-        _write(srdf, proposed_srdf(checked.touches, source.own_name or description.name))
+        write_text(srdf, proposed_srdf(checked.touches, source.own_name or description.name))
         extra_lines.append(f"wrote {srdf}")
     elif source.has_no_srdf:
         extra_lines.append("no SRDF is given: --write-srdf FILE writes one with these pairs")
@@ -69,20 +102,15 @@ def _show(arguments: argparse.Namespace) -> int:
     return 0
 
 
-COMMANDS = {"check": _check, "show": _show}
-
-
 def _draw(description: RobotDescription, state: str, image: Path) -> list[str]:
     """Write a picture; returns the lines to print."""
     from harness.cameras.robot_picture import save_robot_picture
     from harness.robot_tools.robot_source import positions_of
 
     positions = positions_of(description, state)
-    try:
+    with refusing_unwritable():
         image.parent.mkdir(parents=True, exist_ok=True)
         note = save_robot_picture(description, positions, image)
-    except OSError as error:
-        raise UsageError(f"cannot write '{image}': {error.strerror}") from error
     return [f"wrote {image}", *([f"note: {note}"] if note else [])]
 
 
@@ -90,18 +118,3 @@ def _picture(name: str) -> Path:
     if Path(name).suffix.lower() not in PICTURES:
         raise UsageError(f"the name of a picture ends in {' or '.join(PICTURES)}, not '{name}'")
     return Path(name)
-
-
-def _new_file(name: str, is_forced: bool) -> Path:
-    path = Path(name)
-    if path.exists() and not is_forced:
-        raise UsageError(f"'{path}' is there already; --force overwrites it")
-    return path
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"cannot write '{path}': {error.strerror}") from error

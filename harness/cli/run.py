@@ -1,28 +1,43 @@
-"""`harness run`."""
+"""`harness run`: scenarios, with their progress and results."""
 
 from __future__ import annotations
 
 import argparse
-import shlex
 import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import complain, guarded, only_json_on_stdout, output, say, say_text
+from harness.cli.arguments import share_of_one, whole_number
+from harness.cli.output import complain, only_json_on_stdout, output
+from harness.cli.shared_options import (
+    STRICT,
+    add_domain,
+    add_format,
+    add_hard_cap,
+    add_history,
+    add_node,
+    add_paths,
+    add_report_dir,
+    add_seed,
+)
+from harness.cli.suite_output import (
+    has_page,
+    show_interruption,
+    show_json,
+    show_lines,
+    show_results,
+    write_suite_files,
+)
 from harness.core.lazy import LazySequence
 from harness.core.registry import registry
-from harness.suite.cases import progress_text
 from harness.suite.discovery import UsageError, discover
 from harness.suite.leftovers import clean_report_folder
 from harness.suite.warm import WarmServer
 
 if TYPE_CHECKING:
     from harness.reporting.result import CaseResult
-    from harness.reporting.suite.columns import Columns
-    from harness.reporting.terminal import Style
-    from harness.session.run_request import RunRequest
     from harness.suite.conditions import Conditions
     from harness.suite.suite_run import SuiteRun
 
@@ -32,16 +47,77 @@ BRIEF_FROM = 20
 LONGEST_WAIT_FOR_PAGE = 10.0
 """Time after which a run with `--live` begins although its page is not open [s]."""
 
-MOST_FAILURES = 20
-"""Failures that are shown in full; the rest is counted."""
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness run`."""
+    add = command.add_argument
+    add_paths(command)
+    add_seed(command)
+    text = "run only scenarios whose path, title or tags match: 'pick and not ur5e'"
+    add("-k", metavar="EXPR", dest="expression", default="", help=text)
+    text = "run N scenarios side by side"
+    add("-j", metavar="N", dest="workers", type=whole_number, default=1, help=text)
+    text = "run each case N times and report whether all digests are equal"
+    add("--repeat", metavar="N", type=whole_number, default=1, help=text)
+    text = "run only the case of this name, or the cases whose names match a pattern: 'ur5e-*'"
+    add("--case", metavar="NAME", dest="cases", action="append", default=[], help=text)
+    text = "draw this many samples, instead of the number in the file"
+    add("--samples", metavar="N", type=whole_number, default=None, help=text)
+    text = (
+        "write the reports of all cases, or only of those that failed (default: all; of samples,"
+        " those that failed)"
+    )
+    add("--keep", choices=("all", "failed"), default="", help=text)
+    text = "continue where the same command was interrupted, and keep the results that exist"
+    add("--resume", action="store_true", help=text)
+    add("--strict", action="store_true", help=STRICT)
+    add_report_dir(command)
+    text = (
+        "run part N of COUNT of the suite, or with 'auto' the part that SLURM, Kubernetes or"
+        " GitLab names; `harness merge` joins the parts"
+    )
+    add("--shard", metavar="N/COUNT", default="", help=text)
+    text = (
+        "run the samples of an earlier run, by its conditions.jsonl or its report folder, instead"
+        " of drawing new ones: the same conditions for another version, robot or planner"
+    )
+    add("--conditions", metavar="FILE", default="", help=text)
+    text = (
+        "run the cases on Ray: 'ray' for processes of this machine (-j) or the cluster of"
+        " RAY_ADDRESS, 'ray://HOST:PORT' for another cluster; needs the extra `cluster`"
+    )
+    add("--on", metavar="CLUSTER", dest="cluster", default="", help=text)
+    add("--no-report", action="store_true", help="write no report")
+    text = (
+        "compute plans, physics and distances in every case, even those that are the same as in a"
+        " case before"
+    )
+    add("--no-sharing", action="store_true", help=text)
+    add("--no-page", action="store_true", help="write the report without its page")
+    add("--bag", action="store_true", help="write a rosbag2 into the report too")
+    text = "let a reporter of `harness list reporters` write into the report too; repeatable"
+    add("--reporter", metavar="NAME", dest="reporters", action="append", default=[], help=text)
+    add_history(command)
+    add_format(command)
+    add_hard_cap(command, "scenario")
+    add_node(command, "the step `external` to start this command")
+    text = (
+        "with ros2, plan here and let the controllers of a ROS 2 robot execute, after the plan is"
+        " printed and confirmed"
+    )
+    add("--robot", choices=("simulated", "ros2"), default="simulated", help=text)
+    add("--yes", action="store_true", help="with --robot ros2: confirm the plan in advance")
+    text = "with --robot ros2: scale the planned speed by this share (default: 1)"
+    add("--velocity-scaling", metavar="SHARE", type=share_of_one, default=1.0, help=text)
+    add_domain(command)
+    text = "show the cases on a page of this machine while they run; needs the extra `studio`"
+    add("--live", action="store_true", help=text)
+    text = "run all cases in this process, for a debugger"
+    add("--in-process", action="store_true", help=text)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run scenarios; steps and outcomes as they come, failures last."""
-    return guarded(lambda: _run(arguments), ticks=not arguments.in_process)
-
-
-def _run(arguments: argparse.Namespace) -> int:
     files = discover(arguments.paths)
     if arguments.live:
         return _run_live(arguments, files)
@@ -58,7 +134,8 @@ def _run_live(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     for option, is_given in {**excluded, "--node": arguments.nodes}.items():
         if is_given:
             raise UsageError(f"--live and {option} exclude each other")
-    from harness.cli.studio import open_browser, refuse_missing_extra
+    from harness.cli.studio import refuse_missing_extra
+    from harness.cli.view import open_browser
 
     refuse_missing_extra()
     from harness.studio.watch import Watch
@@ -80,13 +157,13 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
         if arguments.format == "json":
             with only_json_on_stdout():
                 suite.collect(server, on_result=update_page)
-                write_files(arguments, suite)
-                _show_interruption(arguments, suite, time.monotonic() - start)
+                write_suite_files(arguments, suite)
+                show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite)
         if arguments.format != "full":
             suite.collect(server, on_result=update_page)
-            write_files(arguments, suite)
-            _show_interruption(arguments, suite, time.monotonic() - start)
+            write_suite_files(arguments, suite)
+            show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
@@ -106,7 +183,7 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
 
         suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
-    page, columns = write_files(arguments, suite)
+    page, columns = write_suite_files(arguments, suite)
     output().status(None)
     show_results(arguments, suite, time.monotonic() - start, page, columns)
     return suite.exit_code
@@ -191,26 +268,6 @@ def _conditions(arguments: argparse.Namespace) -> Conditions | None:
     return read_conditions(Path(arguments.conditions))
 
 
-def write_files(
-    arguments: argparse.Namespace, suite: SuiteRun
-) -> tuple[Path | None, Columns | None]:
-    """The files of a suite; GitHub's summary of the job where there is one.
-
-    Returns:
-        The page, and what varies in the cases; None where no files are written.
-    """
-    from harness.reporting.suite.github import append_summary
-
-    append_summary(suite.record)
-    if not has_page(arguments, suite):
-        return None, None
-    from harness.reporting.suite.history import history_of
-    from harness.suite.write import write_results
-
-    history = history_of(Path(arguments.history)) if arguments.history else {}
-    return write_results(suite, Path(arguments.report_dir), history)
-
-
 def _page_updates(
     arguments: argparse.Namespace, suite: SuiteRun
 ) -> Callable[[int, CaseResult], None]:
@@ -221,34 +278,6 @@ def _page_updates(
 
     page = LivePage(suite, Path(arguments.report_dir))
     return lambda index, _result: page.result(index)
-
-
-def has_page(arguments: argparse.Namespace, suite: SuiteRun) -> bool:
-    """Whether a suite writes files of its own, next to the reports of its cases."""
-    is_alone = len(suite.plan) == 1 and not suite.is_part
-    return not (arguments.no_report or is_alone or arguments.repeat > 1)
-
-
-def show_json(suite: SuiteRun) -> int:
-    """Print all results as one JSON document."""
-    from harness.reporting.suite.record import results_json
-
-    for part in results_json(suite.record, suite.exit_code):
-        output().document(part)
-    return suite.exit_code
-
-
-def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
-    """A line for each thing that went wrong: for editors, or as GitHub's annotations."""
-    from harness.reporting.suite.cause import short_lines
-    from harness.reporting.suite.github import error_annotations
-
-    if arguments.format == "github":
-        for line in error_annotations(suite.failures()):
-            output().command(line)
-    else:
-        say(*short_lines(suite.failures()))
-    return suite.exit_code
 
 
 def _case_names(arguments: argparse.Namespace, suite: SuiteRun) -> Sequence[str]:
@@ -262,139 +291,3 @@ def _case_names(arguments: argparse.Namespace, suite: SuiteRun) -> Sequence[str]
         return f"{shown}{case}" + (f" #{index % repeat + 1}" if repeat > 1 else "")
 
     return LazySequence(len(suite.jobs), name)
-
-
-def show_results(
-    arguments: argparse.Namespace,
-    suite: SuiteRun,
-    seconds: float,
-    page: Path | None,
-    columns: Columns | None,
-) -> None:
-    """Failures, rates, tables and the last lines.
-
-    Args:
-        arguments: Those of the command.
-        suite: The suite with its results.
-        seconds: The wall time of the command.
-        page: The page of the suite; None where there is none.
-        columns: What varies in the cases; None where this is not known yet.
-    """
-    from harness.reporting.sampled import missed
-    from harness.reporting.suite.github import annotations_for_action
-    from harness.reporting.terminal import Style, repeats, report_link, summary
-
-    style = Style.of(sys.stdout)
-    _print_failures(arguments, suite, style)
-    say("")
-    if arguments.repeat > 1:
-        for runs in suite.repetitions():
-            name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
-            say(f"{name}: {repeats(runs, style)}")
-        for index, said in suite.differences.items():
-            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
-    else:
-        _print_rates(suite, columns, style)
-    rates = missed(suite.rates)
-    rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
-    if suite.results:
-        outcomes = (outcome for _, outcome in suite.results.outcomes())
-        say(f"{summary(outcomes, seconds, style)}{rate_text}")
-    if len(suite.files) > 1:
-        say(suite.files_text)
-    if suite.resumed:
-        say(f"{suite.resumed} of them were known from before")
-    if columns is not None and (shared := columns.shared.sentence()):
-        say(shared)
-    if page is not None:
-        say(f"reports: {style.link(str(page), page.resolve().as_uri())}")
-    elif written := [result for result in suite.results.values() if result.report_dir]:
-        one = report_link(written[0], style)
-        say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
-    for line in annotations_for_action(suite.failures()):
-        output().command(line)
-    if len(suite.processors) > 1:
-        say(
-            f"the cases ran on {len(suite.processors)} processor families"
-            f" ({'; '.join(sorted(suite.processors))}): compare their verdicts, not their digests"
-        )
-    _show_interruption(arguments, suite, seconds)
-
-
-def _show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:
-    """What an interruption left undone, and how to go on; nothing where there was none."""
-    if not suite.is_interrupted:
-        return
-    after = f"interrupted after {seconds:.1f} s"
-    if len(suite.jobs) == 1:
-        where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())
-        complain(f"{after}{where}: the run did not finish, and no report was written")
-        return
-    complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
-    for index, event in suite.unfinished.items():
-        complain(f"  {suite.jobs[index].file}: during {progress_text(event)}")
-    if arguments.repeat == 1 and not arguments.no_report:
-        complain("the same command with --resume runs the rest")
-
-
-def _print_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
-    from harness.reporting.terminal import failure
-    from harness.suite.header import source_lines
-
-    failed = [
-        index
-        for index, outcome in suite.results.outcomes()
-        if outcome != "passed" and (index % arguments.repeat == 0 or outcome == "error")
-    ]
-    for index in failed[:MOST_FAILURES]:
-        result = suite.results[index]
-        job = suite.jobs[index]
-        again, source = _command(arguments, job), source_lines(job.file)
-        say("")
-        say_text(failure(result, style, again=again, source=source))
-        folder = job.report_dir
-        if folder and not result.report_dir and (folder / "run.json").is_file():
-            say(f"  no report was written; {folder} is of an earlier run")
-    if len(failed) > MOST_FAILURES:
-        say("", f"... and {len(failed) - MOST_FAILURES} more that did not pass")
-
-
-def _print_rates(suite: SuiteRun, columns: Columns | None, style: Style) -> None:
-    from harness.reporting.sampled import rate_line
-
-    for group in suite.rates:
-        name = f"{group.file} [{group.group}]" if group.group else group.file
-        say(rate_line(name, group.rate, style))
-    if not any(each.header.varied for each in suite.plan.files):
-        return
-    from harness.reporting.suite.columns import Columns
-    from harness.reporting.suite.tables import table_lines
-
-    for line in table_lines(columns or Columns(suite.record.cases), style):
-        say(line)
-
-
-def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
-    """The command that runs one case again as it was run."""
-    words = ["harness", "run", str(job.file)]
-    if job.case:
-        words += ["--case", job.case]
-    for path, value in arguments.overrides:
-        words += ["--set", f"{path}={value}"]
-    for folder in arguments.package_folders:
-        words += ["--package-path", str(folder)]
-    for module in arguments.plugins:
-        words += ["--plugin", module]
-    if arguments.seed is not None:
-        words += ["--seed", str(arguments.seed)]
-    if arguments.samples is not None:
-        words += ["--samples", str(arguments.samples)]
-    for node in arguments.nodes:
-        words += ["--node", node]
-    words += ["--strict"] if arguments.strict else []
-    words += ["--bag"] if arguments.bag else []
-    for name in arguments.reporters:
-        words += ["--reporter", name]
-    if arguments.report_dir != "reports":
-        words += ["--report-dir", arguments.report_dir]
-    return shlex.join(words)

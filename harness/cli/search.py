@@ -11,10 +11,18 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.output import complain, guarded, only_json_on_stdout, output, say
+from harness.cli.arguments import batch_size, whole_number
+from harness.cli.files import one_scenario
+from harness.cli.output import complain, only_json_on_stdout, output, say
 from harness.cli.progress import remaining
+from harness.cli.shared_options import (
+    add_hard_cap,
+    add_json,
+    add_preparation,
+    add_report_dir,
+    add_seed,
+)
 from harness.reporting.result import CaseResult
-from harness.suite.discovery import UsageError, discover
 from harness.suite.outcome import EXIT_CODES
 from harness.suite.warm import WarmServer
 
@@ -23,12 +31,42 @@ if TYPE_CHECKING:
     from harness.failure_search.write import WrittenFailure
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness search`."""
+    add = command.add_argument
+    add("file", metavar="FILE", help="a scenario file with `randomize`, or a bundled name")
+    add_preparation(command)
+    add_seed(command, "use this seed for every run and for the search,")
+    text = "search this parametrised case, where the file has several"
+    add("--case", metavar="NAME", default="", help=text)
+    text = (
+        "make N runs, not counting those that shrink a failure (default: the file's `search`, or"
+        " 100)"
+    )
+    add("--runs", metavar="N", type=whole_number, default=None, help=text)
+    text = (
+        "begin with N low-discrepancy samples, which estimate the failure rate (default: the"
+        " file's, or 32)"
+    )
+    add("--start", metavar="N", type=whole_number, default=None, help=text)
+    text = (
+        "let the optimiser propose N runs at a time (default: the file's, or 4 + 3 ln(number of"
+        " parameters))"
+    )
+    add("--batch", metavar="N", type=batch_size, default=None, help=text)
+    text = "minimise the margin of this expectation (default: the file's, or the worst margin)"
+    add("--minimise", metavar="NAME", default=None, help=text)
+    text = "make N runs side by side"
+    add("-j", metavar="N", dest="workers", type=whole_number, default=1, help=text)
+    text = "continue where the same command was interrupted, and keep the results that exist"
+    add("--resume", action="store_true", help=text)
+    add_hard_cap(command, "run")
+    add_report_dir(command, "write files into DIR/search")
+    add_json(command)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Search for conditions under which a scenario fails; exit code 1 when there are some."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         from harness.failure_search.write import search_document
 
@@ -42,9 +80,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFailure], int]:
-    files = discover([arguments.file])
-    if len(files) != 1:
-        raise UsageError(f"'{arguments.file}' holds {len(files)} scenarios; name one of them")
+    file = one_scenario(arguments.file)
     with WarmServer() as server:
         from harness.failure_search.search import SearchRequest, search
         from harness.failure_search.write import (
@@ -57,14 +93,14 @@ def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFa
 
         names = ("runs", "start", "seed", "batch", "minimise")
         request = SearchRequest.of(
-            files[0],
+            file,
             dict(arguments.overrides),
             arguments.case,
             {name: getattr(arguments, name) for name in names},
             workers=arguments.workers,
             hard_cap=arguments.hard_cap,
         )
-        folder = search_folder(Path(arguments.report_dir), files[0])
+        folder = search_folder(Path(arguments.report_dir), file)
         progress = _Progress(request.runs)
         with closing(Stream(folder, resume=arguments.resume)) as stream:
             try:

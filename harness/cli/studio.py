@@ -6,18 +6,38 @@ import argparse
 import threading
 from pathlib import Path
 
-from harness.cli.output import complain, guarded, say
+from harness.cli.arguments import port_number, seconds
+from harness.cli.output import complain, say
+from harness.cli.robot_options import ROBOT
+from harness.cli.shared_options import add_plugin
+from harness.cli.view import open_browser
 from harness.suite.discovery import SUFFIX, UsageError
 
 EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
 
 
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness studio`."""
+    add = command.add_argument
+    text = f"{ROBOT}; a scenario; a run's folder (default: open_manipulator_x)"
+    add("target", metavar="ROBOT|SCENARIO|RUN", nargs="?", default="open_manipulator_x", help=text)
+    text = "with a run: continue by hand from this time (default: 0)"
+    add("--at", metavar="SECONDS", type=seconds, default=None, help=text)
+    text = "put the robot into this bundled world or world file"
+    add("--world", metavar="WORLD", default="", help=text)
+    text = "mount this bundled gripper on the robot"
+    add("--gripper", metavar="NAME", default="", help=text)
+    text = "serve the page on this port; 0 selects a free one (default: 8011)"
+    add("--port", metavar="N", type=port_number, default=8011, help=text)
+    text = "listen on this address instead of loopback; the URL then contains a token"
+    add("--host", metavar="ADDRESS", default="", help=text)
+    add("--no-open", action="store_true", help="print the address and open no browser")
+    add_plugin(command)
+    command.set_defaults(ticks=False)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Serve the studio until Ctrl-C."""
-    return guarded(lambda: _run(arguments), ticks=False)
-
-
-def _run(arguments: argparse.Namespace) -> int:
     refuse_missing_extra()
     from harness.studio.files import StudioFiles
     from harness.studio.guard import LOOPBACK, Guard
@@ -74,15 +94,6 @@ def refuse_missing_extra() -> None:
         import viser as _viser  # noqa: F401
     except ImportError as error:
         raise UsageError(f"{EXTRA} ({error})") from error
-
-
-def open_browser(address: str) -> bool:
-    """Open a page in a browser, where there is one."""
-    import webbrowser
-
-    from harness.cli.view import has_browser
-
-    return has_browser() and webbrowser.open(address)
 
 
 def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:

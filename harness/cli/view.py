@@ -7,23 +7,28 @@ import os
 import webbrowser
 from pathlib import Path
 
-from harness.cli.output import complain, guarded, say
+from harness.cli.output import complain, say
 from harness.suite.discovery import UsageError
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness view`."""
+    add = command.add_argument
+    text = "the run's report folder, or a file in it; append '#t=10.1' to open that moment"
+    add("run", metavar="RUN", help=text)
+    add("--rebuild", action="store_true", help="write the page again from the saved run")
+    add("--no-open", action="store_true", help="print the path of the page and open no browser")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Find the page of a run, write it if it is not there, open it."""
-    return guarded(lambda: _run(arguments))
-
-
-def _run(arguments: argparse.Namespace) -> int:
     name, mark, place = arguments.run.partition("#")
     page = _page(Path(name), is_rebuilt=arguments.rebuild)
     say(f"{page}{mark}{place}")
     if arguments.no_open:
         return 0
     address = f"{page.resolve().as_uri()}{mark}{place}"
-    if not has_browser() or not webbrowser.open(address):
+    if not open_browser(address):
         complain(f"no browser could be opened here; open {address}")
     return 0
 
@@ -38,8 +43,8 @@ def _page(path: Path, *, is_rebuilt: bool) -> Path:
         if all((folder / name).is_file() for name in (suite.PAGE, suite.RESULTS)):
             return folder / suite.PAGE
         below = next(folder.glob(f"**/{RUN}"), None) if path.is_dir() else None
-        hint = f"; a run is in '{below.parent}'" if below else ""
-        raise UsageError(f"'{path}' is no run's folder: it has no {RUN}{hint}")
+        hint = f"; there is a run in '{below.parent}'" if below else ""
+        raise UsageError(f"'{path}' is not the folder of a run: it has no {RUN}{hint}")
     page = folder / PAGE
     if is_rebuilt or not page.is_file():
         from harness.reporting.html.write import write_page
@@ -48,7 +53,8 @@ def _page(path: Path, *, is_rebuilt: bool) -> Path:
     return page
 
 
-def has_browser() -> bool:
-    """Whether a browser has a screen to open on; one in the terminal would take it over."""
+def open_browser(address: str) -> bool:
+    """Open a page where a browser has a screen; one in the terminal would take that over."""
     screens = ("BROWSER", "DISPLAY", "WAYLAND_DISPLAY", "WSL_DISTRO_NAME")
-    return os.name == "nt" or os.uname().sysname == "Darwin" or any(map(os.environ.get, screens))
+    has_screen = os.name == "nt" or os.uname().sysname == "Darwin"
+    return (has_screen or any(map(os.environ.get, screens))) and webbrowser.open(address)

@@ -54,13 +54,12 @@ class Plane:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A triangle mesh file (STL, OBJ, DAE), its convex hull, or one of its convex parts.
+    """A triangle mesh file (STL, OBJ, DAE, PLY, GLB), its convex hull, or one of its convex parts.
 
     Planner and physics both collide with the hull or the part. With the collision mode `exact`, the
     planner collides with the triangles, which are a surface, and the physics with the parts.
 
     Attributes:
-        path: The path of the file.
         scale: The factors from its coordinates to metres.
         collision: How it collides; None before that is decided, and for what is only seen.
         part: The number of the convex part; None for the whole mesh.
@@ -95,7 +94,6 @@ class Shape:
     """A geometry placed on a body.
 
     Attributes:
-        geometry: The geometry of the shape.
         pose: The pose T_body_shape of the shape.
         rgba: Colour, each channel 0 to 1.
         name: Name from the file, unique on the body; else empty.

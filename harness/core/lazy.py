@@ -15,7 +15,6 @@ class LazySequence(Sequence[T]):
         """Remember how items are made.
 
         Args:
-            count: The number of items.
             make: Makes the item of an index, from 0.
         """
         self._count = count

@@ -45,8 +45,6 @@ def distinct(first: float, second: float, text: Callable[[float, int], str]) -> 
     """The texts of two numbers, with as many more digits as needed to distinguish them.
 
     Args:
-        first: The first of the numbers.
-        second: Another; equal numbers have equal texts.
         text: Formats a number with the given number of additional digits.
     """
     pairs = ((text(first, more), text(second, more)) for more in range(MOST_DIGITS + 1))

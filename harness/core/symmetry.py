@@ -24,7 +24,6 @@ def equal_turns(shapes: Sequence[Shape], rotation: FloatArray) -> int:
     that is round about the vertical, and one (the full turn) for everything else.
 
     Args:
-        shapes: The shapes of the object.
         rotation: R_world_object, shape (3, 3).
     """
     if not shapes:

@@ -64,8 +64,6 @@ class World:
     """Objects and the physics around them.
 
     Attributes:
-        name: Name of the world in the scenario.
-        objects: Objects in file order.
         gravity: Gravity in world axes [m/s^2].
         timestep: Time step of the physics [s].
         lights: The lights that pictures use.

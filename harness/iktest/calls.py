@@ -25,9 +25,7 @@ class CallOutcome:
     """The outcome of a call.
 
     Attributes:
-        kind: The kind of outcome.
         answers: Joint positions, shape (dof,) each; they may hold anything, NaN too.
-        seconds: Wall time of the call.
         text: The text of an exception, a signal, or what was returned instead of joint positions.
         place: File and line where an exception was raised.
     """

@@ -50,7 +50,6 @@ def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | Non
     """The error that many misses share, if one does.
 
     Args:
-        task: What the function solves for.
         misses: Target poses and poses reached.
     """
     best: tuple[int, Offset] | None = None

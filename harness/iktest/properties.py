@@ -32,10 +32,6 @@ class Property:
     """Something that must hold for every case.
 
     Attributes:
-        name: The name in one word.
-        says: The property in a sentence.
-        cases: What it is tried on.
-        flaws: What is wrong with a case.
         size: The size of a case, for the smallest.
         share: The share of the examples that other properties get.
     """

@@ -17,14 +17,8 @@ class IkFinding:
     """A way in which a function is wrong, with its smallest example.
 
     Attributes:
-        number: The number of the finding, from 1.
         property: Name of the property that it breaks.
         kind: What it does, in words.
-        detail: The numbers of the example.
-        shown: Cases that showed it.
-        tried: Cases that were tried.
-        call: The example as a call in Python.
-        target: The target of the example.
         answer: Joint positions that came back, or None.
         reached: Pose of the link there, shape (7,), xyz and quat wxyz; None without an answer.
         picture: Name of its file in the report folder; empty without one.
@@ -66,10 +60,6 @@ class PropertyResult:
     """What became of a property.
 
     Attributes:
-        name: The name in one word.
-        says: The property in a sentence.
-        tried: The number of cases tried.
-        flawed: Cases that break it.
         findings: Numbers of the findings that they show, those of earlier properties included.
         note: Why it was not tried; else empty.
     """
@@ -97,16 +87,9 @@ class IkReport:
     """A function, tested.
 
     Attributes:
-        solver: Name of the function.
-        robot: Name of the arm.
-        task: What the function solves for.
         link: The link that the function placed.
         joint_names: The joint names in the order of its answers.
         home: Where examples are shrunk to, shape (dof,).
-        properties: The properties in the order tried.
-        findings: The findings in the order found.
-        speed: The speed of its calls; None when it answered none.
-        seed: The seed of the cases.
         seconds: Wall time of all.
     """
 

@@ -44,10 +44,8 @@ def draw(
     """Visit what a strategy draws, until a visit returns False.
 
     Args:
-        strategy: The strategy of the cases.
-        visit: What is done with each.
         count: The largest number of cases.
-        number: The seed; `shrink` with the same one draws the same cases.
+        number: The seed; `shrink_case` with the same one draws the same cases.
     """
 
     @seed(_inner_seed(number))
@@ -61,7 +59,7 @@ def draw(
         run()
 
 
-def shrink(
+def shrink_case(
     strategy: st.SearchStrategy[C],
     shows: Callable[[C], F | None],
     size: Callable[[C], tuple[float, ...]],
@@ -72,11 +70,9 @@ def shrink(
     """What the smallest case shows that shows something.
 
     Args:
-        strategy: The strategy of the cases.
         shows: What a case shows, or None.
         size: What makes one case smaller than another.
         count: Cases drawn at most until one shows it.
-        number: The seed of the draw.
         cost: The cost of the last case, in cases: hangs use the budget up sooner.
     """
     best: list[tuple[tuple[float, ...], F]] = []

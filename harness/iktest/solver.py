@@ -27,7 +27,6 @@ class Solver(Protocol):
     """A function under test.
 
     Attributes:
-        name: A name for people.
         words: Names of the parameters that it is given.
     """
 
@@ -70,7 +69,6 @@ class Isolated:
 
         Args:
             name: The name as `find_function` takes it, that of a registered solver, or `own`.
-            robot: The arm to be solved.
             tip: The link that is placed; empty for the TCP.
             dof: The number of the arm's joints.
             patience: Wall time that an answer may take [s].

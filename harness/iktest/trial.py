@@ -28,8 +28,6 @@ class Flaw:
 
     Attributes:
         kind: Flaws of one kind are reported as one finding.
-        detail: The numbers of this one; may be empty.
-        target: The target of the call.
         seed: The seed of the call, joint positions.
         answer: What came back, if joint positions did.
     """
@@ -46,9 +44,6 @@ class SolverTrial:
     """A function under test.
 
     Attributes:
-        chain: The chain of the arm.
-        task: What the function solves for.
-        solver: The function under test.
         position_tolerance: The largest position error of an answer [m].
         orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         offset: Error that all answers share, once it is known.

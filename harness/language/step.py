@@ -27,7 +27,6 @@ class Block:
     """Steps inside a step, one time through.
 
     Attributes:
-        steps: The steps in their order.
         loc: The location of the list in the file.
         path: The path of the list in the expanded file: `steps[2].repeat[0]`.
         suffix: Appended to the ids of the steps where they run more than once: `#2`.

@@ -34,7 +34,6 @@ class ExternalResult(Detail):
 
     Attributes:
         ended_by: `until`, `timeout`, `exit` (of the launched program) or `stopped` (by the user).
-        commands: Number of commands that arrived.
         detail: One sentence for a person; empty where there is nothing to add.
     """
 

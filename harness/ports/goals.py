@@ -66,7 +66,6 @@ class OrientationBand:
     """A link stays turned as given.
 
     Attributes:
-        link: The link of the robot.
         rotation: R_world_link in the middle of the band, shape (3, 3).
         tolerance: The tolerances about its x, y, z [rad]; pi and more allow any turn.
     """
@@ -81,7 +80,6 @@ class PositionBox:
     """A link's origin stays in a box.
 
     Attributes:
-        link: The link of the robot.
         pose: T_world_box, of its middle.
         size: Along its x, y, z, full [m].
     """

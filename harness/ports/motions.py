@@ -64,8 +64,6 @@ class SequenceItem:
     """One motion of a sequence.
 
     Attributes:
-        kind: The kind of the motion.
-        goal: The goal at which it ends.
         point: What makes the arc of a circ; None for others.
         blend_radius: Around its end, inside which it goes over into the next one [m].
         cartesian_limits: The cartesian limits of lines and arcs.

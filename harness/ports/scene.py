@@ -17,7 +17,6 @@ class Touch:
 
     Attributes:
         first: Name of a link or an object.
-        second: The name of another body.
         distance: Negative for penetration [m].
         required: The smallest distance that is allowed [m].
     """

@@ -46,7 +46,6 @@ class ScenarioItem(pytest.Item):
     """One case of a scenario, or all samples of it.
 
     Attributes:
-        header: Header of the scenario file.
         case: Name of the case; for samples, the name that they share.
         number: Position of the case in its file, from 0.
     """

@@ -66,7 +66,6 @@ def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) 
 
     Args:
         item: The pytest item, at the scenario's file.
-        header: ScenarioHeader of the file.
         case: Name of the case; for samples, the name that they share.
         number: Position of the case in its file, from 0.
 

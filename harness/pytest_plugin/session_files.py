@@ -71,8 +71,6 @@ def write_session_files(folder: Path, suite: SuiteRecord, history: Path | None) 
     """Write `index.html`, `junit.xml` and `results.json` if there is more than one case.
 
     Args:
-        folder: Folder of the session's reports.
-        suite: The results of the session.
         history: A folder of earlier results, whose margins the page shows.
 
     Returns:
@@ -96,7 +94,6 @@ def small_margins(records: Sequence[ItemRecord], cache: pytest.Cache | None) -> 
     """Lines on expectations that barely hold, with their margins in the previous session.
 
     Args:
-        records: Records of the session.
         cache: Keeps margins until the next session; None when pytest runs without its cache.
     """
     known: Mapping[str, Mapping[str, float]] = (cache.get(CACHED, None) if cache else None) or {}

@@ -29,8 +29,6 @@ class Stage(Detail):
     """One stage of planning a motion.
 
     Attributes:
-        stage: The name of the stage.
-        status: The outcome of the stage.
         text: The result in one sentence, with its numbers.
         code: The failure's name in moveit_msgs/MoveItErrorCodes; empty unless it failed.
         details: A line each: a branch of inverse kinematics and what removed it, a pair too near.
@@ -83,7 +81,6 @@ class Explanation(Detail):
     """The explanation of a failed motion.
 
     Attributes:
-        stages: The stages of planning in order.
         nearest: A state to draw.
         advice: What the user can do about the failure.
         picture: File of the drawn state in the run's folder.

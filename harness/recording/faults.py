@@ -19,7 +19,6 @@ class InjectedFault(Detail):
     """A fault of the physics.
 
     Attributes:
-        fault: The kind of the fault.
         target: The object or joint that it concerns; empty where it concerns the whole robot.
         before: The value that it replaces.
         after: The value that it sets.

@@ -37,7 +37,6 @@ class IkSolution(Detail):
     """A solution of inverse kinematics inside the joint limits.
 
     Attributes:
-        joint_positions: The positions of the group.
         branch: Name of the branch; empty where the solver names none.
         distance: The joint-space distance from the start [rad].
         status: Whether it is free, and whether the motion ends there.

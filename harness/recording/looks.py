@@ -27,9 +27,6 @@ class Look:
     """One camera at one recorded sample.
 
     Attributes:
-        camera: The name of the camera.
-        sample: Index into the signals.
-        kinds: The kinds of pictures.
         step: Id of the `capture` step; empty when an expectation needs the picture.
     """
 

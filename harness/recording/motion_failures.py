@@ -34,7 +34,6 @@ class TrajectoryFailure(Detail):
     """The first rule that a timed motion breaks.
 
     Attributes:
-        broken: The rule that is broken.
         distance: The distance from the required position [rad or m].
         excess: The amount beyond the limit.
         path_deviation: The distance from the path that was checked [rad].
@@ -98,7 +97,6 @@ class SearchFailure(Detail):
     """A search that found no path.
 
     Attributes:
-        state_checks: States that were checked.
         gap: Joint-space distance between the search trees [rad].
         straight_way: The straight way to the first goal.
     """
@@ -132,7 +130,6 @@ class TraceFailure(Detail):
     """What stopped a link on its way.
 
     Attributes:
-        reason: The kind of the obstacle.
         joint_positions: The positions of the group where the link stops.
         residual: The error of inverse kinematics [m, rad].
         joint: The joint that meets its limit, or jumps.

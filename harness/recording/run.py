@@ -13,6 +13,7 @@ from harness.core.camera import Camera
 from harness.core.details import Details
 from harness.core.geometry import Rgba, Shape
 from harness.core.quantity import distinct
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.recording.commands import CommandRecord
 
@@ -104,8 +105,6 @@ class RobotRecord:
         named_states: Group -> state -> joint -> position.
         static_links: Links that cannot move; they are no clearance finding against static objects.
         link_visuals: Shapes for pictures, by link.
-        urdf: The text of the composed URDF.
-        srdf: The text of the composed SRDF.
         static_link_poses: T_world_link of `static_links` (xyz, quat wxyz).
         placements: Every link but the root, parents first.
     """
@@ -193,15 +192,13 @@ class StepRecord:
         verb: The verb: `move_to`, `lin`, ...
         summary: One line for a person: `move_to mogi_home`.
         line: The line in the scenario file, from 1; 0 if unknown.
-        status: The outcome of the stage.
         error_code: MoveIt error name of its failure, expected or not; empty when it succeeded.
         expected_error: What the file expects; empty when success is expected.
-        message: The failure in words.
         start_time: The simulated time at its start [s].
         end_time: The simulated time at its end [s].
         start_index: First sample of the step.
         end_index: One past its last sample.
-        trajectory: Commanded trajectory (joint_names, times, positions) for motion steps.
+        trajectory: The commanded trajectory; None for steps without a motion.
         planner: Statistics: planner_id, checks, attempts, path lengths ...
         explanation: Plain data: IK solutions and what became of them, blocking pairs, nearest pose.
         result: What the step reports; `harness.recording.step_results` has the common parts.
@@ -220,7 +217,7 @@ class StepRecord:
     error_code: str = ""
     expected_error: str = ""
     message: str = ""
-    trajectory: Mapping[str, Any] | None = None
+    trajectory: JointTrajectory | None = None
     planner: Mapping[str, Any] = field(default_factory=dict[str, Any])
     explanation: Mapping[str, Any] = field(default_factory=dict[str, Any])
     result: Details = field(default_factory=Details)
@@ -313,15 +310,12 @@ class Verdict:
 
     Attributes:
         expectation: Its text, one line: `never: collision between robot and Table`.
-        status: The status; only `passed` passes.
         margin: How far from flipping, in `unit`; positive when passed, negative when failed.
-        unit: The unit of the margin.
         time: The sample that decided it [s]; NaN when none did.
         line: The line in the scenario file; 0 if unknown.
         step: Id of the step it stands on; empty for the whole run.
         reason: One sentence with the numbers, for a failure why.
         measures: What was measured at the deciding sample.
-        points: The points of a graded expectation.
         observed: How much it is based on; None where nothing could be judged.
         warnings: Why it shows less than it seems to; `--strict` turns them into failures.
     """
@@ -377,7 +371,6 @@ class CaptureRecord:
     Attributes:
         camera: Name of one of `Run.cameras`.
         time: The simulated time of the picture [s].
-        sample: Index into the signals.
         step: Id of the `capture` step; empty when an expectation needed the picture.
         backend: Who drew them: `rays`, the same on every machine.
         files: Path in `Run.files` by kind: `color` (PNG or JPEG, with the camera's noise), `depth`
@@ -497,12 +490,8 @@ class Run:
     """A whole run of one case.
 
     Attributes:
-        scenario: The title of the scenario.
         file: The path as the user named it.
         case: Empty when the file has one case.
-        seed: The seed of the run.
-        robot: The record of the robot.
-        objects: Everything that took part.
         attachments: What the planner believed to hold.
         steps: The steps in execution order, nested ones flat.
         signals: The signals that were recorded.

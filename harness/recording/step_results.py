@@ -32,7 +32,6 @@ class Attachment(Detail):
     """An object that a step fixed to a link in the planning scene.
 
     Attributes:
-        attached: The name of the object.
         represents: The simulated object that it stands for; None when it is that object.
     """
 

@@ -14,7 +14,6 @@ def explanation_lines(explanation: Mapping[str, Any], message: str = "") -> tupl
     """The stages in order, what to do, and where the picture is; what there is of them.
 
     Args:
-        explanation: The explanation of a step's record.
         message: What was said of the failure already; a stage does not repeat it.
     """
     lines: list[str] = []

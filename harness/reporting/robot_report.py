@@ -15,10 +15,8 @@ class GroupLine:
     """A planning group.
 
     Attributes:
-        name: The name in the SRDF.
         joints: Its active joints, base to tip.
         span: The first and the last link; empty for groups of joints.
-        states: Names of its states.
     """
 
     name: str
@@ -33,7 +31,6 @@ class RobotFinding:
 
     Attributes:
         about: `forward kinematics`, `masses`, ...
-        text: What was found, with its numbers.
         is_good: Whether a person need do nothing.
         details: The lines below it.
         values: Its numbers, for machines.
@@ -51,16 +48,13 @@ class RobotReport:
     """Everything a check of a robot found.
 
     Attributes:
-        name: The name of the robot.
         source: The file or name that was given.
         joints: Movable joints, mimic ones included.
         followers: What mimic joints follow, by joint: `finger_left times -1`.
         effort_sources: Where effort limits are from, each once.
-        groups: The planning groups of the robot.
         arm_group: The one that motions are of by default.
         tcp_link: The link whose pose is the TCP.
         gripper: The gripper in one line; empty when there is none.
-        findings: What was looked at, in order.
         notes: What of the robot's files was left out or assumed.
         proposal: Pairs that need not be checked, by reason; where no file says which.
     """

@@ -21,8 +21,6 @@ class SuccessRate:
         passed: The number of `total` that passed.
         total: Samples that count: up to where the sequential test ended the sampling.
         low: Lower end of Wilson's interval.
-        high: The upper end of the interval.
-        confidence: The confidence of the interval.
         at_least: Required rate; None when the file requires none.
         verdict: `shown` when the rate is at least the required one, `refuted` when not, `open`
             when these samples do not decide.
@@ -56,7 +54,6 @@ class SampledRate:
     Attributes:
         file: The path as the user named it.
         group: Name of the parametrised case; empty when there is one.
-        rate: The rate of its samples.
         outcome: `passed` when the rate is confirmed.
     """
 
@@ -70,7 +67,6 @@ def with_starts(rate: SuccessRate, starts: Sequence[tuple[bool, int]]) -> Succes
     """A rate with how many of its samples have overlapping objects at the start.
 
     Args:
-        rate: The rate without them.
         starts: Whether objects overlap, and the number of redraws, of samples that have either.
     """
     return replace(

@@ -133,8 +133,6 @@ def failure(
     """Why a case did not pass: every cause with its line and numbers, and where the report is.
 
     Args:
-        result: The result of the case.
-        style: The style of the terminal.
         again: The command that runs exactly this case; empty to leave it out.
         source: Lines of the scenario file, to show those that are spoken of.
     """
@@ -177,7 +175,6 @@ def causes(result: CaseResult, source: Sequence[str] = ()) -> list[str]:
     Each cause is printable: one line, or several of which each is.
 
     Args:
-        result: The result of the case.
         source: Lines of the scenario file, to show those that are spoken of.
     """
     found = [str(problem) for problem in result.problems]

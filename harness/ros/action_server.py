@@ -12,6 +12,7 @@ import numpy as np
 from harness.ros.graph import Graph, Reply
 from harness.ros.interfaces import CANCEL, UUID, message, seconds, stamp
 
+INFO = "action_msgs/msg/GoalInfo"
 MOST_ENDED = 100
 """Goals that are kept after their end, for those who request the result later."""
 
@@ -39,10 +40,19 @@ class CancelCode(IntEnum):
 
 @dataclass
 class _Goal:
-    accepted: float
-    status: Status = Status.UNKNOWN
+    """A goal: its GoalStatus as it is published, its result, and who waits for that."""
+
+    entry: Any
     result: Any = None
     waiting: list[Reply] = field(default_factory=list[Reply])
+
+    @property
+    def status(self) -> Status:
+        return Status(self.entry.status)
+
+    @status.setter
+    def status(self, status: Status) -> None:
+        self.entry.status = int(status)
 
 
 class ActionServer:
@@ -109,7 +119,8 @@ class ActionServer:
         goal = hex_of(request.goal_id)
         accepted = goal not in self._goals
         if accepted:
-            known = self._goals[goal] = _Goal(self._clock())
+            info = message(INFO, goal_id=request.goal_id, stamp=stamp(self._clock()))
+            known = self._goals[goal] = _Goal(message("action_msgs/msg/GoalStatus", goal_info=info))
             accepted = self._on_goal(goal, request.goal)
             if accepted:
                 known.status = Status.EXECUTING
@@ -135,7 +146,7 @@ class ActionServer:
             each
             for each, known in self._goals.items()
             if (is_named and each == goal)
-            or (before and known.accepted <= before)
+            or (before and seconds(known.entry.goal_info.stamp) <= before)
             or not (is_named or before)
         ]
         running = [each for each in chosen if self._goals[each].result is None]
@@ -152,7 +163,7 @@ class ActionServer:
             else:
                 self._goals[each].status = Status.EXECUTING
                 code = CancelCode.REJECTED
-        infos = [self._info(each) for each in canceling]
+        infos = [self._goals[each].entry.goal_info for each in canceling]
         reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=infos))
 
     def _response(self, known: _Goal | None) -> Any:
@@ -161,17 +172,8 @@ class ActionServer:
             return message(kind, status=int(Status.UNKNOWN))
         return message(kind, status=int(known.status), result=known.result)
 
-    def _info(self, goal: str) -> Any:
-        kind = "action_msgs/msg/GoalInfo"
-        return message(kind, goal_id=uuid_of(goal), stamp=stamp(self._goals[goal].accepted))
-
     def _publish_status(self) -> None:
-        kind = "action_msgs/msg/GoalStatus"
-        states = [
-            message(kind, goal_info=self._info(goal), status=int(known.status))
-            for goal, known in self._goals.items()
-            if known.status is not Status.UNKNOWN
-        ]
+        states = [each.entry for each in self._goals.values() if each.status is not Status.UNKNOWN]
         self._status.publish(message("action_msgs/msg/GoalStatusArray", status_list=states))
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,31 +17,64 @@ from harness.robot.description import RobotDescription
 from harness.ros.graph import Graph, Publisher
 from harness.ros.interfaces import message, stamp
 
+if TYPE_CHECKING:
+    from harness.cameras.renderer import Renderer
+
+Drawn = tuple[np.ndarray, bytes]
+"""A picture as the camera delivers it, and as a JPEG."""
+
 
 @dataclass(frozen=True)
 class _Topics:
     """What one camera publishes, named as the course's Gazebo does."""
 
+    camera: Camera
     raw: Publisher
     compressed: Publisher
     infos: tuple[Publisher, ...]
 
     @classmethod
     def of(cls, graph: Graph, camera: Camera) -> _Topics:
-        base = f"/{camera.name}"
-        kind = "sensor_msgs/msg/CameraInfo"
+        base, kind = f"/{camera.name}", "sensor_msgs/msg/CameraInfo"
+        infos = f"{base}/camera_info", f"{base}/image/camera_info"
         return cls(
+            camera,
             graph.advertise(f"{base}/image", "sensor_msgs/msg/Image", depth=1),
             graph.advertise(f"{base}/image/compressed", "sensor_msgs/msg/CompressedImage", depth=1),
-            (
-                graph.advertise(f"{base}/camera_info", kind),
-                graph.advertise(f"{base}/image/camera_info", kind),
-            ),
+            tuple(graph.advertise(info, kind) for info in infos),
         )
 
     @property
     def are_watched(self) -> bool:
         return bool(self.raw.subscribers or self.compressed.subscribers)
+
+    def publish_info(self, time: float) -> None:
+        for info in self.infos:
+            if info.subscribers:
+                info.publish(camera_info(self.camera, time))
+
+    def publish(self, time: float, drawn: Drawn) -> None:
+        picture, jpeg = drawn
+        header, is_grey = _header(self.camera, time), self.camera.is_grey
+        if self.raw.subscribers:
+            height, width = picture.shape[:2]
+            self.raw.publish(
+                message(
+                    "sensor_msgs/msg/Image",
+                    header=header,
+                    height=height,
+                    width=width,
+                    encoding="mono8" if is_grey else "rgb8",
+                    step=picture.size // height,
+                    data=picture.reshape(-1),
+                )
+            )
+        if self.compressed.subscribers:
+            kind = "mono8; jpeg compressed mono8" if is_grey else "rgb8; jpeg compressed bgr8"
+            data = np.frombuffer(jpeg, np.uint8)
+            self.compressed.publish(
+                message("sensor_msgs/msg/CompressedImage", header=header, format=kind, data=data)
+            )
 
 
 class CameraTopics:
@@ -55,17 +88,11 @@ class CameraTopics:
         objects: Sequence[WorldObject],
         seed: int,
     ) -> None:
-        self._cameras = {camera.name: camera for camera in cameras}
-        self._topics = {camera.name: _Topics.of(graph, camera) for camera in cameras}
-        self._scene = (
-            tuple(cameras),
-            description,
-            tuple(o for o in objects if o.in_simulation),
-            seed,
-        )
-        self._next = dict.fromkeys(self._cameras, 0.0)
-        self._painter: tuple[Any, Connection] | None = None
-        self._pending = ""
+        self._topics = [_Topics.of(graph, camera) for camera in cameras]
+        self._scene = tuple(cameras), description, tuple(objects), seed
+        self._next = [0.0] * len(cameras)
+        self._painter: ProcessPoolExecutor | None = None
+        self._pending: tuple[_Topics, float, Future[Drawn | None]] | None = None
 
     def publish(
         self,
@@ -83,75 +110,30 @@ class CameraTopics:
             poses: Returns T_world_object of the objects that are there (xyz, quat wxyz), shape
                 (7,) each.
         """
-        self._send_finished()
-        for name, camera in self._cameras.items():
-            if time < self._next[name] - 1e-9:
+        if self._pending is not None and self._pending[2].done():
+            topics, drawn_at, future = self._pending
+            self._pending = None
+            if future.exception() is not None:  # it cannot draw; the run does not depend on it
+                self._topics.clear()
+            elif (drawn := future.result()) is not None:
+                topics.publish(drawn_at, drawn)
+        for number, topics in enumerate(self._topics):
+            if time < self._next[number] - 1e-9:
                 continue
-            self._next[name] = time + 1.0 / camera.update_rate
-            for info in self._topics[name].infos:
-                if info.subscribers:
-                    info.publish(camera_info(camera, time))
-            if self._topics[name].are_watched and not self._pending:
-                self._pending = name
-                self._connection.send((name, time, sample, positions, poses()))
+            self._next[number] = time + 1.0 / topics.camera.update_rate
+            topics.publish_info(time)
+            if topics.are_watched and self._pending is None:
+                if self._painter is None:  # a fork inherits locks and OpenGL
+                    context = multiprocessing.get_context("spawn")
+                    self._painter = ProcessPoolExecutor(1, context, _prepare, self._scene)
+                request = topics.camera.name, sample, positions, poses()
+                self._pending = topics, time, self._painter.submit(_draw, *request)
 
     def close(self) -> None:
         """End the process that draws."""
         if self._painter is not None:
-            process, connection = self._painter
-            connection.close()
-            process.terminate()
-            process.join(5)
-            self._painter, self._pending = None, ""
-
-    @property
-    def _connection(self) -> Connection:
-        if self._painter is None:
-            ours, theirs = multiprocessing.Pipe()
-            context = multiprocessing.get_context("spawn")  # a fork inherits locks and OpenGL
-            process = context.Process(target=_paint, args=(theirs, ours, *self._scene), daemon=True)
-            process.start()
-            theirs.close()
-            self._painter = process, ours
-        return self._painter[1]
-
-    def _send_finished(self) -> None:
-        if self._painter is None or not self._pending or not self._painter[1].poll():
-            return
-        name, self._pending = self._pending, ""
-        try:
-            time, picture, jpeg = self._painter[1].recv()
-        except EOFError:  # it could not draw; the run does not depend on it
-            self._topics.clear()
-            self._cameras.clear()
-            return
-        camera, topics = self._cameras[name], self._topics[name]
-        header = _header(camera, time)
-        if topics.raw.subscribers:
-            height, width = picture.shape[:2]
-            topics.raw.publish(
-                message(
-                    "sensor_msgs/msg/Image",
-                    header=header,
-                    height=height,
-                    width=width,
-                    encoding="mono8" if camera.is_grey else "rgb8",
-                    step=picture.size // height,
-                    data=picture.reshape(-1),
-                )
-            )
-        if topics.compressed.subscribers:
-            kind = (
-                "mono8; jpeg compressed mono8" if camera.is_grey else "rgb8; jpeg compressed bgr8"
-            )
-            topics.compressed.publish(
-                message(
-                    "sensor_msgs/msg/CompressedImage",
-                    header=header,
-                    format=kind,
-                    data=np.frombuffer(jpeg, np.uint8),
-                )
-            )
+            self._painter.shutdown(cancel_futures=True)
+            self._painter = self._pending = None
 
 
 def camera_info(camera: Camera, time: float) -> Any:
@@ -175,46 +157,55 @@ def _header(camera: Camera, time: float) -> Any:
     return message("std_msgs/msg/Header", stamp=stamp(time), frame_id=frame)
 
 
-def _paint(
-    requests: Connection,
-    parent: Connection,
-    cameras: Sequence[Camera],
-    description: RobotDescription,
-    objects: Sequence[WorldObject],
-    seed: int,
-) -> None:
-    """Draw what is requested, one picture after the other, until the pipe closes."""
-    from harness.cameras.captures import jpeg
-    from harness.cameras.picture_model import build_picture_model
-    from harness.cameras.recorded_scene import floor_height
-    from harness.cameras.renderer import Renderer, make_renderer
-    from harness.cameras.sensor import as_delivered
-    from harness.cameras.viewpoint import view_of
-    from harness.robot.forward_kinematics import robot_poses
+# -- in the process that draws ------------------------------------------------------------------
 
-    parent.close()
-    picture = build_picture_model(
-        description,
-        objects,
-        floor_height=floor_height(description, objects),
-        width=max(camera.width for camera in cameras),
-        height=max(camera.height for camera in cameras),
-    )
-    picture.model.vis.quality.shadowsize, picture.model.vis.quality.offsamples = 1024, 0
-    known = {camera.name: camera for camera in cameras}
-    renderers: dict[tuple[int, int], Renderer] = {}
-    while True:
-        try:
-            name, time, sample, positions, rows = requests.recv()
-        except (EOFError, KeyboardInterrupt):
-            return
-        camera = known[name]
-        poses = robot_poses(description, positions)
+
+class _Painter:
+    """The scene and its renderers, by the size of their pictures."""
+
+    def __init__(
+        self,
+        cameras: Sequence[Camera],
+        description: RobotDescription,
+        objects: Sequence[WorldObject],
+        seed: int,
+    ) -> None:
+        from harness.cameras.camera_scene import CameraScene
+
+        self._scene = CameraScene(description, objects, cameras)
+        self._cameras = {camera.name: camera for camera in cameras}
+        self._description, self._seed = description, seed
+        self._renderers: dict[tuple[int, int], Renderer] = {}
+
+    def draw(
+        self, name: str, sample: int, positions: np.ndarray, rows: Mapping[str, np.ndarray]
+    ) -> Drawn | None:
+        """A camera's picture; None while its carrier is not in the scene."""
+        from harness.cameras.captures import jpeg
+        from harness.cameras.renderer import make_renderer
+        from harness.cameras.sensor import as_delivered
+        from harness.robot.forward_kinematics import robot_poses
+
+        camera = self._cameras[name]
+        poses = robot_poses(self._description, positions)
         poses |= {each: SE3.from_vector(row) for each, row in rows.items()}
-        picture.pose(poses)
+        self._scene.picture.pose(poses)
+        view = self._scene.view(camera, poses)
+        if view is None:
+            return None
         size = camera.width, camera.height
-        if size not in renderers:
-            renderers[size] = make_renderer(picture, *size)
-        drawn = renderers[size].render(view_of(camera, poses[camera.frame]))
-        delivered = as_delivered(drawn, camera, seed, sample)
-        requests.send((time, delivered, jpeg(delivered, camera)))
+        if size not in self._renderers:
+            self._renderers[size] = make_renderer(self._scene.picture, *size)
+        picture = as_delivered(self._renderers[size].render(view), camera, self._seed, sample)
+        return picture, jpeg(picture, camera)
+
+
+_painters: list[_Painter] = []
+
+
+def _prepare(*scene: Any) -> None:
+    _painters.append(_Painter(*scene))
+
+
+def _draw(*request: Any) -> Drawn | None:
+    return _painters[0].draw(*request)

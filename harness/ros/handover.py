@@ -20,6 +20,9 @@ from harness.simulation.mujoco_simulator import MujocoSimulator
 GRACE = 1.0
 """Simulated time that a step goes on after its program has ended and the arm stands [s]."""
 
+LATE_ENDS = ("timeout", "exit")
+"""Ends of a step before `until` holds, by time or by the program's end."""
+
 
 @dataclass
 class HandOver:
@@ -59,44 +62,37 @@ class HandOver:
             feed: Lets commands take effect before a tick.
             after: Called after each tick.
         """
-        cell, before = self.cell, len(self.cell.commands)
+        cell = self.cell
+        before = seen = len(cell.commands)
         cell.hold_commanded(self.simulator.commanded_positions())
         objects = tuple(
             object_record(Presence(obj, obj.pose, [[0.0, np.inf]]), np.inf)
             for obj in self.prepared.program.world.objects
         )
         watch = Watch(request, self.simulator, self.robot, objects)
-        ended_at: float | None = None
-        ended: ExternalResult | None = None
-        while ended is None:
+        end: CommandRecord | None = None
+        ended_at, ended_by = np.inf, ""
+        while not ended_by:
             feed()
-            end = _end_of(cell.commands[before:])
+            arrived, seen = cell.commands[seen:], len(cell.commands)
+            end = next((each for each in arrived if each.kind == "end"), end)
             if end is not None and end.content.get("reason") == "stopped":
-                ended = ExternalResult("stopped", _count(cell.commands[before:]))
+                ended_by = "stopped"
                 break
             cell.tick()
             after()
-            received = _count(cell.commands[before:])
-            if end is not None and (ended_at is None or not cell.is_idle):
+            if end is not None and (ended_at == np.inf or not cell.is_idle):
                 ended_at = cell.time
             if watch.holds():
-                ended = ExternalResult("until", received)
+                ended_by = "until"
             elif watch.elapsed >= request.timeout - 1e-9:
-                ended = ExternalResult("timeout", received, _said(end))
-            elif end is not None and ended_at is not None and cell.time >= ended_at + GRACE:
-                ended = ExternalResult("exit", received, _said(end))
+                ended_by = "timeout"
+            elif cell.time >= ended_at + GRACE:
+                ended_by = "exit"
+        count = sum(command.kind != "end" for command in cell.commands[before:])
         cell.finish()
         after()
-        return ended
-
-
-def _end_of(commands: list[CommandRecord]) -> CommandRecord | None:
-    return next((each for each in reversed(commands) if each.kind == "end"), None)
-
-
-def _count(commands: list[CommandRecord]) -> int:
-    """Number of commands; the end of a program is none."""
-    return sum(command.kind != "end" for command in commands)
+        return ExternalResult(ended_by, count, _said(end) if ended_by in LATE_ENDS else "")
 
 
 def _said(end: CommandRecord | None) -> str:

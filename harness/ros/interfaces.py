@@ -5,15 +5,13 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
-from rosbags.serde.errors import SerdeError
+import numpy as np
+from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 FOLLOW = "control_msgs/action/FollowJointTrajectory"
 GRIPPER = "control_msgs/action/GripperCommand"
-PADDING = 32
-"""Bytes that may follow a message: rclpy's serialisation leaves some."""
-
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 CANCEL = "action_msgs/action/CancelGoal"
 """The service action_msgs/srv/CancelGoal; rosbags takes no messages of the folder `srv`."""
@@ -79,28 +77,19 @@ def _typestore() -> Typestore:
 _STORE = _typestore()
 
 
-def typestore() -> Typestore:
-    """Every type that the bridge writes or reads."""
-    return _STORE
-
-
 def message(kind: str, /, **fields: Any) -> Any:
     """A message of a type; fields that are left out are zero or empty."""
-    store = typestore()
-    definitions = store.fielddefs[kind][1]
+    definitions = _STORE.fielddefs[kind][1]
     values = {
         name: fields.pop(name) if name in fields else _default(definition)
         for name, definition in definitions
     }
     if fields:
         raise TypeError(f"{kind} has no field {', '.join(fields)}")
-    return store.types[kind](**values)
+    return _STORE.types[kind](**values)
 
 
 def _default(kind: Any) -> Any:
-    import numpy as np
-    from rosbags.interfaces import Nodetype
-
     node, detail = kind
     if node == Nodetype.NAME:
         return message(detail)
@@ -115,31 +104,40 @@ def _default(kind: Any) -> Any:
     return [_default(element) for _ in range(size or 0)]
 
 
+def encoded(content: Any, kind: str) -> bytes:
+    """A message as it is sent."""
+    return bytes(_STORE.serialize_cdr(content, kind))
+
+
 def decoded(payload: bytes, kind: str) -> Any:
-    """The message of a serialised one, padding at its end left out.
+    """The message of a serialised one; None where the bytes of another program are no such one.
 
-    Raises:
-        SerdeError: These bytes are no such message; other exceptions of rosbags are possible too.
+    Bytes after the message do not count: rclpy's serialisation leaves some for each list element.
     """
-    try:
-        return _STORE.deserialize_cdr(payload, kind)
-    except SerdeError:
-        for cut in range(4, PADDING, 4):
-            with suppress(SerdeError):
-                return _STORE.deserialize_cdr(payload[:-cut], kind)
-        raise
+    definition = _STORE.get_msgdef(kind)
+    readers = {
+        b"\0\0": definition.deserialize_cdr_be,
+        b"\0\1": definition.deserialize_cdr_le,
+    }
+    with suppress(Exception):  # no kind of error is certain
+        return readers[payload[:2]](payload[4:], 0, definition.cls, _STORE)[0]
+    return None
 
 
-def stamp(seconds: float) -> Any:
+def prepare(kind: str) -> None:
+    """Let rosbags write the code of a type now, which takes some milliseconds."""
+    _STORE.deserialize_cdr(_STORE.serialize_cdr(message(kind), kind), kind)
+
+
+def stamp(seconds: float, kind: str = "Time") -> Any:
     """A simulated time as a stamp; the clock of the bridge begins at 0, as that of Gazebo."""
     whole, rest = divmod(round(seconds * 1e9), 10**9)
-    return message("builtin_interfaces/msg/Time", sec=whole, nanosec=rest)
+    return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
 
 
 def span(seconds: float) -> Any:
     """A length of time as a Duration."""
-    whole, rest = divmod(round(seconds * 1e9), 10**9)
-    return message("builtin_interfaces/msg/Duration", sec=whole, nanosec=rest)
+    return stamp(seconds, "Duration")
 
 
 def seconds(moment: Any) -> float:

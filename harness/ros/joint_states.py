@@ -24,12 +24,18 @@ class JointStates:
         self._times: list[float] = []
         self._rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self._offset: float | None = None
+        self._arrived = wall.monotonic()
         graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take, reliable=False)
 
     @property
     def time(self) -> float:
         """Time of the last message since the first one [s]; -1 before the first one."""
         return self._times[-1] if self._times else -1.0
+
+    @property
+    def silence(self) -> float:
+        """Wall time since the last message [s]."""
+        return wall.monotonic() - self._arrived
 
     @property
     def sample_count(self) -> int:
@@ -56,6 +62,7 @@ class JointStates:
         return times, positions, velocities, efforts
 
     def _take(self, state: Any) -> None:
+        self._arrived = wall.monotonic()
         place = {str(name): index for index, name in enumerate(state.name)}
         joints = self._description.movable_joints
         if any(joint.mimic is None and joint.name not in place for joint in joints):

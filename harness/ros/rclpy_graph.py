@@ -12,26 +12,8 @@ from typing import Any
 
 from harness.core.errors import Problem, SpecError
 from harness.ros.graph import Publisher, Reply, ServiceClient
-from harness.ros.interfaces import CANCEL, decoded, typestore
+from harness.ros.interfaces import CANCEL, decoded, encoded
 from harness.ros.names import Names
-
-_PARTS = ("SendGoal", "GetResult")
-
-
-@dataclass
-class _Codec:
-    """Converts messages of one type, through their serialised form."""
-
-    kind: str
-    ros_type: Any
-    serialization: Any
-
-    def to_ros(self, content: Any) -> Any:
-        data = bytes(typestore().serialize_cdr(content, self.kind))
-        return self.serialization.deserialize_message(data, self.ros_type)
-
-    def from_ros(self, content: Any) -> Any:
-        return decoded(self.serialization.serialize_message(content), self.kind)
 
 
 class _Silent:
@@ -46,29 +28,31 @@ class _Silent:
 @dataclass
 class _Publisher:
     publisher: Any
-    codec: _Codec
+    kind: str
 
     @property
     def subscribers(self) -> int:
         return self.publisher.get_subscription_count()
 
     def publish(self, message: Any) -> None:
-        self.publisher.publish(self.codec.to_ros(message))
+        self.publisher.publish(encoded(message, self.kind))
 
 
 @dataclass
 class _Client:
     client: Any
-    request: _Codec
-    response: _Codec
+    kind: str
 
     @property
     def is_ready(self) -> bool:
         return self.client.service_is_ready()
 
     def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
-        future = self.client.call_async(self.request.to_ros(request))
-        future.add_done_callback(lambda done: on_response(self.response.from_ros(done.result())))
+        ros_type = self.client.srv_type.Request
+        future = self.client.call_async(_to_ros(request, f"{self.kind}_Request", ros_type))
+        future.add_done_callback(
+            lambda done: on_response(_from_ros(done.result(), f"{self.kind}_Response"))
+        )
 
 
 class RclpyGraph:
@@ -97,9 +81,9 @@ class RclpyGraph:
             os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         try:
             rclpy = importlib.import_module("rclpy")
-            self._serialization = importlib.import_module("rclpy.serialization")
             self._qos = importlib.import_module("rclpy.qos")
-            task = importlib.import_module("rclpy.task")
+            executors = importlib.import_module("rclpy.executors")
+            self._future: Any = importlib.import_module("rclpy.task").Future
         except ImportError as error:
             said = f"rclpy cannot be imported: {error}"
             raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
@@ -109,27 +93,19 @@ class RclpyGraph:
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node(node, context=self._context)
-        executors = importlib.import_module("rclpy.executors")
         self._executor = executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
-        self._future: Any = task.Future
 
     def advertise(
-        self,
-        topic: str,
-        kind: str,
-        *,
-        latched: bool = False,
-        depth: int = 10,
+        self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
     ) -> Publisher:
         package, folder, _ = kind.split("/")
         if folder == "msg" and importlib.util.find_spec(package) is None:
             self._say(f"note: --adapter rclpy: {topic} is not published: {_advice(package)}")
             return _Silent()
         self._published.add(topic)
-        codec = self._codec(kind)
         profile = self._profile(latched, True, depth)
-        return _Publisher(self._node.create_publisher(codec.ros_type, topic, profile), codec)
+        return _Publisher(self._node.create_publisher(_message_type(kind), topic, profile), kind)
 
     def subscribe(
         self,
@@ -141,26 +117,27 @@ class RclpyGraph:
         reliable: bool = True,
     ) -> None:
         self._subscribed.add(topic)
-        codec, profile = self._codec(kind), self._profile(latched, reliable, 10)
+        profile = self._profile(latched, reliable, 10)
 
-        def take(content: Any) -> None:
-            on_message(codec.from_ros(content))
+        def take(payload: bytes) -> None:
+            content = decoded(payload, kind)
+            if content is not None:
+                on_message(content)
 
-        self._node.create_subscription(codec.ros_type, topic, take, profile)
+        self._node.create_subscription(_message_type(kind), topic, take, profile, raw=True)
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
-        service, request, response = self._service(kind)
+        service = _service_type(kind)
 
         async def answer(content: Any, _: Any) -> Any:
             replied = self._future(executor=self._executor)
-            on_request(request.from_ros(content), replied.set_result)
-            return response.to_ros(await replied)
+            on_request(_from_ros(content, f"{kind}_Request"), replied.set_result)
+            return _to_ros(await replied, f"{kind}_Response", service.Response)
 
         self._node.create_service(service, name, answer)
 
     def client(self, name: str, kind: str) -> ServiceClient:
-        service, request, response = self._service(kind)
-        return _Client(self._node.create_client(service, name), request, response)
+        return _Client(self._node.create_client(_service_type(kind), name), kind)
 
     def names(self) -> tuple[Names, Names]:
         node, own = self._node, Names.of(self._published, self._subscribed)
@@ -188,29 +165,29 @@ class RclpyGraph:
             durability=durability.TRANSIENT_LOCAL if latched else durability.VOLATILE,
         )
 
-    def _codec(self, kind: str) -> _Codec:
-        package, folder, name = kind.split("/")
-        module = _imported(f"{package}.{folder}")
-        action, _, part = name.partition("_")
-        if folder == "action" and part == "FeedbackMessage":
-            return _Codec(kind, getattr(module, action).Impl.FeedbackMessage, self._serialization)
-        return _Codec(kind, getattr(module, name), self._serialization)
 
-    def _service(self, kind: str) -> tuple[Any, _Codec, _Codec]:
-        """The service of an action, and the codecs of its request and response."""
-        if kind == CANCEL:
-            service = _imported("action_msgs.srv").CancelGoal
-        else:
-            package, folder, name = kind.split("/")
-            action, _, part = name.partition("_")
-            if part not in _PARTS:
-                raise ValueError(f"{kind} is no service of an action")
-            service = getattr(
-                getattr(_imported(f"{package}.{folder}"), action).Impl, f"{part}Service"
-            )
-        request = _Codec(f"{kind}_Request", service.Request, self._serialization)
-        response = _Codec(f"{kind}_Response", service.Response, self._serialization)
-        return service, request, response
+def _message_type(kind: str) -> Any:
+    """The class of a message in rclpy; feedback of an action has one too."""
+    package, folder, name = kind.split("/")
+    action, _, part = name.partition("_")
+    owner = _imported(f"{package}.{folder}")
+    return getattr(getattr(owner, action).Impl, part) if part else getattr(owner, name)
+
+
+def _service_type(kind: str) -> Any:
+    """The class in rclpy of a service of an action."""
+    if kind == CANCEL:
+        return _imported("action_msgs.srv").CancelGoal
+    return _message_type(f"{kind}Service")
+
+
+def _to_ros(content: Any, kind: str, ros_type: Any) -> Any:
+    serialization = importlib.import_module("rclpy.serialization")
+    return serialization.deserialize_message(encoded(content, kind), ros_type)
+
+
+def _from_ros(content: Any, kind: str) -> Any:
+    return decoded(importlib.import_module("rclpy.serialization").serialize_message(content), kind)
 
 
 def _imported(module: str) -> Any:

@@ -1,31 +1,39 @@
-"""The simulator port on a ROS 2 robot: planned here, executed there, recorded from its topics."""
+"""A scenario on a ROS 2 robot: planned here, executed by its controllers, judged by its topics."""
 
 from __future__ import annotations
 
 import time as wall
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, cast
 
 import numpy as np
 
-from harness.cell.program import Program
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.ports.kinematics import Kinematics
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.run import Signals
+from harness.reporting.result import CaseResult
 from harness.ros.action_client import ActionClient, ClientGoal
 from harness.ros.action_server import Status
 from harness.ros.contents import POINT
-from harness.ros.control.cell import ControllerNames
+from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message, span
 from harness.ros.joint_states import GRID, JointStates
+from harness.session.prepare import Prepared, prepare
+from harness.session.progress import Notify
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
+from harness.session.start import Start
+from harness.session.timing import Clock
+
+if TYPE_CHECKING:
+    from harness.session.timed_simulator import TimedSimulator
 
 UNRECORDED = (
     "joint_commands",
@@ -41,6 +49,9 @@ UNRECORDED = (
 
 PATIENCE = 10.0
 """Wall time in which servers must be found, and joint states must come [s]."""
+
+SILENCE = 3.0
+"""Wall time without joint states after which a robot in motion counts as lost [s]."""
 
 REASON = 1.0
 """Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""
@@ -62,6 +73,25 @@ class RemoteOptions:
     confirm: Callable[[JointTrajectory], bool] = lambda _: True
 
 
+def run_on_robot(
+    request: RunRequest, graph: Graph, options: RemoteOptions, notify: Notify = lambda _: None
+) -> CaseResult:
+    """Run a case on the robot of a ROS 2 domain.
+
+    What its topics do not show, such as contacts and the poses of objects, is not observable.
+
+    Raises:
+        StepFailed: COMMUNICATION_FAILURE; the robot cannot be reached.
+    """
+
+    def start(request: RunRequest, clock: Clock) -> Start:
+        del clock
+        prepared = prepare(request.file, request.overrides, request.seed, request.text)
+        return Start(prepared, cast("TimedSimulator", RemoteArm(graph, prepared, options)), 0)
+
+    return run_case(request, notify, start=start)
+
+
 class RemoteArm:
     """Sends trajectories to the servers of a robot's controllers, one after the other.
 
@@ -73,23 +103,18 @@ class RemoteArm:
     unrecorded = UNRECORDED
     timestep = GRID
 
-    def __init__(
-        self,
-        graph: Graph,
-        program: Program,
-        kinematics: Kinematics,
-        names: ControllerNames,
-        options: RemoteOptions,
-    ) -> None:
+    def __init__(self, graph: Graph, prepared: Prepared, options: RemoteOptions) -> None:
         """Find the robot's controllers and its joints.
 
         Raises:
             StepFailed: COMMUNICATION_FAILURE; a server or a joint is missing.
         """
-        self._graph, self._kinematics, self._options = graph, kinematics, options
-        self.description, self._program = program.description, program
+        self._graph, self._options = graph, options
+        self._kinematics, self._program = prepared.kinematics, prepared.program
+        self.description = self._program.description
+        self._frames = self.description.tcp_link, *prepared.observed_links
         self._command: FloatArray | None = None
-        self._frames = (self.description.tcp_link,)
+        names = controller_names(self.description, prepared.loaded.scenario.ros2)
         self._states = JointStates(graph, self.description)
         self._arms = {
             name: ActionClient(graph, f"/{name}/follow_joint_trajectory", FOLLOW)
@@ -155,7 +180,7 @@ class RemoteArm:
             raise StepFailed("PREEMPTED", "the motion was not confirmed, so nothing moved")
         scaled = slowed(trajectory, self._options.velocity_scaling)
         client = self._arm
-        goal = client.send(self._goal(scaled))
+        goal = client.send(_goal(scaled))
         self._follow(client, goal, 10.0 * scaled.duration + PATIENCE)
         self._refuse_failure(goal, client)
         end = self.commanded_positions()
@@ -177,7 +202,8 @@ class RemoteArm:
         self._follow(client, goal, 3.0 * timeout + PATIENCE)
         if goal.is_accepted is False:
             raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
-        held = self._graspable() if goal.result.stalled else ()
+        objects = [obj for obj in self._program.all_objects() if obj.in_simulation]
+        held = tuple(o.name for o in objects if goal.result.stalled and not o.is_static)
         return GripperResult(
             position=goal.result.position,
             effort=goal.result.effort,
@@ -243,10 +269,9 @@ class RemoteArm:
             if obj.in_simulation:
                 known = np.tile(obj.pose.as_vector(), (len(times), 1))
                 objects[obj.name] = known if obj.is_static else missing
-        links = dict.fromkeys((self.description.tcp_link, *self._frames))
         poses = {
             link: np.array([self._kinematics.link_pose(q, link).as_vector() for q in positions])
-            for link in links
+            for link in dict.fromkeys(self._frames)
         }
         return Signals(
             times=times,
@@ -259,10 +284,6 @@ class RemoteArm:
             frames=poses,
             object_poses=objects,
         )
-
-    def observe_frames(self, links: tuple[str, ...]) -> None:
-        """Name the links whose poses are recorded in addition to the TCP's."""
-        self._frames = links
 
     # -- inside -------------------------------------------------------------------------------
 
@@ -282,29 +303,17 @@ class RemoteArm:
                 self._graph.spin(wall.monotonic() + GRID)
                 if client is self._arm:
                     self._refuse_stray(goal)
+                if self._states.silence > SILENCE:
+                    _unreachable(
+                        f"/joint_states has stopped for {SILENCE:g} s; cancellation was requested,"
+                        " but the goal may go on: see that the robot stands, and restart its driver"
+                    )
                 if wall.monotonic() > limit:
                     _unreachable(f"{client.name} does not end its goal")
         except BaseException:
             client.cancel(goal)
             self._wait(lambda: goal.is_over, REASON)
             raise
-
-    def _goal(self, trajectory: JointTrajectory) -> Any:
-        rows = zip(
-            trajectory.times,
-            trajectory.positions,
-            trajectory.velocities,
-            trajectory.accelerations,
-            strict=True,
-        )
-        points = [
-            message(POINT, positions=p, velocities=v, accelerations=a, time_from_start=span(t))
-            for t, p, v, a in rows
-        ]
-        points[-1].velocities = np.zeros_like(points[-1].velocities)
-        names = list(trajectory.joint_names)
-        content = message(TRAJECTORY, joint_names=names, points=points)
-        return message(f"{FOLLOW}_Goal", trajectory=content)
 
     def _refuse_other_start(self, trajectory: JointTrajectory) -> None:
         now = self.joint_positions()
@@ -323,10 +332,17 @@ class RemoteArm:
         tolerance = self.description.tracking.trajectory
         for feedback in goal.feedback:
             errors = np.abs(feedback.error.positions)
-            if len(errors) and errors.max() > tolerance:
-                worst = int(np.argmax(errors))
-                name = str(feedback.joint_names[worst])
-                self._fail(name, float(errors[worst]), tolerance, "the goal was canceled")
+            if not len(errors) or errors.max() <= tolerance:
+                continue
+            worst = int(np.argmax(errors))
+            name, error = str(feedback.joint_names[worst]), float(errors[worst])
+            unit = "m" if self.description.joint_by_name[name].kind == "prismatic" else "rad"
+            raise StepFailed(
+                "CONTROL_FAILED",
+                f"{name} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"
+                " the goal was canceled",
+                ControlFailure(name, error, tolerance, unit, self.time, ()),
+            )
         goal.feedback.clear()
 
     def _refuse_failure(self, goal: ClientGoal, client: ActionClient) -> None:
@@ -342,22 +358,6 @@ class RemoteArm:
             reason += f": {goal.result.error_string}"
         raise StepFailed("CONTROL_FAILED", f"{client.name} {how}{reason}")
 
-    def _fail(self, joint: str, error: float, tolerance: float, said: str) -> NoReturn:
-        unit = "m" if self.description.joint_by_name[joint].kind == "prismatic" else "rad"
-        raise StepFailed(
-            "CONTROL_FAILED",
-            f"{joint} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"
-            f" {said}",
-            ControlFailure(joint, error, tolerance, unit, self.time, ()),
-        )
-
-    def _graspable(self) -> tuple[str, ...]:
-        return tuple(
-            obj.name
-            for obj in self._program.all_objects()
-            if obj.in_simulation and not obj.is_static
-        )
-
 
 def slowed(trajectory: JointTrajectory, share: float) -> JointTrajectory:
     """The same path at a share of the speed."""
@@ -368,6 +368,23 @@ def slowed(trajectory: JointTrajectory, share: float) -> JointTrajectory:
         trajectory.velocities * share,
         trajectory.accelerations * share**2,
     )
+
+
+def _goal(trajectory: JointTrajectory) -> Any:
+    rows = zip(
+        trajectory.times,
+        trajectory.positions,
+        trajectory.velocities,
+        trajectory.accelerations,
+        strict=True,
+    )
+    points = [
+        message(POINT, positions=p, velocities=v, accelerations=a, time_from_start=span(t))
+        for t, p, v, a in rows
+    ]
+    points[-1].velocities = np.zeros_like(points[-1].velocities)
+    content = message(TRAJECTORY, joint_names=list(trajectory.joint_names), points=points)
+    return message(f"{FOLLOW}_Goal", trajectory=content)
 
 
 def _unreachable(why: str) -> NoReturn:

@@ -25,6 +25,7 @@ class StateTopics:
         self._moved = [placement for placement in robot.placements if placement.joint]
         self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", depth=1)
         self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
+        self._state = message("sensor_msgs/msg/JointState", name=self._names)
         self._tf = graph.advertise("/tf", "tf2_msgs/msg/TFMessage", depth=100)
         static = graph.advertise("/tf_static", "tf2_msgs/msg/TFMessage", latched=True, depth=1)
         fixed = [placement for placement in robot.placements if not placement.joint]
@@ -49,16 +50,10 @@ class StateTopics:
         """
         moment = stamp(time)
         self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))
-        self._joints.publish(
-            message(
-                "sensor_msgs/msg/JointState",
-                header=message("std_msgs/msg/Header", stamp=moment),
-                name=self._names,
-                position=positions,
-                velocity=velocities,
-                effort=efforts,
-            )
-        )
+        state = self._state
+        state.header.stamp = moment
+        state.position, state.velocity, state.effort = positions, velocities, efforts
+        self._joints.publish(state)
         self._ticks += 1
         if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
             self._publish_frames(time, positions)

@@ -10,15 +10,18 @@ from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Client, Connection
 from types import TracebackType
+from typing import TYPE_CHECKING
 
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.reporting.result import ProgressEvent
 from harness.robot.description import RobotDescription
-from harness.session.progress import Notify
-from harness.session.run_request import RunRequest
-from harness.session.start import Start, start_case
-from harness.session.timing import Clock
+
+if TYPE_CHECKING:  # whoever shows a case needs no planner
+    from harness.session.progress import Notify
+    from harness.session.run_request import RunRequest
+    from harness.session.start import Start
+    from harness.session.timing import Clock
 
 FRAME = 1 / 25
 """Wall time between two frames, at least [s]."""
@@ -93,6 +96,8 @@ class LiveStream:
         Raises:
             SpecError: The file has mistakes.
         """
+        from harness.session.start import start_case
+
         self._start = start = start_case(request, clock)
         program = start.prepared.program
         name = f"{request.file.name} [{request.case}]" if request.case else request.file.name

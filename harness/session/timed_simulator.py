@@ -12,7 +12,7 @@ from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints
 
-SAMPLES_BETWEEN_LOOKS = 32
+SAMPLES_BETWEEN_LOOKS = 128
 """Samples between two calls of `watch`; the results do not depend on it."""
 
 
@@ -20,7 +20,7 @@ class TimedSimulator(MujocoSimulator):
     """The simulator, which measures the wall time of what moves apart from that of planning.
 
     Attributes:
-        watch: Called a few hundred times a second while the physics advances; None: never. What
+        watch: Called about a hundred times a second while the physics advances; None: never. What
             it does must not change the simulator.
     """
 

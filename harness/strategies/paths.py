@@ -42,13 +42,7 @@ class StraightLine:
 def joint_paths(
     chain: Chain, *, min_size: int = 2, max_size: int = 5
 ) -> st.SearchStrategy[JointPath]:
-    """Paths through joint positions anywhere between the limits.
-
-    Args:
-        chain: The kinematic chain of the arm.
-        min_size: Smallest number of waypoints.
-        max_size: Largest number of waypoints.
-    """
+    """Paths through joint positions anywhere between the limits."""
     waypoints = st.lists(joint_positions(chain), min_size=min_size, max_size=max_size)
     return waypoints.map(lambda each: JointPath(chain.joint_names, np.array(each)))
 
@@ -66,7 +60,6 @@ def straight_lines(
     continuous joint path along it always exists. A line may be a single point.
 
     Args:
-        chain: The kinematic chain of the arm.
         task: The arm's task; by default `natural_task`.
         positions: Start positions; by default anywhere between the limits.
         max_length: Largest length of a line [m].

@@ -42,7 +42,6 @@ def reachable_poses(chain: Chain, positions: Positions | None = None) -> Targets
     """Poses that the arm can take: forward kinematics of joint positions within the limits.
 
     Args:
-        chain: The kinematic chain of the arm.
         positions: Joint positions to draw from; by default anywhere between the limits.
     """
     drawn = joint_positions(chain) if positions is None else positions
@@ -63,7 +62,6 @@ def unreachable_poses(chain: Chain, *, any_orientation: bool = False) -> Targets
     """Poses that no joint positions reach, whatever the limits: the arm is too short.
 
     Args:
-        chain: The kinematic chain of the arm.
         any_orientation: Whether the position is unreachable in every orientation; else the pose
             puts the last joint out of reach.
     """

@@ -32,8 +32,6 @@ def load_chain(robot: str, *, gripper: str | None = None, group: str = "", link:
 
     Args:
         robot: A bundled name (`ur3e`), a folder with a robot.yaml, a .urdf or a .xacro file.
-        gripper: A bundled gripper's name.
-        group: A planning group; by default the arm's.
         link: The link at the chain's end; by default the TCP.
 
     Raises:
@@ -49,7 +47,6 @@ def joint_positions(chain: Chain, *, margin: float = 0.0) -> Positions:
     """Positions anywhere between the limits, shape (dof,) [rad or m]; the simplest is home.
 
     Args:
-        chain: The kinematic chain of the arm.
         margin: Share of each range that is kept free on both sides, [0, 0.5).
     """
     return st.tuples(*_each_joint(chain, margin)).map(np.array)
@@ -85,7 +82,6 @@ def near_singular_positions(chain: Chain, task: Task | None = None) -> Positions
     the Jacobian's smallest singular value.
 
     Args:
-        chain: The kinematic chain of the arm.
         task: The arm's task; by default `natural_task`.
     """
     fixed = task or natural_task(chain)

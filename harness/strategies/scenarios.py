@@ -24,7 +24,6 @@ def scenarios(
 
     Args:
         robots: Bundled names to choose from, the simplest first.
-        max_steps: Largest number of steps.
     """
     return st.sampled_from(list(robots)).flatmap(lambda robot: _of_robot(robot, max_steps))
 

@@ -42,7 +42,6 @@ def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
     """Jacobians of a task's coordinates, with positions in shares of the arm's reach.
 
     Args:
-        chain: The kinematic chain of the arm.
         task: The parts of the pose that count.
         samples: Joint positions, shape (N, dof).
 

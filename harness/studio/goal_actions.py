@@ -10,13 +10,15 @@ import viser
 
 from harness.core.printable import printable
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.language.step import STEPS
 from harness.studio.files import StudioFiles
 from harness.studio.live_studio import LiveStudio
-from harness.studio.messages import Message, failure_message
+from harness.studio.messages import failure_message
 from harness.studio.previews import preview
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost
-from harness.studio.session import RefusedError
+from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost, Handle
+from harness.studio.session import Message, RefusedError
 from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
 
 MOST_GHOSTS = 4
@@ -32,17 +34,16 @@ class GoalActions(LiveStudio):
     def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
         super().__init__(files, text, notice)
         self.follows = False
-        self._drag: tuple[str, SE3, str] | None = None
+        self._drag: tuple[str, SE3, Handle] | None = None
         self._goal = SE3.identity()
 
-    def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
+    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
         """Keep the newest pose for the cell's thread; poses of spectators are put back."""
         if not self._controls(client):
-            if self.view is not None and not name:
-                self.view.move_handle(self._goal if self.reach else self.cell.tcp_pose())
+            self.session.post(self.put_handles_back)
             return
         is_waiting = self._drag is not None
-        self._drag = (phase, pose, name)
+        self._drag = (phase, pose, kind)
         if not is_waiting or phase == "end":
             self.session.post(self._answer_drag)
 
@@ -64,15 +65,35 @@ class GoalActions(LiveStudio):
         drag, self._drag = self._drag, None
         if drag is None or self.busy:
             return
-        phase, pose, name = drag
-        if not name:
+        phase, pose, kind = drag
+        name = self.object_handle
+        if kind == "tcp":
             self.answer_pose(pose, explain=phase == "end")
-        elif phase == "end":
+        elif phase != "end":
+            self.dragged = {name: pose.as_vector()} if kind == "object" else {}
+        elif kind == "object":
             self.put_object(name, pose)
+        else:
+            self.resize_object(name, pose.translation)
+
+    def put_handles_back(self) -> None:
+        """Show the handles where they were before a page moved them."""
+        if self.view is not None:
+            goal = self._goal if self.reach is not None else self.cell.tcp_pose()
+            self.view.put_handle("tcp", goal)
+        self.show_object_handle(self.object_handle)
+
+    @abstractmethod
+    def show_object_handle(self, name: str) -> None:
+        """Put handles on an object; an empty name takes them away."""
 
     @abstractmethod
     def put_object(self, name: str, pose: SE3) -> None:
         """An object's handle was let go."""
+
+    @abstractmethod
+    def resize_object(self, name: str, corner: FloatArray) -> None:
+        """The handle of an object's size was let go at a point of the world, shape (3,)."""
 
     def do_follow(self, message: Message) -> Message:
         """Let the arm follow the handle, or not."""
@@ -128,7 +149,7 @@ class GoalActions(LiveStudio):
             xyz, turn
         )
         if self.view is not None:
-            self.view.move_handle(pose)
+            self.view.put_handle("tcp", pose)
         reach = self.answer_pose(pose)
         return {"refusal": printable(reach.refusal), "ways": len(reach.ways)}
 
@@ -170,7 +191,7 @@ class GoalActions(LiveStudio):
 
     def motion_text(self, message: Message) -> str:
         """The step that a page's goal is."""
-        verb = str(message.get("verb", "move_to"))
+        verb = str(message.get("verb") or MOTIONS[0])
         if verb not in MOTIONS:
             raise RefusedError(f"a motion is one of {', '.join(MOTIONS)}")
         description = self.cell.description
@@ -190,7 +211,7 @@ class GoalActions(LiveStudio):
             keys = pose_keys(description, group, pose, frame)
         else:
             raise RefusedError("there is no goal: drag the handle, or choose a named state")
-        if verb == "circ":
+        if STEPS[verb].is_arc:
             keys["interim"] = {"xyz": [round(float(value), 5) for value in message["interim"]]}
         if message.get("planner"):
             given = str(message["planner"])

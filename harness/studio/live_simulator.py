@@ -34,11 +34,13 @@ class LiveSimulator(TimedSimulator):
     Attributes:
         pace: Called while a step of a program advances the physics; None: as fast as possible.
         stop_sample: The number of samples at which a motion is stopped; None lets it go on.
+        was_stopped: Whether the last motion was stopped by hand.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         self.pace: Pace | None = None
         self.stop_sample: int | None = None
+        self.was_stopped = False
         super().__init__(*arguments, **options)
 
     def idle(self, samples: int) -> None:
@@ -89,7 +91,7 @@ class LiveSimulator(TimedSimulator):
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:
         count = len(points) - 1
-        begin = 0
+        begin, self.was_stopped = 0, False
         while begin < count:
             left = count if self.stop_sample is None else self.stop_sample - self.sample_count
             end = min(begin + (count if self.pace is None else CHUNK), count, begin + left)
@@ -97,6 +99,7 @@ class LiveSimulator(TimedSimulator):
                 super()._step(points.part(begin, end), controls[begin : end + 1])
             goes_on = self.pace is None or self.pace(end - begin)
             if end == begin or not goes_on:
+                self.was_stopped = True
                 self.command(points.positions[max(1, end)])
                 raise StepFailed("PREEMPTED", "the motion was stopped by hand")
             begin = end

@@ -24,14 +24,14 @@ from harness.studio.live_camera import LiveCamera
 from harness.studio.live_cell import LiveCell
 from harness.studio.live_verdicts import LiveVerdicts
 from harness.studio.messages import (
-    Message,
     cell_message,
     problem_message,
     robot_message,
 )
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import SceneView
-from harness.studio.session import FRAME, RefusedError, Session
+from harness.studio.scene_view import Handle, SceneView
+from harness.studio.session import FRAME, Message, RefusedError, Session
+from harness.studio.verdict_messages import NO_VERDICTS
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)
 """Simulated seconds in a second of wall time; 0 is as fast as possible."""
@@ -80,6 +80,7 @@ class LiveStudio(ABC):
         self._due, self._frames = 0.0, 0
         self.nearest: Touch | None = None
         self.object_handle = ""
+        self.dragged: dict[str, FloatArray] = {}
         self._actions: dict[str, Callable[[Message], Message]] = {
             name.removeprefix("do_"): getattr(self, name)
             for name in dir(self)
@@ -107,7 +108,7 @@ class LiveStudio(ABC):
         Returns:
             Whether the cell was built, or built again.
         """
-        self.text, self.problems = text, []
+        self._set_text(text)
         try:
             is_new = self._compile(text)
         except SpecError as error:
@@ -123,6 +124,17 @@ class LiveStudio(ABC):
             return False
         self.is_alone = True
         return is_new
+
+    def _set_text(self, text: str) -> None:
+        self.text, self.problems = text, []
+        if text != self.verdicts.text:
+            self.forget_verdicts()
+
+    def forget_verdicts(self) -> None:
+        """Take the verdicts away from every page: they are of another text or another state."""
+        if self.verdicts.text:
+            self.verdicts.forget()
+            self.session.broadcast(NO_VERDICTS)
 
     def keep_unsaved(self, text: str) -> None:
         """Keep a copy of the text; where that is not possible, say so once."""
@@ -161,13 +173,16 @@ class LiveStudio(ABC):
     def show_cell(self) -> None:
         if self.view is None or self._cell is None:
             return
-        self.object_handle = ""
+        self.object_handle, self.dragged = "", {}
         cell = self.cell
         program = cell.prepared.program
-        self.view.show_cell(program.description, cell.tcp_pose())
+        self.view.show_robot(program.description, cell.tcp_pose())
         self.view.show_objects(program.all_objects())
+        self.view.put_handle("object", None)
+        self.view.put_handle("size", None)
         self.view.move(cell.joint_positions(), cell.object_vectors())
-        self.study = self.reach = self.chosen = self.target = None
+        self.study = self.target = None
+        self.clear_preview()
 
     def _pace(self, samples: int) -> bool:
         """Wait as long as samples last, showing them; False where the motion is to stop."""
@@ -197,7 +212,8 @@ class LiveStudio(ABC):
             self._go_on(elapsed * (self.speed or 1.0))
         if self.view is not None and now - self._last_scene >= 0.9 * FRAME:
             self._last_scene = now
-            self.view.move(self.cell.joint_positions(), self.cell.object_vectors())
+            objects = {**self.cell.object_vectors(), **self.dragged}
+            self.view.move(self.cell.joint_positions(), objects)
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
@@ -237,7 +253,7 @@ class LiveStudio(ABC):
             self.say("failed", f"{record.summary}: {record.error_code}: {record.message}")
 
     def working(self, what: str, action: Callable[[], None]) -> None:
-        """Do something that takes simulated time."""
+        """Do something that takes simulated time, and judge where it leaves the scenario."""
         self.busy, self.target = what, None
         self.stopping.clear()
         self._due = time.monotonic()
@@ -248,9 +264,11 @@ class LiveStudio(ABC):
             self.busy = ""
             self.study = None
             self._last_tick = time.monotonic()
+        if self.cell.document.step_count and not self.cell.is_by_hand:
+            self.verdicts.begin(self.cell, is_last=True)
         self.clear_preview()
         if self.view is not None:
-            self.view.move_handle(self.cell.tcp_pose())
+            self.view.put_handle("tcp", self.cell.tcp_pose())
 
     # -- messages -----------------------------------------------------------------------------
 
@@ -277,9 +295,7 @@ class LiveStudio(ABC):
             messages = [robot_message(self.cell), *messages, self.state_message()]
         if self.notice:
             messages.append({"type": "note", "kind": "warning", "text": self.notice})
-        if self.verdicts.message is not None:
-            messages.append(self.verdicts.message)
-        return messages
+        return [*messages, self.verdicts.message]
 
     def document_message(self) -> Message:
         return {
@@ -318,7 +334,7 @@ class LiveStudio(ABC):
         )
 
     @abstractmethod
-    def on_drag(self, client: int, phase: str, pose: SE3, name: str) -> None:
+    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
         """A handle was moved on a page; called in the server's thread."""
 
     @abstractmethod
@@ -384,7 +400,7 @@ class LiveStudio(ABC):
 
     def after_jump(self) -> None:
         self.study = None
-        self.verdicts.forget()
+        self.forget_verdicts()
         self.clear_preview()
         if self.view is not None:
-            self.view.move_handle(self.cell.tcp_pose())
+            self.view.put_handle("tcp", self.cell.tcp_pose())

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from harness.core.errors import HarnessError
-from harness.studio.judging import judged
+from harness.studio.judging import Judged, judged
 from harness.studio.live_cell import LiveCell
-from harness.studio.messages import Message, verdicts_message
 from harness.studio.newest import Newest
+from harness.studio.session import Message
+from harness.studio.verdict_messages import NO_VERDICTS, verdicts_message
 
 
 class LiveVerdicts:
-    """The newest verdicts of a cell.
+    """The newest verdicts on the text of a cell, since it was at its start.
+
+    Whoever changes the text or the state otherwise than by executing the next step calls `forget`,
+    which gives up what is being judged too: no verdict and no digest is of another text.
 
     Attributes:
-        message: The verdicts as pages are sent them; None while there are none.
+        message: The verdicts as pages are sent them.
+        text: The text that they are of; empty while there are none.
     """
 
     def __init__(self) -> None:
-        self.message: Message | None = None
+        self.message = NO_VERDICTS
+        self.text = ""
         self._work: Newest[Message] = Newest()
-        self._text = self._judged_text = ""
 
     @property
     def is_busy(self) -> bool:
@@ -34,8 +39,8 @@ class LiveVerdicts:
             is_last: Whether no later state follows soon; earlier ones are then given up.
         """
         if is_last or not self._work.is_busy:
-            self._text = cell.document.text
-            self._work.begin(lambda: verdicts_message(judged(cell)))
+            self.text = cell.document.text
+            self._work.begin(lambda: _message(judged(cell)))
 
     def taken(self, *, wait: bool = False) -> Message | None:
         """The message for every page, once; None while there is nothing new."""
@@ -44,15 +49,16 @@ class LiveVerdicts:
         except HarnessError as error:
             return {"type": "note", "kind": "failed", "text": f"no verdicts: {error}"}
         if message is not None:
-            self.message, self._judged_text = message, self._text
+            self.message = message
         return message
 
-    def digest_of(self, text: str) -> str:
-        """The digest of the last whole run, if it was one of this text; else empty."""
-        is_same = self.message is not None and self._judged_text == text
-        return str(self.message["digest"]) if is_same and self.message else ""
-
     def forget(self) -> None:
-        """The cell went back: what was judged is not its state."""
+        """Give up what was judged, and what is being judged."""
         self._work.cancel()
-        self.message = None
+        self.message, self.text = NO_VERDICTS, ""
+
+
+def _message(judged: Judged) -> Message:
+    top_level = [each for each in judged.run.steps if "[" not in each.path.partition("[")[2]]
+    verdicts = zip(judged.verdicts, judged.is_decided, strict=True)
+    return verdicts_message(judged.outcome, judged.digest, top_level, verdicts)

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from harness.core.errors import Problem
 from harness.core.printable import printable
 from harness.language.step import STEPS
-from harness.recording.run import StepRecord, Verdict
+from harness.recording.run import StepRecord
 from harness.reporting.explanation import explanation_lines
-from harness.reporting.result import StepLine
-from harness.studio.judging import Judged
-from harness.studio.language_help import Names
+from harness.studio.language_help import GRIPPER_TARGET, Names
 from harness.studio.live_cell import LiveCell
-from harness.studio.step_texts import MOTIONS, object_form
-
-Message = dict[str, Any]
+from harness.studio.object_texts import object_form
+from harness.studio.session import Message
+from harness.studio.step_texts import MOTIONS
 
 MOST_CONTACTS = 8
 """Contacts that are listed, strongest first."""
@@ -95,20 +92,27 @@ def names_of(cell: LiveCell | None) -> Names:
     from harness.language.reading.load import bundled_worlds
     from harness.robot.load import gripper_names, robot_names
 
-    bundled = Names(worlds=bundled_worlds(), robots=robot_names(), grippers=gripper_names())
+    robots = robot_names()
+    names = {"world": bundled_worlds(), "robot": robots, "model": robots}
+    names["gripper"] = gripper_names()
     if cell is None:
-        return bundled
-    description = cell.description
+        return names
+    description, objects = cell.description, list(cell.cell.presence)
     gripper = description.gripper
-    return replace(
-        bundled,
-        states=list(description.states_of(description.arm_group)),
-        gripper_states=[] if gripper is None else list(description.states_of(gripper.group)),
-        joints=description.joint_names,
-        links=description.link_names,
-        objects=list(cell.cell.presence),
-        groups=list(description.groups),
-    )
+    states = list(description.states_of(description.arm_group))
+    ends = [] if gripper is None else list(description.states_of(gripper.group))
+    links, joints = description.link_names, description.joint_names
+    bodies = [*objects, *links]
+    named: dict[str, Sequence[str]] = {
+        **{"named_target": states, "state": [*states, *ends], GRIPPER_TARGET: ends},
+        **dict.fromkeys(("joints", "positions"), joints),
+        **dict.fromkeys(("object", "objects"), objects),
+        **dict.fromkeys(("link", "tcp_link", "touch_links"), links),
+        **dict.fromkeys(("on", "support", "container"), bodies),
+        **{"between": ["robot", "gripper", "any", *bodies], "frame": ["world", *bodies]},
+        **{"group": list(description.groups), "camera": list(cell.prepared.program.cameras)},
+    }
+    return names | named
 
 
 def failure_message(record: StepRecord) -> Message:
@@ -119,43 +123,6 @@ def failure_message(record: StepRecord) -> Message:
         "explanation": [
             printable(line) for line in explanation_lines(record.explanation, record.message)
         ],
-    }
-
-
-def verdicts_message(judged: Judged) -> Message:
-    """The verdicts, and what became of the steps of the file; `open` can still change."""
-    return {
-        "type": "verdicts",
-        "outcome": judged.outcome,
-        "digest": judged.digest,
-        "steps": [
-            step_message(step)
-            for step in judged.run.steps
-            if step.path.count("[") == 1 and "." not in step.path
-        ],
-        "verdicts": [
-            verdict_message(verdict, is_open=not is_decided)
-            for verdict, is_decided in zip(judged.verdicts, judged.is_decided, strict=True)
-        ],
-    }
-
-
-def step_message(step: StepRecord | StepLine) -> Message:
-    """What became of a step."""
-    return {"summary": printable(step.summary), "status": step.status, "line": step.line}
-
-
-def verdict_message(verdict: Verdict, *, is_open: bool) -> Message:
-    """A verdict, which can still change where it is open."""
-    margin = verdict.margin
-    return {
-        "text": printable(verdict.expectation),
-        "status": verdict.status,
-        "open": is_open,
-        "margin": None if margin is None or not np.isfinite(margin) else margin,
-        "unit": verdict.unit,
-        "line": verdict.line,
-        "reason": printable(verdict.reason),
     }
 
 

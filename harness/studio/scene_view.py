@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import viser
 
-from harness.cameras.mesh_part import coarsen
-from harness.cameras.meshes import mesh_parts
+from harness.cameras.meshes import coarsen, mesh_parts
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
@@ -28,7 +28,12 @@ GHOST, REFUSED, PLANNED = (70, 130, 220), (214, 60, 50), (40, 160, 90)
 PLANE_SIZE = 6.0  # [m]
 
 Color = tuple[int, int, int]
-OnDrag = Callable[[int, str, SE3, str], None]
+Handle = Literal["tcp", "object", "size"]
+"""What a handle moves: the TCP's goal, an object, or the corner that gives an object's size."""
+
+OnDrag = Callable[[int, str, SE3, Handle], None]
+"""Called with the number of the page's connection, the phase of the drag, and the new pose."""
+
 OnChoose = Callable[[int, int], None]
 """Called with the number of the page's connection and that of the way."""
 
@@ -69,6 +74,8 @@ def robot_triangles(description: RobotDescription) -> dict[str, list[Triangles]]
 
 
 def _parts(shape: Shape, grid: float) -> Iterable[tuple[FloatArray, IntArray, Any]]:
+    import trimesh.creation as create
+
     match shape.geometry:
         case Mesh() as mesh:
             for part in mesh_parts(mesh):
@@ -76,47 +83,19 @@ def _parts(shape: Shape, grid: float) -> Iterable[tuple[FloatArray, IntArray, An
                 if grid > GRID:
                     vertices, faces = coarsen(vertices, faces, grid)
                 yield vertices, faces, part.rgba or shape.rgba
+            return
         case Box(size=size):
-            yield *_box(size, 0.0), shape.rgba
+            solid = create.box(size)
         case Plane():
-            yield *_box((PLANE_SIZE, PLANE_SIZE, 0.002), -0.001), shape.rgba
+            solid = create.box((PLANE_SIZE, PLANE_SIZE, 0.002)).apply_translation([0, 0, -0.001])
         case Cylinder(radius=radius, length=length):
-            half = 0.5 * length
-            profile = [(0.0, -half), (radius, -half), (radius, half), (0.0, half)]
-            yield *_revolved(np.array(profile)), shape.rgba
+            solid = create.cylinder(radius, length, sections=24)
         case Sphere(radius=radius):
-            yield *_revolved(_half_circle(radius, 0.0)), shape.rgba
+            solid = create.icosphere(3, radius)
         case Capsule(radius=radius, length=length):
-            yield *_revolved(_half_circle(radius, 0.5 * length)), shape.rgba
-
-
-def _box(size: tuple[float, float, float], height: float) -> tuple[FloatArray, IntArray]:
-    """A box whose centre is at a height on the z axis."""
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [(a, b, c) for a, b, c, _ in quads] + [(a, c, d) for a, _, c, d in quads]
-    return 0.5 * corners * size + [0.0, 0.0, height], np.array(faces)
-
-
-def _half_circle(radius: float, offset: float) -> FloatArray:
-    """Radii and heights from pole to pole; the halves are moved apart along the axis."""
-    angles = np.linspace(-np.pi / 2, np.pi / 2, 14)
-    heights = radius * np.sin(angles) + np.where(angles < 0, -offset, offset)
-    return np.stack([radius * np.cos(angles), heights], axis=1)
-
-
-def _revolved(profile: FloatArray, sections: int = 24) -> tuple[FloatArray, IntArray]:
-    """The surface that a profile of radii and heights, shape (N, 2), draws about the z axis."""
-    angles = np.linspace(0.0, 2 * np.pi, sections, endpoint=False)
-    turns = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    flat = profile[:, :1, None] * turns[None]
-    heights = np.broadcast_to(profile[:, 1:, None], (len(profile), sections, 1))
-    vertices = np.concatenate([flat, heights], axis=2).reshape(-1, 3)
-    ring, step = np.meshgrid(np.arange(len(profile) - 1), np.arange(sections), indexing="ij")
-    after = (step + 1) % sections
-    a, b = ring * sections + step, ring * sections + after
-    quads = np.stack([a, b, b + sections, a + sections], axis=-1).reshape(-1, 4)
-    return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+            solid = create.capsule(length, radius, count=[24, 14])
+            solid.apply_translation(-solid.bounds.mean(axis=0))
+    yield np.array(solid.vertices), np.array(solid.faces), shape.rgba
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +125,10 @@ class _Body:
             self.pose = pose
             self.handle.position, self.handle.wxyz = tuple(pose[:3]), tuple(pose[3:])
 
+    def show(self, is_visible: bool) -> None:
+        if self.handle.visible != is_visible:
+            self.handle.visible = is_visible
+
 
 def reach_of(description: RobotDescription) -> float:
     """The length of the arm from its base to its TCP [m]: how far away the camera stands."""
@@ -158,7 +141,7 @@ def reach_of(description: RobotDescription) -> float:
 
 
 class SceneView:
-    """Everything that viser shows of one cell; it is cleared and drawn again for another one."""
+    """Everything that viser shows of one cell."""
 
     def __init__(
         self,
@@ -168,30 +151,42 @@ class SceneView:
     ) -> None:
         self._server = server
         self._on_drag, self._on_choose = on_drag, on_choose
+        self._robot = b""
         self._links: dict[str, _Body] = {}
         self._objects: dict[str, _Body] = {}
         self._ghosts: Sequence[Ghost] = ()
         self._bodies: list[dict[str, _Body]] = []
-        self.handle: Any = None
-        self._object_handle: Any = None
-        self._path: Any = None
-        self._clearance: Any = None
+        self.handles: dict[Handle, Any] = {}
+        self._lines: dict[str, Any] = {}
         self._shapes: dict[str, list[Triangles]] = {}
 
-    def show_cell(self, description: RobotDescription, tcp_pose: SE3 | None = None) -> None:
-        """Draw another robot, without objects, and put a handle on its TCP where it is given."""
+    def show_robot(self, description: RobotDescription, tcp_pose: SE3 | None = None) -> None:
+        """Draw another robot, without objects; an equal one stays as it is.
+
+        Args:
+            description: The description of the robot.
+            tcp_pose: Where a handle is put on the TCP; None: there is no handle.
+        """
+        robot = pickle.dumps(description)
+        if robot != self._robot:
+            self._robot = robot
+            self._draw_robot(description)
+        if tcp_pose is not None:
+            self.put_handle("tcp", tcp_pose)
+
+    def _draw_robot(self, description: RobotDescription) -> None:
         scene = self._server.scene
         scene.reset()
         self._objects, self._ghosts, self._bodies = {}, (), []
-        self._path = self._object_handle = self._clearance = None
+        self._lines, self.handles = {}, {}
         self._description = description
         self._shapes = robot_triangles(description)
         reach = reach_of(description)
-        [base] = self._link_poses(description.start_positions(), [description.base_link])
-        look_at = base[:3] + np.array([0.0, 0.0, 0.3 * reach])
+        ends = [description.base_link, description.tcp_link]
+        look_at = self._link_poses(description.start_positions(), ends)[:, :3].mean(axis=0)
         self._server.initial_camera.look_at = tuple(look_at)
-        self._server.initial_camera.position = tuple(look_at + reach * np.array([1.1, -0.9, 0.6]))
-        self._server.scene.set_up_direction("+z")
+        self._server.initial_camera.position = tuple(look_at + reach * np.array([0.9, -0.9, 0.5]))
+        scene.set_up_direction("+z")
         scene.add_grid(
             "/grid", width=4, height=4, cell_size=0.1, section_size=0.5, position=(0, 0, 5e-4)
         )
@@ -199,17 +194,6 @@ class SceneView:
             name: self._body(f"/robot/{name}", parts) for name, parts in self._shapes.items()
         }
         self._scale = 0.25 * reach
-        if tcp_pose is None:
-            return
-        self.handle = scene.add_transform_controls(
-            "/tcp", scale=self._scale, depth_test=False, line_width=3.0
-        )
-        self.move_handle(tcp_pose)
-
-        @self.handle.on_update
-        async def _(event: Any) -> None:
-            pose = SE3.from_xyz_quat(event.target.position, event.target.wxyz)
-            self._on_drag(event.client_id, event.phase, pose, "")
 
     def show_objects(self, objects: Sequence[WorldObject]) -> None:
         """Draw these objects in place of those shown."""
@@ -228,8 +212,7 @@ class SceneView:
             for name, pose in zip(names, poses, strict=True):
                 self._links[name].move(pose)
             for name, body in self._objects.items():
-                if body.handle.visible != (name in objects):
-                    body.handle.visible = name in objects
+                body.show(name in objects)
                 if name in objects:
                     body.move(objects[name])
 
@@ -241,13 +224,11 @@ class SceneView:
                 self._bodies.append(self._ghost_body(len(self._bodies)))
             for bodies in self._bodies[len(ghosts) :]:
                 for body in bodies.values():
-                    if body.handle.visible:
-                        body.handle.visible = False
+                    body.show(False)
             for ghost, bodies in zip(ghosts, self._bodies, strict=False):
                 poses = self._link_poses(ghost.positions, list(bodies))
                 for body, pose in zip(bodies.values(), poses, strict=True):
-                    if not body.handle.visible:
-                        body.handle.visible = True
+                    body.show(True)
                     body.move(pose)
                     for part in body.handle.parts:
                         if tuple(part.color) != ghost.color:
@@ -273,50 +254,61 @@ class SceneView:
 
     def show_path(self, points: FloatArray | None) -> None:
         """Show the path of the TCP, shape (N, 3); None removes it."""
-        if self._path is not None:
-            self._path.remove()
-            self._path = None
-        if points is not None and len(points) > 1:
-            segments = np.stack([points[:-1], points[1:]], axis=1)
-            self._path = self._server.scene.add_line_segments(
-                "/path", segments, PLANNED, thickness=0.006
-            )
+        segments = None if points is None else np.stack([points[:-1], points[1:]], axis=1)
+        self._show_lines("/path", segments, PLANNED, 0.006)
 
     def show_clearance(self, points: FloatArray | None) -> None:
         """Show a line between the nearest points of two bodies, shape (2, 3)."""
-        if self._clearance is not None:
-            self._clearance.remove()
-            self._clearance = None
-        if points is not None:
-            self._clearance = self._server.scene.add_line_segments(
-                "/clearance", points[None], REFUSED, thickness=0.003
+        self._show_lines("/clearance", None if points is None else points[None], REFUSED, 0.003)
+
+    def _show_lines(
+        self, name: str, segments: FloatArray | None, color: Color, thickness: float
+    ) -> None:
+        """Show lines, shape (N, 2, 3), in place of those of the same name."""
+        before = self._lines.pop(name, None)
+        if before is not None:
+            before.remove()
+        if segments is not None and len(segments):
+            self._lines[name] = self._server.scene.add_line_segments(
+                name, segments, color, thickness=thickness
             )
 
-    def show_object_handle(self, name: str, pose: SE3 | None) -> None:
-        """Put a second handle on an object; None takes it away."""
-        if self._object_handle is not None:
-            self._object_handle.remove()
-            self._object_handle = None
-        if pose is None:
+    def put_handle(self, kind: Handle, pose: SE3 | None, axes: Sequence[int] = ()) -> None:
+        """Put a handle on a pose in the world; None takes it away.
+
+        Args:
+            kind: What the handle moves.
+            pose: The pose of the handle.
+            axes: The axes along which alone it moves; without any, it moves and turns freely.
+        """
+        vector = None if pose is None else pose.as_vector()
+        handle = self.handles.get(kind)
+        if handle is not None and (vector is None or axes):
+            self.handles.pop(kind).remove()
+            handle = None
+        if vector is None:
             return
-        vector = pose.as_vector()
-        self._object_handle = self._server.scene.add_transform_controls(
-            "/object_handle",
-            scale=self._scale,
+        if handle is None:
+            handle = self.handles[kind] = self._new_handle(kind, axes)
+        handle.position, handle.wxyz = tuple(vector[:3]), tuple(vector[3:])
+
+    def _new_handle(self, kind: Handle, axes: Sequence[int]) -> Any:
+        handle = self._server.scene.add_transform_controls(
+            f"/handle/{kind}",
+            scale=(0.5 if axes else 1.0) * self._scale,
             depth_test=False,
-            position=tuple(vector[:3]),
-            wxyz=tuple(vector[3:]),
+            line_width=3.0,
+            active_axes=(0 in axes, 1 in axes, 2 in axes) if axes else (True, True, True),
+            disable_sliders=bool(axes),
+            disable_rotations=bool(axes),
         )
 
-        @self._object_handle.on_update
+        @handle.on_update
         async def _(event: Any) -> None:
             pose = SE3.from_xyz_quat(event.target.position, event.target.wxyz)
-            self._on_drag(event.client_id, event.phase, pose, name)
+            self._on_drag(event.client_id, event.phase, pose, kind)
 
-    def move_handle(self, pose: SE3) -> None:
-        """Put the handle on a pose T_world_tcp."""
-        vector = pose.as_vector()
-        self.handle.position, self.handle.wxyz = tuple(vector[:3]), tuple(vector[3:])
+        return handle
 
     def _link_poses(self, joint_positions: FloatArray, names: Sequence[str]) -> FloatArray:
         """T_world_link (xyz, quat wxyz) of some links, shape (n, 7)."""

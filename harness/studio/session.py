@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import hashlib
 import json
 import queue
@@ -80,6 +81,7 @@ class Session:
     on_defect: Callable[[], None]
     viewers: list[Viewer] = field(default_factory=list[Viewer])
     controller: str = ""
+    _next: str = ""
     _jobs: queue.SimpleQueue[Callable[[], object] | None] = field(
         default_factory=queue.SimpleQueue[Callable[[], object] | None]
     )
@@ -96,6 +98,10 @@ class Session:
         self._jobs.put(None)
         if self._thread is not None:
             self._thread.join(timeout=5.0)
+        for viewer in tuple(self.viewers):  # the last messages leave
+            with contextlib.suppress(TimeoutError, RuntimeError):
+                sent = asyncio.run_coroutine_threadsafe(viewer.outbox.join(), viewer.loop)
+                sent.result(timeout=1.0)
 
     def post(self, job: Callable[[], object]) -> None:
         """Let the cell's thread do something."""
@@ -150,15 +156,24 @@ class Session:
             pass
         finally:
             if viewer is not None:
-                self.viewers.remove(viewer)
-                self.announce_control()
+                self._leave(viewer)
             if sender is not None:
                 sender.cancel()
 
+    @property
+    def _present(self) -> set[str]:
+        return {each.name for each in self.viewers}
+
+    def _leave(self, viewer: Viewer) -> None:
+        """Take a page out; whoever requested control of one that left has it."""
+        self.viewers.remove(viewer)
+        if self.controller not in self._present and self._next in self._present:
+            self.controller, self._next = self._next, ""
+        self.announce_control()
+
     def _enter(self, viewer: Viewer) -> None:
         self.viewers.append(viewer)
-        present = {each.name for each in self.viewers}
-        if not self.controller or self.controller not in present:
+        if self.controller not in self._present:
             self.controller = viewer.name
         self.announce_control()
 
@@ -194,11 +209,12 @@ class Session:
 
     def _control(self, viewer: Viewer, word: str) -> None:
         """Request control, pass it on, or take it where no page has it."""
-        present = {each.name for each in self.viewers}
+        present = self._present
         if word == "request":
-            if not self.controller or self.controller not in present:
+            if self.controller not in present:
                 self.controller = viewer.name
             else:
+                self._next = viewer.name
                 self.broadcast({"type": "request", "page": alias(viewer.name)})
         elif word == "release" and viewer.name == self.controller:
             self.controller = next((n for n in present if n != viewer.name), viewer.name)
@@ -251,5 +267,6 @@ async def _send_all(connection: ServerConnection, outbox: asyncio.Queue[str]) ->
     try:
         while True:
             await connection.send(await outbox.get())
+            outbox.task_done()
     except ConnectionClosed:
         return

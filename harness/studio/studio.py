@@ -5,20 +5,27 @@ from __future__ import annotations
 from harness.core.errors import SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 from harness.recording.run import StepRecord
 from harness.studio.document import Document
 from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions
 from harness.studio.language_help import complete, hover
 from harness.studio.messages import (
-    Message,
     failure_message,
     names_of,
     robot_message,
 )
-from harness.studio.proposals import holding, proposals
-from harness.studio.session import RefusedError
-from harness.studio.step_texts import object_spec
+from harness.studio.object_texts import (
+    AXES,
+    corner_of,
+    object_form,
+    object_spec,
+    pose_keys_of,
+    resized,
+)
+from harness.studio.proposals import proposals
+from harness.studio.session import Message, RefusedError
 
 
 class Studio(GoalActions):
@@ -82,13 +89,29 @@ class Studio(GoalActions):
         return {}
 
     def do_handle(self, message: Message) -> Message:
-        """Put a second handle on an object; an empty name takes it away."""
-        name = str(message["name"])
-        self.object_handle = name if name in self.cell.object_poses() else ""
-        if self.view is not None:
-            pose = self.cell.object_poses()[name] if self.object_handle else None
-            self.view.show_object_handle(self.object_handle, pose)
+        """Put handles on an object, to move and to resize it; an empty name takes them away."""
+        self.show_object_handle(str(message["name"]))
         return {}
+
+    def show_object_handle(self, name: str) -> None:
+        pose = self.cell.object_poses().get(name)
+        self.object_handle, self.dragged = name if pose is not None else "", {}
+        if self.view is None:
+            return
+        form = self._form(name)
+        self.view.put_handle("object", pose)
+        self.view.put_handle("size", None)
+        if pose is not None and form is not None:
+            corner = SE3(pose.rotation, pose.apply(corner_of(form)))
+            self.view.put_handle("size", corner, AXES[form["kind"]])
+
+    def _form(self, name: str) -> Message | None:
+        """The fields of an object that can be resized; None where it cannot."""
+        document = self.cell.document
+        if self.cell.steps_done or self.problems or name not in document.object_names():
+            return None
+        form = object_form(document.object_spec(name))
+        return form if form["kind"] else None
 
     def put_object(self, name: str, pose: SE3) -> None:
         """Move an object: at the start in the scenario, later in the live cell alone."""
@@ -97,16 +120,21 @@ class Studio(GoalActions):
             self.cell.move_object(name, pose)
             self.after_jump()
             return
-        spec = document.object_spec(name)
-        vector = pose.as_vector()
-        place = {"xyz": [round(float(value), 4) for value in vector[:3]]}
-        if abs(vector[3]) < 1 - 1e-6:
-            place["quat_wxyz"] = [round(float(value), 5) for value in vector[3:]]
+        self._replace_object({**document.object_spec(name), "pose": pose_keys_of(pose)})
+
+    def resize_object(self, name: str, corner: FloatArray) -> None:
+        """Drag the corner of an object of the scenario, before the first step."""
+        form, pose = self._form(name), self.cell.object_poses().get(name)
+        if form is not None and pose is not None:
+            spec = self.cell.document.object_spec(name)
+            self._replace_object(resized(spec, form, pose, corner))
+
+    def _replace_object(self, spec: Message) -> None:
         try:
-            self._take_text(document.with_object({**spec, "pose": place}).text)
+            self._take_text(self.cell.document.with_object(spec).text)
         except SpecError as error:
             self.say("failed", str(error))
-        self.do_handle({"name": name})
+        self.show_object_handle(str(spec["name"]))
 
     def do_camera(self, message: Message) -> Message:
         """Show what a camera of the scenario sees, until another is chosen, or none."""
@@ -122,7 +150,6 @@ class Studio(GoalActions):
         """Take the editor's text; its mistakes are returned with their places."""
         text = str(message["text"])
         if self.take_text(text):
-            self.verdicts.forget()
             self.show_cell()
             self.session.broadcast(robot_message(self.cell))
         if text != self.saved:
@@ -164,8 +191,9 @@ class Studio(GoalActions):
             else:
                 cell.go_to(count)
 
+        if until != "next":
+            self.forget_verdicts()
         self.working("running", action)
-        self.verdicts.begin(cell, is_last=True)
         failed = next((r for r in cell.execution.records if r.status == "failed"), None)
         return {} if failed is None else failure_message(failed)
 
@@ -195,7 +223,7 @@ class Studio(GoalActions):
             raise RefusedError("execute a step first: an expectation is about a step")
         if self.cell.is_by_hand:
             raise RefusedError("the cell was moved by hand since the last step: record that first")
-        found = holding(self.cell, proposals(self.cell))
+        found = proposals(self.cell)
         return {"proposals": [{"text": each.text, "why": each.why} for each in found]}
 
     def do_expect(self, message: Message) -> Message:
@@ -220,7 +248,7 @@ class Studio(GoalActions):
         path = self.files.save(str(message.get("name") or self.files.path.name), self.text)
         self.saved = self.text
         self.session.broadcast(self.document_message())
-        return {"file": path.name, "digest": self.verdicts.digest_of(self.text)}
+        return {"file": path.name, "digest": self.verdicts.message["digest"]}
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:
@@ -231,10 +259,9 @@ class Studio(GoalActions):
         document = Document(text, str(self.files.path))
         self.files.refuse_outside(document)
         is_new = self.cell.load(document)
-        self.text, self.problems = text, []
+        self._set_text(text)
         self.keep_unsaved(text)
         if is_new:
-            self.verdicts.forget()
             self.show_cell()
         self.session.broadcast(robot_message(self.cell))
         self.session.broadcast(self.document_message())

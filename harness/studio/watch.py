@@ -17,10 +17,10 @@ from harness.core.printable import printable
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.live_stream import LiveCase, LiveFrame
 from harness.studio.guard import LOOPBACK, Guard
-from harness.studio.messages import Message, step_message, verdict_message
 from harness.studio.scene_view import SceneView
 from harness.studio.server import page_assets, start_server
-from harness.studio.session import FRAME, RefusedError, Session
+from harness.studio.session import FRAME, Message, RefusedError, Session
+from harness.studio.verdict_messages import NO_VERDICTS, verdicts_message
 
 MOST_CASES = 40
 """Cases that can be chosen on the page: those that run, and the last that have ended."""
@@ -100,7 +100,6 @@ class Watch:
         self._has_ended = True
         self._session.post(lambda: self._session.broadcast(self._state()))
         self._session.stop()
-        time.sleep(0.1)  # the last message leaves
         self._listener.close()
         if self._server is not None:
             with contextlib.redirect_stdout(None):  # viser says that it stops
@@ -171,11 +170,10 @@ class Watch:
                 self._session.broadcast(_verdicts(shown.result))
 
     def _show(self, shown: WatchedCase) -> None:
-        view, before = self._view, self._shown
+        view = self._view
         assert view is not None
-        if shown is not before:
-            if before is None or before.case.description != shown.case.description:
-                view.show_cell(shown.case.robot())
+        if shown is not self._shown:
+            view.show_robot(shown.case.robot())
             view.show_objects(shown.case.objects)
             self._shown, self._drawn = shown, None
         if shown.frame is not None and shown.frame is not self._drawn:
@@ -214,11 +212,6 @@ class Watch:
 def _verdicts(result: CaseResult | None) -> Message:
     """The steps and verdicts of a case that was judged; nothing while it runs."""
     if result is None:
-        return {"type": "verdicts", "outcome": "", "digest": "", "steps": [], "verdicts": []}
-    return {
-        "type": "verdicts",
-        "outcome": result.outcome,
-        "digest": result.digest,
-        "steps": [step_message(step) for step in result.steps],
-        "verdicts": [verdict_message(verdict, is_open=False) for verdict in result.verdicts],
-    }
+        return NO_VERDICTS
+    decided = ((verdict, True) for verdict in result.verdicts)
+    return verdicts_message(result.outcome, result.digest, result.steps, decided)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.assertions.collision import colliding
 from harness.core.geometry import Box
 from harness.expectations.collision import Collision
 from harness.expectations.eventually import Eventually
@@ -13,12 +14,14 @@ from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import (
     BOX,
+    ROBOT,
     TABLE,
     attachment,
     changed,
     force,
     lift_run,
     make_run,
+    pressed,
     step,
     thing,
     verdict,
@@ -341,3 +344,167 @@ EVIDENCE = Evidence(
         Free("contacts decide; how near it came is shown", "collision 3", "clearances", "+-"),
     ),
 )
+
+
+def test_the_hand_may_grip_hard_only_as_far_as_its_motor_explains():
+    """The motor presses with 2 N: fingers and weight explain 2 (2 + 0.98) + 1 = 6.96 N."""
+    for value, expected in ((6.9, False), (7.0, True)):
+        run = lift_run(value=value)
+        efforts = np.zeros((200, 2))
+        efforts[:, 1] = 4.0
+        run = changed(run, joint_efforts=efforts)
+        assert collides(run) is expected
+        reason = verdict(run, NEVER).reason
+        assert ("7.000 N over 50 ms, where weight and grip explain 6.960 N" in reason) is expected
+
+
+def test_names_of_allowed_pairs_and_their_words_count_in_either_order():
+    for allowed, expected in (
+        (("arm_link", "wall"), False),
+        (("wall", "arm_link"), False),
+        (("wall", "robot"), False),
+        (("any", "wall"), False),
+        (("gripper", "wall"), True),
+        (("arm_link", "Table"), True),
+        (("box", "wall"), True),
+    ):
+        base = make_run(objects=(TABLE, BOX, WALL), allowed_contacts=(allowed,))
+        assert collides(touching("arm_link", "wall", (30, 41), run=base)) is expected, allowed
+
+
+def test_a_fixed_link_that_hits_what_moves_and_a_moving_one_that_hits_a_table_collide():
+    assert collides(touching("base_link", "box", (30, 41)))
+    assert collides(touching("arm_link", "Table", (30, 41)))
+
+
+def carried(*spans, **changes):
+    """A box that is held from 0.5 to 1.5 s and touches a shelf below it at some spans."""
+    shelf = thing("shelf", Box((0.5, 0.5, 0.02)), static=True)
+    run = lift_run(grip=(50, 150), objects=(TABLE, BOX, shelf), **changes)
+    forces = {**run.signals.contact_forces, ("box", "shelf"): force(200, *spans, value=1.0)}
+    poses = {**run.signals.object_poses, "shelf": shelf_poses(-0.02)}
+    return changed(run, contact_forces=forces, object_poses=poses)
+
+
+def shelf_poses(z):
+    poses = np.zeros((200, 7))
+    poses[:, 2], poses[:, 3] = z, 1.0
+    return poses
+
+
+@pytest.mark.parametrize(
+    ("spans", "expected"),
+    [
+        (((40, 45),), False),  # before it is held
+        (((40, 60),), False),  # it was there when it was gripped
+        (((50, 55),), False),
+        (((51, 55),), True),
+        (((150, 190),), False),  # after it was released
+        (((149, 190),), False),  # put down: it stays where it is
+        (((148, 151),), True),  # it touched on its way: the hold lasts to sample 150
+        (((148, 152),), False),
+        (((40, 48), (55, 60)), False),  # a short gap ends no contact
+        (((30, 40), (55, 60)), True),
+    ],
+)
+def test_what_the_hand_holds_may_leave_and_be_put_down_but_hits_nothing_on_its_way(spans, expected):
+    assert collides(carried(*spans)) is expected
+
+
+def test_the_put_down_needs_something_below():
+    run = carried((145, 180))
+    assert not collides(run)
+    above = changed(run, object_poses={**run.signals.object_poses, "shelf": shelf_poses(0.5)})
+    assert collides(above)
+
+
+def test_what_is_held_may_press_as_much_as_its_weight_explains():
+    """2 * 0.98 + 1 = 2.96 N; while the gripper moves the grip of 2 N counts too."""
+    efforts = np.zeros((200, 2))
+    efforts[:, 1] = 4.0
+    for value, steps, expected in (
+        (2.9, (), False),
+        (3.0, (), True),
+        (6.9, (step("open", 85, 200, "gripper"),), False),
+        (7.0, (step("open", 85, 200, "gripper"),), True),
+    ):
+        run = carried((145, 180), steps=(step("close", 39, 80, "gripper"), *steps))
+        forces = dict(run.signals.contact_forces)
+        forces["box", "shelf"] = force(200, (145, 180), value=value)
+        assert collides(changed(run, contact_forces=forces, joint_efforts=efforts)) is expected
+
+
+def test_what_is_held_may_not_be_dragged_along_what_it_left():
+    for distance, expected in ((0.0199, False), (0.0201, True)):
+        run = carried((40, 100))
+        poses = run.signals.object_poses["box"].copy()
+        poses[80:, 0] = distance
+        tcp = run.signals.tcp_pose.copy()
+        tcp[80:, 0] = distance
+        moved = {**run.signals.object_poses, "box": poses}
+        run = changed(run, object_poses=moved, tcp_pose=tcp)
+        assert collides(run) is expected
+        assert ("dragged along it by 20.1 mm" in verdict(run, NEVER).reason) is expected
+
+
+def test_two_objects_that_no_hand_holds_never_collide():
+    assert not collides(touching("box", "wall", (30, 41)))
+    bare = replace(ROBOT, gripper=None)
+    assert not collides(touching("box", "wall", (30, 41), robot=bare))
+
+
+def excused(grip, *steps, left=None, **changes):
+    """Samples at which the left finger touches the box without a collision."""
+    run = lift_run(grip=grip, steps=steps, **changes)
+    forces = dict(run.signals.contact_forces)
+    if left is not None:
+        spans = left if isinstance(left[0], tuple) else (left,)
+        forces["left_finger", "box"] = force(200, *spans, value=2.0)
+        presses = dict(run.signals.presses)
+        presses["left_finger", "box"] = pressed(
+            forces["left_finger", "box"], (0, -0.02, 0), (0, 1, 0)
+        )
+        run = changed(run, contact_forces=forces, presses=presses)
+    guilty = colliding(run, ("left_finger", "box"))
+    return np.flatnonzero((forces["left_finger", "box"] > 0) & ~guilty).tolist()
+
+
+def test_a_grip_begins_in_a_step_that_moves_the_gripper_and_in_or_next_to_which_it_holds():
+    go, still = step("go", 0, 40), step("stay", 60, 200, "wait")
+    grip = step("close", 40, 50, "gripper")
+    assert excused((50, 100), go, grip, still, left=(45, 100)) == list(range(45, 100))
+    assert excused((51, 100), go, grip, still, left=(45, 100)) == []
+    assert excused((0, 30), step("close", 0, 5, "gripper")) == list(range(30))
+    # held to sample 59: to one before the step that moves the gripper, or to two before it
+    for start, expected in ((60, range(60, 80)), (61, ())):
+        steps = (step("go", 0, start), step("open", start, 80, "gripper"), step("on", 80, 200))
+        assert excused((50, 59), *steps, left=(50, 100)) == list(expected)
+
+
+def test_a_grip_within_its_limits_is_no_reason_for_another_collision():
+    knocked = touching("left_finger", "box", (20, 25), (50, 200), run=lift_run())
+    assert "explain" not in verdict(knocked, NEVER).reason
+
+
+def test_a_grip_ends_with_its_contact_and_lasts_while_every_side_touches():
+    steps = (step("go", 0, 40), step("close", 40, 60, "gripper"), step("on", 60, 200))
+    record = attachment("box", 60, 200)
+    again = ((50, 100), (120, 130))
+    held = excused((50, 100), *steps, left=again, attachments=(record,))
+    assert held == list(range(50, 100)), "what was let go is struck, and not gripped"
+    faint = lift_run(steps=steps)
+    for value, expected in ((0.001, range(50, 200)), (0.0009, range(50, 121))):
+        forces = dict(faint.signals.contact_forces)
+        forces["right_finger", "box"] = np.where(
+            np.arange(200) < 120, forces["right_finger", "box"], value
+        )
+        guilty = colliding(changed(faint, contact_forces=forces), ("left_finger", "box"))
+        assert np.flatnonzero(~guilty[50:]).tolist() == [each - 50 for each in expected]
+
+
+def test_a_gap_of_a_hold_is_no_moment_at_which_it_was_gripped():
+    """The fingers lose the box for four samples, in which it hits the shelf."""
+    run = carried((92, 100))
+    for side in ("left", "right"):
+        run.signals.contact_forces[f"{side}_finger", "box"][90:95] = 0.0
+    assert collides(run)

@@ -6,16 +6,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.assertions.temporal import (
+    TIME_RESOLUTION,
+    Decision,
     TooShort,
     always,
     at_end,
+    bridged,
     episodes,
     eventually,
+    later,
     longest_hold,
     never,
     range_min,
     trailing_max,
     until,
+    with_future,
 )
 
 EPS = 1e-9
@@ -164,3 +169,66 @@ def test_an_until_that_does_not_hold_before_is_decided_by_the_first():
     decision, is_second = until(first, second, times, None, None)
     assert (is_second, decision.holds) == (False, False)
     assert (decision.value, decision.index) == (-0.3, 1)
+
+
+def test_among_equal_margins_the_first_sample_is_shown_or_the_one_that_came_furthest():
+    times, values = np.arange(5) * 0.1, np.array([-2.0, -1.0, -2.0, -1.0, -1.0])
+    assert eventually(values, times).index == 1
+    assert always(values, times).index == 0
+    progress = np.array([9.0, np.nan, 9.0, 1.0, 2.0])
+    assert eventually(values, times, progress=progress).index == 4
+    assert never(values, times, progress=progress).index == 4
+    assert eventually(values, times, within=0.3, progress=progress).index == 3
+    assert eventually(values, times, progress=np.array([1.0, 5, 9, 5, 4])).index == 1
+    lone = np.array([-2.0, -1.0, -2.0, -2.0, -2.0])
+    assert eventually(lone, times, progress=np.array([9.0, 1.0, 9, 9, 9])).index == 1
+
+
+def test_among_equal_spans_the_one_with_most_samples_that_hold_is_shown():
+    values = np.array([-1.0, -1.0, 0.0, -1.0, 2.0, 3.0])
+    decision = eventually(values[:4], np.arange(4) * 0.1, hold=0.1)
+    assert (decision.value, decision.index) == (-1.0, 1)
+    decision = eventually(values, np.arange(6) * 0.1, hold=0.2)
+    assert (decision.value, decision.index) == (-1.0, 3)
+
+
+def test_at_the_end_with_a_deadline_shows_the_smaller_of_the_two_margins():
+    times = np.arange(3) * 0.1
+    assert at_end(np.array([0.5, 1.0, 1.0]), times, within=0.0).index == 0
+    assert at_end(np.array([1.0, 2.0, 1.0]), times, within=0.0).index == 2
+    assert at_end(np.array([-1.0, 1.0, 0.0]), times, within=0.1).index == 2
+
+
+def test_only_gaps_shorter_than_a_tenth_of_a_second_are_bridged():
+    times = np.array([0.0, 0.1, 0.15, 0.2499, 0.3])
+    assert bridged(times, [(0, 1), (1, 2)]) == [(0, 1), (1, 2)]
+    assert bridged(times, [(1, 2), (2, 3), (3, 5)]) == [(1, 5)]
+    assert bridged(times, []) == []
+
+
+def test_the_longest_hold_from_the_first_sample_counts_only_what_begins_there():
+    times, values = np.arange(6) * 0.1, np.array([0.0, 1, -1, 0, 1, 1])
+    assert longest_hold(values, times) == pytest.approx(0.2)
+    assert longest_hold(values, times, is_first=True) == pytest.approx(0.1)
+    assert longest_hold(-1 - values, times) == longest_hold(values[2:], times, is_first=True) == 0
+
+
+def test_a_window_that_was_cut_short_has_a_next_sample_and_one_after_any_span():
+    times, values = np.array([0.0, 1.5]), np.array([0.25, 0.5])
+    future = later(times)
+    assert future[:2].tolist() == times.tolist()
+    assert TIME_RESOLUTION < future[2] - 1.5 < 10 * TIME_RESOLUTION
+    assert future[3] - 1.5 >= 1e8
+    assert with_future(values, -1.0).tolist() == [0.25, 0.5, -1.0, -1.0]
+
+
+def test_an_until_in_which_both_decide_is_decided_by_the_second():
+    times = np.arange(3) * 0.1
+    decision, is_second = until(np.full(3, 0.5), np.array([-1, -1, 0.5]), times)
+    assert (decision, is_second) == (Decision(0.5, 2, holds=True), True)
+    decision, is_second = until(np.array([0.5, 0.0, 9]), np.array([-1, -1, 0.5]), times)
+    assert (decision, is_second) == (Decision(0.0, 1, holds=True), False)
+    decision, is_second = until(np.full(3, -1.0), np.array([0.0, 1.0, 2.0]), times)
+    assert (decision, is_second) == (Decision(0.0, 0, holds=True), True), "nothing is before it"
+    decision, _ = until(np.ones(3), np.array([-1, -0.5, 3.0]), times, within=0.1)
+    assert (decision.value, decision.index) == (-0.5, 1)

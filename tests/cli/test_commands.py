@@ -198,7 +198,7 @@ def test_new_writes_a_file_and_never_over_another(folder, capsys):
     assert "harness run sub/first.scenario.yaml" in capsys.readouterr().out
     (folder / "mine.scenario.yaml").write_text("mine")
     assert main(["new", "mine.scenario.yaml"]) == 2
-    assert "is there already" in capsys.readouterr().err
+    assert "exists already" in capsys.readouterr().err
     assert (folder / "mine.scenario.yaml").read_text() == "mine"
     assert "\nsteps:\n" in written
 

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.recording.compare import compare
+from harness.recording.compare import MOST, compare, line_changes
 from harness.recording.run import Verdict
-from harness.recording.scenario_lines import MOST, line_changes
 from harness.recording.store import StoredRun
 from harness.reporting.comparison import comparison_lines
 from tests.assertions.synthetic_run import ROBOT, make_run
@@ -69,7 +68,7 @@ def test_another_speed_reports_step_signal_durations_and_margins(runs, capsys):
 
 def test_a_folder_without_a_run_is_wrong_usage(runs, tmp_path, capsys):
     assert main(["compare", str(runs / "one"), str(tmp_path)]) == 2
-    assert "is no run's folder" in capsys.readouterr().err
+    assert "is not the folder of a run" in capsys.readouterr().err
 
 
 def test_another_version_of_the_file_is_reported_by_its_lines_and_its_steps(tmp_path, capsys):

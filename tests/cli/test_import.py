@@ -94,7 +94,7 @@ def test_nothing_is_overwritten_unless_requested(tmp_path, capsys):
     source.write_text(MESHED)
     (tmp_path / "part_0.stl").write_text("mine")
     assert main(["import", "scene", str(source)]) == 2
-    assert "part_0.stl' is there already; nothing was written" in capsys.readouterr().err
+    assert "part_0.stl' exists already; nothing was written" in capsys.readouterr().err
     assert not (tmp_path / "a.yaml").exists()
     assert (tmp_path / "part_0.stl").read_text() == "mine"
     assert main(["import", "scene", str(source), "--force"]) == 0

@@ -145,7 +145,7 @@ def test_nothing_is_overwritten_unless_requested(folder, capsys):
     assert main(words) == 0
     (folder / "three/robot.yaml").write_text("mine")
     assert main(words) == 2
-    assert "is there already" in capsys.readouterr().err
+    assert "exists already" in capsys.readouterr().err
     assert (folder / "three/robot.yaml").read_text() == "mine"
     assert main([*words, "--force"]) == 0
     assert imported(folder).gripper is not None

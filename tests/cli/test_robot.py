@@ -260,7 +260,7 @@ def test_a_picture_is_drawn_on_request(folder, capsys):
         (["check", "harm.urdf"], "there is no file harm.urdf; did you mean 'arm.urdf'?"),
         (["check", "arm.urdf", "--srdf", "a.srdf"], "robot.srdf: there is no file a.srdf"),
         (["check", "ur3e", "--srdf", "arm.srdf"], "robot.srdf: it requires a robot's file"),
-        (["check", "arm.urdf", "--write-srdf", "arm.srdf"], "'arm.srdf' is there already; --force"),
+        (["check", "arm.urdf", "--write-srdf", "arm.srdf"], "'arm.srdf' exists already; nothing"),
         (["check", "arm.urdf", "--image", "arm.gif"], "in .png or .jpg or .jpeg, not 'arm.gif'"),
         (["show", "arm.urdf", "--state", "hom"], "there is no state 'hom'; there are no states"),
         (["show", "arm.urdf", "--srdf", "arm.srdf", "--state", "hom"], "did you mean `home`?"),

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.code_mutation.mutants import draw
-from tests.code_mutation.workshop import ROOT, Workshop
+from tests.code_mutation.mutants import Mutant, draw
+from tests.code_mutation.workshop import ROOT, Workshop, WorkshopError
 
 pytestmark = pytest.mark.code_mutation
 
@@ -35,6 +35,34 @@ def test_mutants_are_drawn_where_code_is_executed():
         assert before != after
 
 
+def test_only_tests_that_ran_can_notice_a_mutant(tmp_path):
+    """A mutant is noticed by a failed test, a timeout or an import; other ends are errors."""
+    root = tmp_path / "project"
+    (root / "halves").mkdir(parents=True)
+    (root / "tests").mkdir()
+    (root / "halves/half.py").write_text("def half(x):\n    return x / 2\n", encoding="utf-8")
+    (root / "tests/test_half.py").write_text(
+        "from halves.half import half\nTWO = half(4)\n\n\ndef test_half():\n    assert TWO == 2\n",
+        encoding="utf-8",
+    )
+    workshop = Workshop(tmp_path / "copy", root, ("halves", "tests"))
+
+    def outcome(body, test="tests/test_half.py::test_half"):
+        workshop.executed = {"halves/half.py": {2: [f"{test}|run"]}}
+        mutant = Mutant("halves/half.py", 2, "", f"def half(x):\n    {body}\n")
+        return workshop.outcome(mutant, limit=5)
+
+    assert outcome("return x * 0.5") == "survived"
+    assert outcome("return x / 3") == "failed"
+    assert outcome("raise ValueError(x)") == "not importable"
+    assert outcome("return half") == "failed"
+    assert outcome("return unclosed(") == "not importable"
+    assert outcome("while True: pass") == "timed out"
+    with pytest.raises(WorkshopError, match="returned 4"):
+        outcome("return x / 3", "tests/test_half.py::test_renamed")
+    assert (tmp_path / "copy/halves/half.py").read_text(encoding="utf-8").endswith("x / 2\n")
+
+
 def test_nearly_all_mutants_are_noticed(tmp_path, capsys):
     workshop = Workshop(tmp_path)
     workshop.record()
@@ -44,12 +72,12 @@ def test_nearly_all_mutants_are_noticed(tmp_path, capsys):
         if (mutant.module, before, after) in equivalent:
             continue
         tried += 1
-        survived = workshop.survives(mutant)
+        outcome = workshop.outcome(mutant)
         with capsys.disabled():
-            word = "SURVIVED" if survived else "noticed "
-            sys.stdout.write(f"{word} {mutant.module}:{mutant.line} {before!r} -> {after!r}\n")
+            place = f"{mutant.module}:{mutant.line}"
+            sys.stdout.write(f"{outcome:14} {place} {before!r} -> {after!r}\n")
             sys.stdout.flush()
-        if survived:
+        if outcome == "survived":
             survivors.append(mutant)
     with capsys.disabled():
         sys.stdout.write(f"{tried - len(survivors)} of {tried} mutants noticed (seed {SEED})\n")

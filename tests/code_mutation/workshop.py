@@ -6,11 +6,14 @@ import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
+
+import pytest
 
 from tests.code_mutation.mutants import Mutant
 
@@ -37,21 +40,33 @@ TESTS = (
     "tests/planning/test_efforts.py",
     "tests/planning/test_verification.py",
     "tests/planning/test_path_constraints.py",
+    "tests/planning/test_held_constraints.py",
+    "tests/planning/test_verified_numbers.py",
     "tests/planning/test_linear_motion.py",
     "tests/robot/test_mimic_couplings.py",
     "tests/system/test_findings.py",
 )
 # Tests that execute a line are run, shortest first, until they add up to this [s].
 LONGEST = 150.0
+# Any other return code of pytest says that the tests did not run.
+OUTCOMES = {
+    int(pytest.ExitCode.OK): "survived",
+    int(pytest.ExitCode.TESTS_FAILED): "failed",
+    -signal.SIGXCPU: "timed out",
+}
+
+
+class WorkshopError(Exception):
+    """The tests did not run, so that nothing is known about the mutant."""
 
 
 class Workshop:
     """A copy of the project with the record of which test executes which line."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, root: Path = ROOT, copied: tuple[str, ...] = COPIED) -> None:
         self.folder = folder
-        for name in COPIED:
-            source = ROOT / name
+        for name in copied:
+            source = root / name
             if source.is_dir():
                 shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
             else:
@@ -92,25 +107,48 @@ class Workshop:
             chosen.append(name)
         return chosen
 
-    def survives(self, mutant: Mutant) -> bool:
-        """Whether every test that executes the mutated line passes with the mutant."""
+    def outcome(self, mutant: Mutant, limit: float = 3 * LONGEST) -> str:
+        """What the tests that execute the mutated line make of the mutant.
+
+        Returns:
+            `survived`, `failed`, `timed out` (beyond `limit` [s] of processor time), or
+            `not importable` where the mutated module or a module of tests raises at its import.
+
+        Raises:
+            WorkshopError: The tests did not run to a result.
+        """
         tests = self.tests_of(mutant.module, mutant.line)
         if not tests:
-            return True
+            return "survived"
         path = self.folder / mutant.module
         original = path.read_text(encoding="utf-8")
         (self.folder / "chosen.txt").write_text("\n".join(tests), encoding="utf-8")
         path.write_text(mutant.source, encoding="utf-8")
         try:
-            return self._pytest("-x", "@chosen.txt", limit=3 * LONGEST).returncode == 0
+            done = self._pytest("-x", "@chosen.txt", limit=limit)
+            if done.returncode in OUTCOMES:
+                return OUTCOMES[done.returncode]
+            if not self._imports(mutant.module, tests):
+                return "not importable"
         finally:
             path.write_text(original, encoding="utf-8")
+        raise WorkshopError(f"pytest returned {done.returncode}:\n{done.stdout}{done.stderr}")
+
+    def _imports(self, module: str, tests: list[str]) -> bool:
+        """Whether a module can be imported, and the modules of tests too."""
+        name = module.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
+        if self._python("-c", f"import {name}").returncode:
+            return False
+        files = sorted({test.partition("::")[0] for test in tests})
+        return self._pytest("--collect-only", *files).returncode != pytest.ExitCode.INTERRUPTED
 
     def _pytest(self, *options: str, limit: float | None = None) -> subprocess.CompletedProcess:
         """Run tests; beyond a limit of processor time [s], which no load prolongs, they fail."""
-        command = [sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider", *options]
+        return self._python("-m", "pytest", "-q", "-p", "no:cacheprovider", *options, limit=limit)
+
+    def _python(self, *options: str, limit: float | None = None) -> subprocess.CompletedProcess:
         return subprocess.run(
-            command,
+            [sys.executable, "-B", *options],
             cwd=self.folder,
             env={**os.environ, "PYTHONPATH": str(self.folder)},
             capture_output=True,
@@ -121,7 +159,8 @@ class Workshop:
 
 
 def _limit_processor_time(seconds: int) -> None:
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    # Beyond the first limit SIGXCPU ends the process, which no other end is mistaken for.
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 10))
 
 
 def contexts(names: list[str]) -> set[str]:

@@ -1,13 +1,17 @@
 """What the digest sees, and what it must not see."""
 
+import hashlib
+import struct
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from harness.assertions.judge import judge
+from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
-from tests.assertions.synthetic_run import lift_run
+from harness.recording.run import Verdict
+from tests.assertions.synthetic_run import lift_run, make_run, step
 from tests.recording.test_store import EXPECTED, full_run
 
 RUN = full_run()
@@ -86,9 +90,42 @@ def test_what_a_verdict_says_enters(change):
 
 def test_commanded_trajectories_enter():
     first, *others = RUN.steps
-    positions = first.trajectory["positions"] + 1e-12
-    other = replace(first, trajectory={**first.trajectory, "positions": positions})
+    moved = replace(first.trajectory, positions=first.trajectory.positions + 1e-12)
+    other = replace(first, trajectory=moved)
     assert digest(replace(RUN, steps=(other, *others)), VERDICTS) != BASE
-    renamed = replace(first, trajectory={**first.trajectory, "joint_names": ["elbow"]})
+    renamed = replace(first, trajectory=replace(first.trajectory, joint_names=("elbow",)))
     assert digest(replace(RUN, steps=(renamed, *others)), VERDICTS) != BASE
     assert digest(lift_run(), ()) != digest(lift_run(height=0.09), ())
+
+
+def test_the_bytes_of_a_small_run_are_those_of_the_definition():
+    """Each chunk after its length: names, dtype with shape, and little-endian numbers."""
+    trajectory = {"joint_names": ["one", "two"], "times": [0, 1.5], "planner": "x", "count": 3}
+    verdict = Verdict("e", "passed", 0.25, "m", 1.0)
+    run = make_run(
+        0, objects=(), steps=(step("go", 0, 1, trajectory=trajectory), step("wait", 0, 1))
+    )
+    hasher = hashlib.sha256(b"armharness-digest/1")
+
+    def put(*chunks):
+        for chunk in chunks:
+            hasher.update(len(chunk).to_bytes(8, "little") + chunk)
+
+    def put_floats(*values, shape):
+        put(f"<f8{shape}".encode(), struct.pack(f"<{len(values)}d", *values))
+
+    put(b"trajectory", b"count")
+    put_floats(3.0, shape="()")
+    put(b"joint_names", b"one", b"two", b"planner", b"x", b"times")
+    put_floats(0.0, 1.5, shape="(2,)")
+    for name, array in sorted(arrays_of(run.signals).items()):
+        assert array.size == 0, name
+        put(
+            name.encode(),
+            f"{'<f8' if array.dtype.kind == 'f' else '<i8'}{array.shape}".encode(),
+            b"",
+        )
+    put_floats(run.signals.clearance_cutoff, shape="(1,)")
+    put(b"verdict", b"passed", b"m")
+    put_floats(0.25, 1.0, shape="(2,)")
+    assert digest(run, [verdict]) == hasher.hexdigest()

@@ -192,12 +192,12 @@ def test_planned_trajectories_are_those_of_the_steps(messages, stored):
         planned, messages["/planned_trajectory"], messages["/display_planned_path"], strict=True
     ):
         assert time == pytest.approx(step.start_time)
-        assert message.joint_names == list(step.trajectory["joint_names"])
+        assert message.joint_names == list(step.trajectory.joint_names)
         rows = np.array([point.positions for point in message.points])
-        assert np.array_equal(rows, step.trajectory["positions"])
+        assert np.array_equal(rows, step.trajectory.positions)
         last = message.points[-1].time_from_start
         seconds = last.sec + last.nanosec * 1e-9
-        assert seconds == pytest.approx(step.trajectory["times"][-1], abs=1e-8)
+        assert seconds == pytest.approx(step.trajectory.times[-1], abs=1e-8)
         [trajectory] = shown.trajectory
         assert len(trajectory.joint_trajectory.points) == len(rows)
         start = dict(
@@ -388,8 +388,8 @@ def test_frames_are_published_raw_too_when_requested(folder, tmp_path):
     ("words", "said"),
     [
         (["{run}"], "nothing to export: say --bag DIR, --urdf FILE, or both"),
-        (["{run}/nowhere", "--bag", "{tmp}/bag"], "is no run's folder: it has no run.json"),
-        (["{run}", "--bag", "{run}/bag"], "is there already; nothing was written (--force"),
+        (["{run}/nowhere", "--bag", "{tmp}/bag"], "is not the folder of a run: it has no run.json"),
+        (["{run}", "--bag", "{run}/bag"], "exists already; nothing was written (--force"),
         (["{run}", "--bag", "{run}", "--force"], "is a folder and no bag; it is not replaced"),
         (["{run}", "--bag", "/proc/nowhere/bag"], "cannot write '/proc/nowhere'"),
     ],

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import coal
 import numpy as np
@@ -19,7 +20,12 @@ from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
 from harness.robot.decomposition.parts_cache import stored_decomposition
 from harness.robot.decomposition.solid_grid import surface_points
 from harness.robot.load import load_robot
-from harness.robot.mesh_file import decomposition_of, exact_surface, hull_points
+from harness.robot.mesh_file import (
+    decomposition_of,
+    exact_surface,
+    hull_points,
+    read_triangles,
+)
 from harness.robot_tools.robot_check import check_robot
 from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
@@ -55,14 +61,25 @@ def is_in(parts, points):
     return inside
 
 
-@pytest.mark.parametrize(
-    "mesh",
-    [vessel(**BIN), vessel(**CUP), broken(*vessel(**BIN)), open_sheet(*vessel(**BIN))],
-    ids=["bin", "cup", "broken", "open"],
-)
-def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(mesh, tmp_path):
-    vertices, faces = mesh
-    found = decompose(vertices[faces])
+VESSELS = {
+    "bin": vessel(**BIN),
+    "six sides": vessel(**BIN | {"sides": 6, "inner": 0.094}),
+    "cup": vessel(**CUP),
+    "broken": broken(*vessel(**BIN | {"sides": 3})),
+    "open": open_sheet(*vessel(**BIN)),
+}
+
+
+@cache
+def decomposed(name):
+    vertices, faces = VESSELS[name]
+    return decompose(vertices[faces])
+
+
+@pytest.mark.parametrize("name", VESSELS)
+def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(name, tmp_path):
+    vertices, faces = VESSELS[name]
+    found = decomposed(name)
     assert 1 < len(found.parts) <= MOST_PARTS
     assert found.excess < 0.01 < found.hull_excess
     assert is_in(found.parts, surface_points(vertices[faces], 0.004)).all()
@@ -78,8 +95,7 @@ def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(mes
 
 
 def test_a_bin_is_its_floor_and_its_walls():
-    vertices, faces = vessel(**BIN)
-    found = decompose(vertices[faces])
+    found = decomposed("bin")
     assert len(found.parts) == 5
     assert found.is_closed
 
@@ -90,7 +106,7 @@ def test_a_convex_mesh_is_one_part_without_error():
 
 
 def test_another_process_finds_the_same_parts(tmp_path):
-    path = write_obj(tmp_path / "bin.obj", *vessel(**BIN))
+    path = write_obj(tmp_path / "bin.obj", *vessel(**BIN | {"sides": 3}))
     here = decomposition_of(Mesh(path))
     code = (
         "import sys, pathlib; from harness.core.geometry import Mesh;"
@@ -105,6 +121,24 @@ def test_another_process_finds_the_same_parts(tmp_path):
         check=True,
     )
     assert there.stdout == b"".join(part.tobytes() for part in here.parts)
+
+
+def test_thin_triangles_have_no_more_points_than_their_length_needs():
+    needle = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1e-4, 0.0]]])
+    points = surface_points(needle, 0.001)
+    assert len(points) < 1100
+    assert np.diff(np.sort(points[:, 0])).max() < 0.0011
+    assert {tuple(corner) for corner in needle[0]} <= {tuple(point) for point in points}
+
+
+def test_a_mesh_whose_parts_are_stored_is_not_read_again(tmp_path):
+    path = write_obj(tmp_path / "bin.obj", *vessel(**BIN))
+    shapes = collision_shapes([Shape(Mesh(path))])
+    other = write_obj(tmp_path / "copy.obj", *vessel(**BIN))
+    before = read_triangles.cache_info().misses
+    assert len(collision_shapes([Shape(Mesh(other))])) == len(shapes)
+    hull_points(Mesh(other))
+    assert read_triangles.cache_info().misses == before
 
 
 def box_triangles():

@@ -3,12 +3,19 @@
 import io
 import json
 import signal
-import subprocess
 import sys
+import time
+from threading import Event, Thread
 
+import numpy as np
 import pytest
 
+import harness.ros.remote
 from harness.cli.main import main
+from harness.ros.action_server import ActionServer
+from harness.ros.domain import free_domain
+from harness.ros.interfaces import FOLLOW, message, stamp
+from harness.ros.rtps.graph import RtpsGraph
 from tests.ros.bridging import bridge, scenario
 
 STEPS = """- ptp: {joints: {joint1: 0.2, joint2: 0.1}}
@@ -65,21 +72,59 @@ def test_nothing_moves_before_the_user_agrees(tmp_path, plan, capsys, monkeypatc
 
 
 def test_ctrl_c_stops_the_robot(tmp_path, plan):
-    command = [*(sys.executable, "-m", "harness.cli", "run", str(plan), "--robot", "ros2")]
-    slowly = ["--yes", "--no-report", "--velocity-scaling", "0.01"]
     with bridge(scenario(tmp_path, HOLD)) as (node, results):
         states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
         node.ready()
-        domain = ["--domain", str(node.graph.participant.domain)]
-        process = subprocess.Popen([*command, *slowly, *domain], stdout=subprocess.DEVNULL)
-        node.wait(lambda: states and states[-1].position[0] > 0.005, 60)
-        process.send_signal(signal.SIGINT)
-        assert process.wait(30) == 130
+
+        def press_ctrl_c():
+            node.wait(lambda: states and states[-1].position[0] > 0.005, 60)
+            signal.raise_signal(signal.SIGINT)
+
+        person = Thread(target=press_ctrl_c)
+        person.start()
+        slowly = ["--yes", "--no-report", "--velocity-scaling", "0.01"]
+        assert remote(plan, node, *slowly) == 130
+        person.join(60)
         node.sleep(0.2)
         stopped = states[-1].position[0]
         node.sleep(0.3)
         assert states[-1].position[0] == pytest.approx(stopped, abs=1e-4)
     assert results[0].commands == 2
+
+
+def test_a_robot_that_falls_silent_ends_the_run(plan, capsys, monkeypatch):
+    monkeypatch.setattr(harness.ros.remote, "SILENCE", 0.3)
+    with free_domain() as domain:
+        driver, goals, is_over = RtpsGraph(domain, node="driver"), [], Event()
+        states = driver.advertise("/joint_states", "sensor_msgs/msg/JointState")
+        joints = ["joint1", "joint2", "joint3", "joint4", "gripper_left_joint"]
+        still = message("sensor_msgs/msg/JointState", name=joints, position=np.zeros(5))
+
+        def accept(_, content):
+            goals.append(content)
+            return True
+
+        def drive():
+            while not is_over.is_set():
+                if not goals:
+                    still.header.stamp = stamp(time.monotonic())
+                    states.publish(still)
+                driver.spin(time.monotonic() + 0.01)
+
+        name = "/arm_controller/follow_joint_trajectory"
+        ActionServer(
+            driver, name, FOLLOW, clock=time.monotonic, on_goal=accept, on_cancel=lambda _: True
+        )
+        thread = Thread(target=drive)
+        thread.start()
+        options = ["--robot", "ros2", "--yes", "--no-report", "--domain", str(domain)]
+        assert main(["run", str(plan), *options]) == 1
+        is_over.set()
+        thread.join(10)
+        driver.close()
+    assert len(goals) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "COMMUNICATION_FAILURE: /joint_states has stopped for 0.3 s; cancellation was" in said
 
 
 def test_without_a_terminal_the_user_has_to_agree_in_advance(plan, capsys):

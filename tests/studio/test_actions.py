@@ -64,6 +64,27 @@ def test_an_object_is_moved_in_the_text_at_the_start_and_live_afterwards(studio)
     assert not studio.cell.is_run
 
 
+@pytest.mark.parametrize(
+    ("kind", "size", "corner", "larger", "center"),
+    [
+        ("box", [0.04, 0.04, 0.04], [0.24, 0.02, 0.06], [0.06, 0.04, 0.06], [0.21, 0, 0.03]),
+        ("cylinder", [0.04, 0.04], [0.22, 0, 0.06], [0.04, 0.06], [0.2, 0, 0.03]),
+        ("sphere", [0.04], [0.2, 0, 0.05], [0.05], [0.2, 0, 0.025]),
+    ],
+)
+def test_a_dragged_corner_resizes_and_the_opposite_corner_stays(
+    studio, kind, size, corner, larger, center
+):
+    reply(studio, "add_object", name="a", kind=kind, size=size, xyz=[0.2, 0, 0.02])
+    studio.resize_object("a", np.array(corner))
+    [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert (form["size"], form["xyz"]) == (pytest.approx(larger), pytest.approx(center))
+    reply(studio, "execute", step="wait: 10 ms")
+    text = studio.text
+    studio.resize_object("a", np.array(corner) + 0.1)
+    assert studio.text == text, "after the first step an object keeps its size"
+
+
 def test_objects_that_overlap_are_shown_before_anything_moves(studio):
     reply(studio, "add_object", **{**BOX, "xyz": [0.2, 0, 0.03]})
     [overlap] = studio_module.robot_message(studio.cell)["overlaps"]
@@ -100,12 +121,18 @@ expect:
 
 def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
     studio, verdicts = opened(tmp_path, JUDGED), []
-    studio.speed = 1.0
 
     def hear(message, **_):
         if message["type"] == "verdicts":
             verdicts.append((studio.busy, message))
-            studio.speed = 0.0
+            studio.is_playing = True
+
+    def hold_second_step(event, step, record):
+        if (event, step.summary) == ("step_started", "wait 60 s") and not verdicts:
+            studio.is_playing = False  # the physics waits for the verdict
+        on_step(event, step, record)
+
+    on_step, studio.cell.on_step = studio.cell.on_step, hold_second_step
 
     studio.session.broadcast = hear
     reply(studio, "run", until="end")
@@ -120,6 +147,29 @@ def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
     assert [each["open"] for each in last["verdicts"]] == [False, False]
     assert last["verdicts"][0]["margin"] == first["verdicts"][0]["margin"]
     assert (last["outcome"], len(last["digest"])) == ("passed", 64)
+
+
+def test_a_digest_is_shown_of_the_text_and_the_run_on_the_page_alone(tmp_path):
+    text = JUDGED.replace("wait: 60 s", "wait: 1 s")
+    studio, digests = opened(tmp_path, text), []
+
+    def hear(message, **_):
+        if message["type"] == "verdicts":
+            digests.append((studio.busy, studio.text, message["digest"]))
+
+    studio.session.broadcast = hear
+    reply(studio, "run", until="end")
+    while not studio.verdicts._work._work.has_message():  # noqa: SLF001 - judged, but not shown
+        time.sleep(0.01)
+    reply(studio, "run", until="end")
+    assert studio.verdicts.taken(wait=True)["digest"]
+    reply(studio, "run", until="end")
+    assert digests[-1][2] == "", "the old digest is taken away before the next run"
+    assert studio.verdicts.taken(wait=True)["digest"]
+    reply(studio, "edit", text=f"{text}# another text\n")
+    assert digests[-1][2] == ""
+    assert studio._greeting()[-1]["digest"] == ""  # noqa: SLF001 - what a page that comes back sees
+    assert not [each for each in digests if each[0] and each[2]], "none while a step is executed"
 
 
 MISTAKES = {
@@ -207,6 +257,24 @@ def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
     reply(studio, "undo")
     assert studio.text == before
     assert np.array_equal(studio.cell.joint_positions(), start)
+
+
+def test_what_is_seen_is_proposed_with_names_and_poses(studio):
+    def seen():
+        found = reply(studio, "expect_seen")["proposals"]
+        return [each["text"].partition(", pose")[0] for each in found]
+
+    reply(
+        studio, "add_object", name="box", kind="box", size=[0.03, 0.03, 0.03], xyz=[0.2, 0, 0.015]
+    )
+    reply(studio, "execute", step="move_to: home")
+    assert seen() == ["named_target: home"], "what has not moved is of no interest"
+    for step in ("gripper: open", "pick: box"):
+        assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert "grasped: box" in seen()
+    place = "place: {object: box, pose: {xyz: [0.2, 0.05, 0.015]}}"
+    assert reply(studio, "execute", step=place)["status"] == "passed"
+    assert {"placed: {object: box, on: ground_plane", "upright: box"} <= set(seen())
 
 
 def test_a_camera_shows_the_cell_as_it_is(tmp_path):

@@ -172,3 +172,4 @@ def test_a_motion_that_is_stopped_by_hand_fails_and_leaves_the_arm_where_it_is(c
     [record, *_] = cell.execution.records
     assert (record.status, record.error_code) == ("failed", "PREEMPTED")
     assert 0.3 <= cell.simulator.time < 0.35
+    assert judged(cell).digest == "", "a run of the file is not stopped there"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from docs.generators.studio_guide import follow, is_shown, steps
+from harness.robot.forward_kinematics import robot_poses
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from harness.studio.document import new_text
@@ -111,23 +112,91 @@ def test_a_value_beyond_the_limit_is_refused(opened):
     opened.wait_text("#log", "joint1 goes from -3.142 to 3.142 rad, not to 9")
 
 
-def test_the_handle_is_dragged_and_says_what_cannot_be_reached(browser, serve):
+class Mouse:
+    """Real mouse events at points of the world, in viser's picture."""
+
+    def __init__(self, opened, served):
+        self.opened, self.served = opened, served
+        self.mouse, self.view = opened.page.mouse, served.studio.view
+        self.phases = []
+        on_drag = self.view._on_drag  # noqa: SLF001 - a drag ends when its last event has arrived
+
+        def heard(client, phase, *rest):
+            on_drag(client, phase, *rest)
+            self.phases.append(phase)
+
+        self.view._on_drag = heard  # noqa: SLF001
+        self.camera = wait_for_client(opened, served).camera
+        self.box = opened.page.locator("#scene").bounding_box()
+
+    def at(self, point):
+        x, y = pixel_of(self.camera, (self.box["width"], self.box["height"]), point)
+        return self.box["x"] + x, self.box["y"] + y
+
+    def click_until(self, point, expression):
+        """Click until the picture has what is clicked."""
+        for _ in range(600):
+            if self.opened.page.evaluate(expression):
+                return
+            self.mouse.click(*self.at(point))
+            self.opened.page.wait_for_timeout(100)
+        raise AssertionError(f"a click never leads to {expression}")
+
+    def drop(self):
+        """Let go, and wait until the studio has taken that in."""
+        self.phases.clear()
+        self.mouse.up()
+        while "end" not in self.phases:
+            self.opened.page.wait_for_timeout(20)
+        self.served.reply_to("camera", name="")
+
+    def drag(self, kind, axis, *distances):
+        """Drag the arrow of a handle along its axis, by one distance after the other."""
+        handle, arrow = self.view.handles[kind], np.eye(3)[axis]
+        start = np.add(handle.position, 0.6 * handle.scale * arrow)
+        self.mouse.move(*self.at(start))
+        self.mouse.down()
+        for distance in distances:
+            self.mouse.move(*self.at(start + distance * arrow), steps=2)
+            yield
+
+
+@pytest.mark.slow  # the picture is drawn in software
+def test_handles_and_ghosts_are_used_with_the_mouse(browser, serve):
     served = serve()
+    size, xyz = [0.06, 0.06, 0.06], [0.2, -0.15, 0.03]
+    served.reply_to("add_object", name="box", kind="box", size=size, xyz=xyz)
+    served.reply_to("handle", name="box")
     context = browser.new_context(viewport={"width": 1010, "height": 520})
     opened = Page(context, served.address, has_scene=True)
-    client = wait_for_client(opened, served)
-    box = opened.page.locator("#scene").bounding_box()
-    view = served.studio.view
-    # the arrow along z, at half its length
-    tip = np.add(view.handle.position, [0, 0, 0.5 * view.handle.scale])
-    x, y = pixel_of(client.camera, (box["width"], box["height"]), tip)
-    mouse = opened.page.mouse
-    mouse.move(box["x"] + x, box["y"] + y)
-    mouse.down()
-    mouse.move(box["x"] + x, box["y"] + y - 15, steps=3)
+    mouse = Mouse(opened, served)
+
+    next(mouse.drag("tcp", 2, 0.03))
     opened.wait_text("#reach", "to the handle")
-    mouse.move(box["x"] + x, box["y"] + 4, steps=3)
-    mouse.up()
+    mouse.drop()
+    opened.wait("document.querySelectorAll('#ways button').length > 0")
+    ghost = robot_poses(served.studio.cell.description, served.studio.reach.ways[0].positions)
+    chosen = "document.querySelectorAll('#ways button[aria-pressed=true]').length === 1"
+    forearm = 0.5 * (ghost["link4"].translation + ghost["link5"].translation)
+    mouse.click_until(forearm, chosen)
+    assert served.studio.chosen is not None
+
+    next(mouse.drag("object", 0, 0.05))
+    mouse.drop()
+    opened.wait("!ace.edit('editor').getValue().includes('[0.2, -0.15, 0.03]')")
+    moved = served.studio.cell.document.object_spec("box")
+    assert moved["pose"]["xyz"] == pytest.approx([0.25, -0.15, 0.03], abs=5e-3)
+
+    next(mouse.drag("size", 2, 0.05))
+    mouse.drop()
+    opened.wait("!ace.edit('editor').getValue().includes('[0.06, 0.06, 0.06]')")
+    larger = served.studio.cell.document.object_spec("box")
+    assert larger["box"]["size"] == pytest.approx([0.06, 0.06, 0.11], abs=5e-3)
+    assert larger["pose"]["xyz"][2] == pytest.approx(0.5 * larger["box"]["size"][2], abs=2e-4)
+
+    for _ in mouse.drag("tcp", 2, 0.1, 0.5):
+        pass
+    mouse.drop()
     opened.wait("document.querySelector('#reach').innerText.includes('the nearest p')")
     assert "refused" in opened.page.get_attribute("#reach", "class")
     assert opened.complaints == []

@@ -1,6 +1,9 @@
 """`harness run --live`: a page shows the cases while they run, and changes nothing of them."""
 
+import json
+import os
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -8,6 +11,7 @@ from dataclasses import replace
 from multiprocessing.connection import Listener
 
 import pytest
+from websockets.sync.client import connect
 
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_job
@@ -59,9 +63,10 @@ def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
         if event.kind == "step_started" and event.index == 1:
             was_seen.wait()
 
-    context = browser.new_context()
+    context, closed = browser.new_context(), browser.new_context()
     with Watch() as watch:
         opened = Page(context, watch.page, is_live=False)
+        second = Page(closed, watch.page, is_live=False)
         opened.wait_text("#status", "waiting for the first case")
         view = watch._view  # noqa: SLF001 - what the scene is given
         move = view.move
@@ -70,6 +75,8 @@ def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
         try:
             opened.wait_text("#status", "1 of 2 steps; wait 30 s")
             opened.wait("parseFloat(document.querySelector('#clock').innerText) > 0")
+            second.wait_text("#status", "1 of 2 steps; wait 30 s")
+            closed.close()
         finally:
             was_seen.set()
         thread.join()
@@ -89,7 +96,7 @@ def test_who_does_not_read_what_is_sent_delays_nothing(request_, unwatched, tmp_
         results = []
         thread = in_thread(replace(request_, live=listener.address), results)
         connection = listener.accept()
-        thread.join(60)
+        thread.join()
         assert results[0].digest == unwatched.digest
         connection.close()
 
@@ -107,6 +114,30 @@ def test_the_command_prints_the_address_and_ends_with_the_run(request_, unwatche
     assert (done.returncode, done.stderr.count("\n")) == (0, 1)
     assert re.match(r"live: http://127.0.0.1:\d+/\n", done.stderr)
     assert f"2 runs, one digest: {unwatched.digest}" in done.stdout
+
+
+def test_ctrl_c_ends_a_run_that_two_pages_watch(tmp_path):
+    text = TEXT.replace("30 s", "590 s")
+    (tmp_path / "long.scenario.yaml").write_text(text)
+    command = [sys.executable, "-m", "harness.cli", "run", "long.scenario.yaml", "--live"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True, start_new_session=True
+    ) as process:
+        port = re.search(r":(\d+)/", process.stderr.readline())[1]
+        address = f"ws://127.0.0.1:{port}/studio/ws"
+        with connect(address) as first, connect(address) as second:
+            for page in (first, second):
+                page.send(json.dumps({"page": str(id(page))}))
+            for page in (first, second):
+                while json.loads(page.recv()).get("doing") != "wait 590 s":
+                    pass
+            os.killpg(process.pid, signal.SIGINT)
+            _, said = process.communicate()
+    assert process.returncode == 130
+    assert "during step 2/2: wait 590 s: the run did not finish, and no report was written" in said
+    assert "Traceback" not in said
+    assert [each.name for each in tmp_path.iterdir()] == ["long.scenario.yaml"]
 
 
 def test_options_that_have_no_poses_here_are_refused(request_):

@@ -51,7 +51,6 @@ class Timeline:
         """Time of every row [s], and whether the row is in the judged part; shape (N,) each.
 
         Args:
-            track: The track of any topic.
             name: Name of the topic in notes; empty where another call leaves the note.
         """
         logged, stamps = track.times()

@@ -146,7 +146,6 @@ def velocity_doubts(
     arm moves, and where joints are exchanged during the recording.
 
     Args:
-        description: The description of the robot.
         arm_joints: Names of the arm's joints; fingers report velocities that mean little.
         times: Times of the samples [s], shape (N,).
         rows: The measured joints at these times.

@@ -30,7 +30,7 @@ from harness.grading.bag.joints import (
     reference_track,
     sample_times,
 )
-from harness.grading.bag.raw import bag_error
+from harness.grading.bag.message_files import bag_error
 from harness.grading.bag.reader import read_bag
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import (
@@ -62,13 +62,10 @@ class Recorded:
     """The scenario's knowledge about a recording.
 
     Attributes:
-        robot: The record of the robot.
-        description: The description of the robot.
         objects: Objects of the world, then those that steps add.
         at_start: Names of the world's objects.
         frames: Links whose poses expectations need.
         steps: Line and summary of each step, by id and by path.
-        title: Title of the scenario.
         gravity: Gravity in world axes [m/s^2].
     """
 

@@ -11,7 +11,6 @@ class MistakeError(ValueError):
     """A value that is certainly wrong; validators raise it, the loader adds the place.
 
     Attributes:
-        message: What is wrong, the offending value quoted.
         hint: What to do instead.
         span: Where in a text the mistake is, from 0, and how long; None for all of it.
     """

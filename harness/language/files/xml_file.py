@@ -102,7 +102,6 @@ def read_xml(path: Path, named: str = "") -> XmlElement:
     """The root element of a file.
 
     Args:
-        path: The path of the file.
         named: What messages call it; its path by default.
 
     Raises:

@@ -33,7 +33,6 @@ def read_text(
     """The text of a file.
 
     Args:
-        path: The path of the file.
         shown: What messages call it; its path by default.
         kind: What it should be, for messages.
         largest: Bytes that it may have.
@@ -83,7 +82,6 @@ def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None)
     """The one document of a text; a mapping.
 
     Args:
-        text: The text of the file.
         source: The source that messages name.
         problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
             the file can be read as well; None: they are raised.

@@ -29,8 +29,6 @@ class FormulaError(MistakeError):
 
     Attributes:
         span: First of the offending characters, from 0, and how many there are.
-        message: The message that says what is wrong.
-        hint: The hint that says what to do.
     """
 
     def __init__(self, start: int, length: int, message: str, hint: str = "") -> None:

@@ -40,8 +40,6 @@ class Loaded(Generic[M]):
     """A file's model, and the way back to the file.
 
     Attributes:
-        model: What the file says.
-        path: Where it was read.
         text: The text as it was read.
         lines: The line and column of each field of the model.
         written: The file's values in its own short forms, parameters and overrides applied.
@@ -86,7 +84,6 @@ class Reading:
 
     Attributes:
         loaded: The scenario; with problems, what remains of it; None when that is too little.
-        problems: Mistakes found so far.
         doubtful: Words of what was left out; a mistake that names one may follow from another.
         missing: `robot` or `world`, where something else stands in for what cannot be read.
     """
@@ -106,7 +103,6 @@ def read_scenario(
     """A scenario file with its mistakes, for whoever goes on to find more.
 
     Args:
-        path: The path of the file.
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
         text: What would stand in the file; None: what does.
@@ -167,7 +163,6 @@ def load_scenario(
     """A scenario file, checked as far as it can be without robot and world.
 
     Args:
-        path: The path of the file.
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
 

@@ -44,9 +44,6 @@ def models_shape(
     """A file's values in the shape of its model.
 
     Args:
-        item: The content of the file.
-        model: The model of the content.
-        problems: The list that collects mistakes.
         notes: Gets what is allowed and probably not intended.
     """
     return _Shaper(problems, [] if notes is None else notes).model(item, model)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import eigenpy
 import numpy as np
 import pinocchio as pin
 
@@ -52,9 +53,6 @@ class LinkTask:
         self._turn = metres_per_radian
         self._robot = space.robot
         self._frame = space.robot.frame_id(goal.link)
-        model = space.robot.model
-        self._drive = np.zeros((model.nv, space.dof))
-        self._drive[space.robot.velocity_columns] = space.matrix
         self._goal_rotation = np.asarray(goal.pose.rotation) if isinstance(goal, PoseGoal) else None
 
     def link_pose(self, positions: FloatArray) -> SE3:
@@ -71,12 +69,13 @@ class LinkTask:
 
     def _evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         model, data = self._robot.model, self._robot.data
-        configuration = self._robot.configuration(self.space.whole(positions))
+        configuration = self.space.configuration(positions)
         whole = pin.computeFrameJacobian(
             model, data, configuration, self._frame, pin.LOCAL_WORLD_ALIGNED
         )
         placement = pin.updateFramePlacement(model, data, self._frame)
-        jacobian = whole.reshape(6, -1) @ self._drive  # one joint gives a one-dimensional array
+        # one joint gives a one-dimensional array
+        jacobian = self.space.jacobian(whole.reshape(6, -1))
         rotation = placement.rotation
         goal = self.goal
         if isinstance(goal, PoseGoal):
@@ -87,7 +86,7 @@ class LinkTask:
         shift = goal.position - placement.translation
         if goal.pitch is None:
             return shift, jacobian[:3]
-        x_axis = rotation[:, 0]
+        x_axis: FloatArray = rotation[:, 0]
         turned = np.cross(jacobian[3:].T, x_axis).T  # change of the x axis, (3, dof)
         if abs(np.cos(goal.pitch)) < _VERTICAL:
             return np.concatenate([shift, -x_axis[:2]]), np.vstack([jacobian[:3], turned[:2]])
@@ -136,7 +135,7 @@ class LinkTask:
         lower, upper = self.space.lower, self.space.upper
         positions = np.minimum(np.maximum(seed, lower), upper)
         error, jacobian = self.evaluate(positions)
-        cost, factor = float(error @ error), 1.0
+        cost, factor = float(error.dot(error)), 1.0
         earlier = [np.inf] * _WINDOW
         for _ in range(iterations):
             if cost < _CONVERGED**2 or cost > remaining * earlier[0]:
@@ -145,7 +144,7 @@ class LinkTask:
             damping = factor * 0.5 * cost + 1e-12
             candidate = _damped_step(positions, error, jacobian, damping, lower, upper)
             new_error, new_jacobian = self.evaluate(candidate)
-            new_cost = float(new_error @ new_error)
+            new_cost = float(new_error.dot(new_error))
             if new_cost < cost:
                 positions, error, jacobian, cost = candidate, new_error, new_jacobian, new_cost
                 factor = max(factor * 0.3, 1e-3)
@@ -166,16 +165,22 @@ def _damped_step(
 ) -> FloatArray:
     """The positions after a step of damped least squares; joints that exceed a limit stop there."""
     transposed = jacobian.T
-    gradient, normal = transposed @ error, transposed @ jacobian
+    gradient, normal = transposed.dot(error), transposed.dot(jacobian)
     normal.ravel()[:: len(gradient) + 1] += damping
-    target = positions + np.linalg.solve(normal, gradient)
+    target = positions + _solved(normal, gradient)
     inside = np.minimum(np.maximum(target, lower), upper)
-    free = target == inside
-    if free.all() or not free.any():
+    beyond = inside - target
+    if not 0 < np.count_nonzero(beyond) < len(beyond):
         return inside
-    step = np.linalg.solve(normal[np.ix_(free, free)], gradient[free])
+    free = beyond == 0.0
+    step = _solved(normal[free][:, free], gradient[free])
     inside[free] = np.minimum(np.maximum(positions[free] + step, lower[free]), upper[free])
     return inside
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """The solution of a symmetric system; not finite where the matrix is not positive."""
+    return eigenpy.LLT(matrix).solve(right).reshape(-1)  # one joint gives a two-dimensional array
 
 
 def sample_group_positions(space: GroupSpace, rng: np.random.Generator) -> FloatArray:

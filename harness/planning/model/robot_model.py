@@ -41,21 +41,18 @@ class RobotModel:
         joints = [
             self.model.joints[self.model.getJointId(name)] for name in description.joint_names
         ]
-        self._row: IntArray = np.array([joint.idx_q for joint in joints], dtype=np.int64)
+        self.rows: IntArray = np.array([joint.idx_q for joint in joints], dtype=np.int64)
         self.velocity_columns: IntArray = np.array([joint.idx_v for joint in joints], np.int64)
-        self._wraps: BoolArray = np.array([joint.nq == 2 for joint in joints], dtype=bool)
-        self._any_wraps = bool(self._wraps.any())
+        self.is_circular: BoolArray = np.array([joint.nq == 2 for joint in joints], dtype=bool)
+        self._has_circular = bool(self.is_circular.any())
 
     def configuration(self, joint_positions: FloatArray) -> FloatArray:
         """Pinocchio's configuration of joint positions in description order."""
         configuration = np.empty(self.model.nq)
-        if not self._any_wraps:
-            configuration[self._row] = joint_positions
-            return configuration
-        wraps = self._wraps
-        configuration[self._row[~wraps]] = joint_positions[~wraps]
-        configuration[self._row[wraps]] = np.cos(joint_positions[wraps])
-        configuration[self._row[wraps] + 1] = np.sin(joint_positions[wraps])
+        configuration[self.rows] = joint_positions
+        if self._has_circular:
+            first, angles = self.rows[self.is_circular], joint_positions[self.is_circular]
+            configuration[first], configuration[first + 1] = np.cos(angles), np.sin(angles)
         return configuration
 
     def frame_id(self, link: str) -> int:
@@ -115,6 +112,12 @@ class GroupSpace:
         self.leverage: FloatArray = _leverage(description, self.joint_names)
         self.indices = list(description.group_indices(group))
         self.offset, self.matrix = self._embedding(np.asarray(reference, dtype=float))
+        self._at_rest = robot.configuration(self.offset)
+        self._drive = np.zeros((robot.model.nv, len(self.indices)))
+        self._drive[robot.velocity_columns] = self.matrix
+        self._has_followers = bool(np.delete(self.matrix, self.indices, axis=0).any())
+        self._rows, self._columns = robot.rows[self.indices], robot.velocity_columns[self.indices]
+        self._has_circular = bool(robot.is_circular[self.indices].any())
 
     def _embedding(self, reference: FloatArray) -> tuple[FloatArray, FloatArray]:
         description = self.robot.description
@@ -137,6 +140,18 @@ class GroupSpace:
     def whole(self, positions: FloatArray) -> FloatArray:
         """Description-order positions of group positions, shape (n,), or (N, n) for (N, dof)."""
         return self.offset + np.asarray(positions) @ self.matrix.T
+
+    def configuration(self, positions: FloatArray) -> FloatArray:
+        """Pinocchio's configuration of the whole robot at group positions, shape (nq,)."""
+        if self._has_followers or self._has_circular:
+            return self.robot.configuration(self.whole(positions))
+        configuration = self._at_rest.copy()
+        configuration[self._rows] = positions
+        return configuration
+
+    def jacobian(self, whole: FloatArray) -> FloatArray:
+        """A Jacobian by group positions from Pinocchio's, shape (m, dof) from (m, nv)."""
+        return whole @ self._drive if self._has_followers else whole.take(self._columns, axis=1)
 
     def part(self, joint_positions: FloatArray) -> FloatArray:
         """Group positions of description-order positions, shape (dof,)."""

@@ -252,15 +252,12 @@ def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | 
     travelled = np.concatenate([[0.0], np.cumsum(steps)])
     count = max(1, int(np.ceil(travelled[-1] / verified_resolution(checker.padding))))
     places = np.linspace(0.0, travelled[-1], count + 1)
-    moving = np.concatenate([[True], steps > 0])
-    dense = np.column_stack(
-        [np.interp(places, travelled[moving], column[moving]) for column in positions.T]
-    )
+    dense = np.column_stack([np.interp(places, travelled, column) for column in positions.T])
     index = checker.first_blocked(dense)
     if index is None:
         return None
     touches = checker.touches(dense[index])
-    time = float(np.interp(places[index], travelled[moving], trajectory.times[moving]))
+    time = float(np.interp(places[index], travelled, trajectory.times))
     return Defect(
         f"at {time:.2f} s it would come too near: {wording.touches(touches)}",
         Details.of(

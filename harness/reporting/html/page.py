@@ -8,7 +8,7 @@ from string import Template
 
 from harness.recording.store import StoredRun
 from harness.reporting.html import bundle
-from harness.reporting.html.content_policy import content_policy
+from harness.reporting.html.bundle import content_policy
 from harness.reporting.html.groups import pack_groups
 from harness.reporting.html.packing import Packer
 from harness.reporting.html.paths import pack_plan, pack_tcp_path
@@ -28,12 +28,7 @@ from harness.reporting.html.summary import SummaryPicture, header_facts, outcome
 
 
 def page_html(stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
-    """One self-contained page; equal text for equal runs but for their wall times.
-
-    Args:
-        stored: The run with its verdicts.
-        pictures: The pictures for the summary.
-    """
+    """One self-contained page; equal text for equal runs but for their wall times."""
     skeleton, style, script = bundle.skeleton(), bundle.style(), bundle.script()
     text = Template(skeleton).substitute(
         policy=content_policy(skeleton, script=script, style=style),

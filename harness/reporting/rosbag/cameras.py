@@ -48,8 +48,6 @@ def video_frames(run: Run, video: VideoRecord, *, is_raw: bool = False) -> Itera
     """Every frame of the video of a camera that was recorded all along, as its JPEG pictures.
 
     Args:
-        run: The run with its recorded signals.
-        video: The video of one camera.
         is_raw: Publish the frames uncompressed too.
     """
     camera = next(camera for camera in run.cameras if camera.name == video.camera)

@@ -24,9 +24,6 @@ class Event:
     """Something that happened.
 
     Attributes:
-        time: The time in simulation [s].
-        said: One line for the log.
-        level: The level in the log.
         content: Plain data for programs; its `event` says which it is.
     """
 

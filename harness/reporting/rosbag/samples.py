@@ -17,12 +17,7 @@ BLOCK = 1024
 
 @dataclass(frozen=True, eq=False)
 class Message:
-    """Something published.
-
-    Attributes:
-        time: The time in simulation [s].
-        content: A message of the topic's type.
-    """
+    """Something published."""
 
     time: float
     topic: Topic

@@ -18,7 +18,6 @@ def urdf_of(run: Run, meshes: MeshAddresses = "package") -> str:
     """The composed URDF.
 
     Args:
-        run: The run with its recorded signals.
         meshes: `package` leaves mesh addresses as the robot's source gave them; `file` makes those
             of `package://` absolute `file://` addresses on this machine, where they are known.
     """

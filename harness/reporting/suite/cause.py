@@ -18,7 +18,6 @@ class Cause:
         group: The same for cases that failed alike: `NO_IK_SOLUTION in move_to`.
         said: Everything that is known of this one, in a line.
         line: The line in the scenario file, from 1; 0 if unknown.
-        column: The column from 1; 0 if unknown.
     """
 
     group: str

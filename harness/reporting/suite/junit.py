@@ -79,11 +79,7 @@ class JunitWriter:
     """Writes JUnit XML case by case; what is written so far is in a file without a name."""
 
     def __init__(self, record: SuiteRecord) -> None:
-        """Begin a document.
-
-        Args:
-            record: The suite; its cases are added one after the other.
-        """
+        """Begin a document."""
         self._rates: dict[str, list[SampledRate]] = {}
         for rate in record.rates:
             self._rates.setdefault(rate.file, []).append(rate)

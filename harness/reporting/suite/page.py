@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from harness.recording.run import Verdict
 from harness.reporting.html import bundle
-from harness.reporting.html.content_policy import content_policy
+from harness.reporting.html.bundle import content_policy
 from harness.reporting.margins import allowance_used
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, missed, rate_text, short_value
@@ -43,10 +43,8 @@ def suite_html(
     """One self-contained page; links to the cases' pages are relative to its folder.
 
     Args:
-        record: The record of the suite.
         columns: What varies in its cases, with at most `MOST_ROWS` listed.
         folder: Where the page will stand.
-        history: Worst margins of earlier runs.
     """
     total, passed = len(record.cases), columns.outcomes["passed"]
     rows = [_row(i, record.cases[i], folder, history) for i in columns.listed]

@@ -23,10 +23,7 @@ class SuiteCase:
     """A case with what its file says of it.
 
     Attributes:
-        result: The result of the case.
         values: What varies, path -> value.
-        tags: The tags of the file.
-        verifies: Requirements that the file names.
     """
 
     result: CaseResult
@@ -82,8 +79,6 @@ def results_json(
     """What `results.json` and `--json` say, in parts; a case is a line.
 
     Args:
-        record: The record of the suite.
-        exit_code: The exit code of the command.
         cases: The cases of the record, where somebody else reads them too.
     """
     head = {

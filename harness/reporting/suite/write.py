@@ -36,9 +36,6 @@ def write_suite(
 
     Args:
         folder: Made where it is missing.
-        record: The record of the suite.
-        exit_code: The exit code of the command.
-        history: Worst margins of earlier runs.
         on_case: Called with the number of each case, and the case; None: nothing is.
 
     Returns:
@@ -63,10 +60,10 @@ def write_suite(
                 file.write(part.encode())
         with replaced(folder / JUNIT) as file:
             junit.write(file)
-    return write_page(folder, record, columns, history), columns
+    return write_suite_page(folder, record, columns, history), columns
 
 
-def write_page(
+def write_suite_page(
     folder: Path,
     record: SuiteRecord,
     columns: Columns | None = None,
@@ -76,9 +73,7 @@ def write_page(
 
     Args:
         folder: Made where it is missing.
-        record: The record of the suite.
         columns: What varies in its cases, with at most `MOST_ROWS` listed; None reads the cases.
-        history: Worst margins of earlier runs.
 
     Returns:
         The page's path in the folder.

@@ -11,7 +11,7 @@ good enough are merged.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -62,7 +62,13 @@ NORMALS = np.array(
         *[(_H, _H, 0), (_H, -_H, 0), (_H, 0, _H), (_H, 0, -_H), (0, _H, _H), (0, _H, -_H)],
     ]
 )
-"""Normals of the cuts: the axes, and half way between two of them."""
+"""Normals of the cuts: the axes, and half way between two of them; and those of large faces."""
+
+SAME_NORMAL = 0.99
+"""Cosine of the angle below which two normals differ."""
+
+MOST_FACES = 6
+"""Largest number of normals of faces of a piece along which it is cut."""
 
 
 def _spread_directions(count: int) -> FloatArray:
@@ -73,8 +79,10 @@ def _spread_directions(count: int) -> FloatArray:
     return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
 
 
-DIRECTIONS = np.concatenate([NORMALS, -NORMALS, _spread_directions(160)])
-"""Directions whose farthest points stand for a hull where cuts are compared."""
+FEW_DIRECTIONS, MANY_DIRECTIONS = (
+    np.concatenate([NORMALS, -NORMALS, _spread_directions(count)]) for count in (32, 160)
+)
+"""Directions whose farthest points stand for a hull where cuts are compared, as with samples."""
 
 MOST_EMPTY = 20_000
 """Largest number of points that stand for the surface of a mesh, and for the space around it."""
@@ -96,21 +104,21 @@ def decompose(triangles: FloatArray) -> Decomposition:
         triangles: Corners [m], shape (M, 3, 3); they need not be connected or closed.
     """
     hull = ConvexHull(triangles.reshape(-1, 3))
+    corners = hull.points[hull.vertices]
     if abs(_volume(triangles) - hull.volume) < SAME_VOLUME * hull.volume:
-        return Decomposition((hull.points[hull.vertices],), 0.0, 0.0, True)
+        return Decomposition(corners, (corners,), 0.0, 0.0, True)
     longest = float(np.ptp(hull.points, axis=0).max())
     share = min(longest / SMALL, 1.0)
     tolerance = TOLERANCE * share
     grid = solid_grid(triangles, tolerance * FINENESS)
     search = _Search(grid, max(tolerance - DIAGONAL * grid.edge, 0.5 * tolerance, grid.edge))
-    whole = search.piece(triangles)
-    hull_excess = _excess(grid, whole.points)
+    hull_excess = _excess(grid, corners)
     if hull_excess <= HULL_TOLERANCE * share:
-        return Decomposition((whole.points,), hull_excess, hull_excess, grid.is_closed)
-    pieces = _merged(search, _cut(search, whole))
-    parts = tuple(_thickened(piece.points) for piece in pieces)
+        return Decomposition(corners, (corners,), hull_excess, hull_excess, grid.is_closed)
+    pieces = _merged(search, _cut(search, search.piece(triangles)))
+    parts = tuple(_thickened(_corners(piece.triangles.reshape(-1, 3))) for piece in pieces)
     excess = max(_excess(grid, part) for part in parts)
-    return Decomposition(parts, excess, hull_excess, grid.is_closed)
+    return Decomposition(corners, parts, excess, hull_excess, grid.is_closed)
 
 
 def _volume(triangles: FloatArray) -> float:
@@ -126,11 +134,12 @@ def _excess(grid: SolidGrid, points: FloatArray) -> float:
         return 0.0
     low, high = hull.min_bound, hull.max_bound
     centers, depth = grid.within(low, high)
-    for rows in np.array_split(np.argsort(-depth, kind="stable"), 1 + len(depth) // 5_000):
-        inside = _inside(hull, centers[rows])
-        if inside.any():
-            return float(depth[rows][inside].max()) + DIAGONAL * grid.edge
-    return DIAGONAL * grid.edge
+    excess = 0.0
+    for most in (MANY_SAMPLES, len(depth)):  # after some of the voxels, only deeper ones matter
+        deeper = depth > excess
+        some, reached = _thinned(centers[deeper], most), _thinned(depth[deeper], most)
+        excess = float(reached[_inside(hull, some)].max(initial=excess))
+    return excess + DIAGONAL * grid.edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +148,7 @@ class _Piece:
 
     Attributes:
         triangles: Its triangles [m], shape (M, 3, 3).
-        points: The corners of its convex hull [m], shape (N, 3).
+        points: The farthest of its points in `MANY_DIRECTIONS` [m], shape (N, 3).
         excess: The largest distance of a point of the hull from the mesh [m].
         empty: Centres of voxels in the hull that are too far from the mesh, or some of them,
             shape (E, 3).
@@ -164,56 +173,78 @@ class _Search:
 
     def piece(self, triangles: FloatArray) -> _Piece:
         """A piece with its measures."""
-        return self._measured(triangles.reshape(-1, 3), triangles)
+        return self._measured(_extreme(_corners(triangles.reshape(-1, 3))), triangles)
 
     def union(self, first: _Piece, second: _Piece) -> _Piece:
         """Two pieces as one, without its triangles."""
-        return self._measured(np.concatenate([first.points, second.points]), NO_TRIANGLES)
+        return self._measured(_extreme(np.concatenate([first.points, second.points])), NO_TRIANGLES)
 
     def _measured(self, points: FloatArray, triangles: FloatArray) -> _Piece:
         hull = _hull(points)
         if hull is None:
-            return _Piece(triangles, np.unique(points, axis=0), 0.0, np.zeros((0, 3)), 0.0)
-        corners = points[hull.vertices]
-        small = _hull(_extreme(corners)) or hull  # a hull of fewer faces, slightly smaller
-        inside = _inside(small, self._empty)
+            return _Piece(triangles, points, 0.0, np.zeros((0, 3)), 0.0)
+        inside = _inside(hull, self._empty)
         excess = float(self._depth[inside].max(initial=0.0))
-        return _Piece(triangles, corners, excess, self._empty[inside], float(small.volume))
+        return _Piece(triangles, points, excess, self._empty[inside], float(hull.volume))
 
     def best_cut(self, piece: _Piece) -> tuple[FloatArray, float] | None:
         """Normal and offset of the cut that leaves the least empty space in convex hulls.
 
         All cuts are compared with few points, and the best of them again with many.
         """
-        corners = _extreme(piece.points)
-        hull = _hull(corners) or ConvexHull(piece.points)
-        inside = self._surface[_inside(hull, self._surface, 1e-6)]
+        inside = self._surface[_inside(ConvexHull(piece.points), self._surface, 1e-6)]
         cuts = [
             (normal, offset)
-            for normal in NORMALS
+            for normal in (*NORMALS, *_face_normals(piece.triangles))
             for offset in _offsets(piece.points @ normal, piece.empty @ normal, self.edge)
         ]
-        for samples, kept in ((FEW_SAMPLES, GOOD_CUTS), (MANY_SAMPLES, 1)):
-            points = np.concatenate([_thinned(inside, samples), corners])
+        for samples, directions, kept in (
+            (FEW_SAMPLES, FEW_DIRECTIONS, GOOD_CUTS),
+            (MANY_SAMPLES, MANY_DIRECTIONS, 1),
+        ):
+            points = np.concatenate([_thinned(inside, samples), piece.points])
             empty = _thinned(piece.empty, samples)
-            costs = [_cost(points, empty, *cut, PEEL / piece.volume) for cut in cuts]
+            costs = [_cost(points, empty, *cut, PEEL / piece.volume, directions) for cut in cuts]
             cuts = [cuts[number] for number in np.argsort(costs, kind="stable")[:kept]]
         return cuts[0] if cuts else None
 
 
 def _cost(
-    points: FloatArray, empty: FloatArray, normal: FloatArray, offset: float, peel: float
+    points: FloatArray,
+    empty: FloatArray,
+    normal: FloatArray,
+    offset: float,
+    peel: float,
+    directions: FloatArray,
 ) -> float:
     """Empty space in the hulls on both sides of a cut, and the volume of hulls that have any."""
     heights, empty_heights = points @ normal - offset, empty @ normal - offset
-    cost = 0.0
+    cost, diameter = 0.0, float(np.linalg.norm(np.ptp(points, axis=0)))
     for side in (1.0, -1.0):
         empty_half = empty[side * empty_heights > 0]
-        hull = _hull(_extreme(points[side * heights > 0])) if len(empty_half) else None
+        hull = _hull(_extreme(points[side * heights > 0], directions)) if len(empty_half) else None
         inside = 0 if hull is None else int(_inside(hull, empty_half).sum())
         if hull is not None and inside:
-            cost += inside / len(empty) + peel * float(hull.volume)
+            share = float(np.linalg.norm(np.ptp(hull.points, axis=0))) / diameter
+            cost += share * inside / len(empty) + peel * float(hull.volume)
     return cost
+
+
+def _face_normals(triangles: FloatArray) -> FloatArray:
+    """Normals of the largest faces that are not among `NORMALS`, up to their sign, shape (N, 3)."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    normals = np.cross(b - a, c - a)
+    area = np.linalg.norm(normals, axis=1)
+    normals = np.round(normals / np.maximum(area, 1e-15)[:, None], 2) + 0.0
+    found, row = np.unique(normals, axis=0, return_inverse=True)
+    chosen = [*NORMALS]
+    for number in np.argsort(-np.bincount(row.ravel(), area), kind="stable"):
+        normal = found[number] / max(float(np.linalg.norm(found[number])), 1e-9)
+        if np.abs(np.array(chosen) @ normal).max() < SAME_NORMAL:
+            chosen.append(normal)
+        if len(chosen) == len(NORMALS) + MOST_FACES:
+            break
+    return np.array(chosen[len(NORMALS) :]).reshape(-1, 3)
 
 
 def _offsets(points: FloatArray, empty: FloatArray, edge: float) -> Iterator[float]:
@@ -282,18 +313,25 @@ def _merged(search: _Search, pieces: list[_Piece]) -> list[_Piece]:
         best = min(unions, key=lambda pair: (*unions[pair][:2], pair))
         if unions[best][0] > 0 and len(known) <= MOST_PARTS:
             break
-        known[max(known) + 1] = unions[best][2]
+        triangles = np.concatenate([known[number].triangles for number in best])
+        known[max(known) + 1] = replace(unions[best][2], triangles=triangles)
         for gone in best:
             del known[gone]
         unions = {pair: union for pair, union in unions.items() if not set(pair) & set(best)}
     return list(known.values())
 
 
-def _extreme(points: FloatArray) -> FloatArray:
+def _extreme(points: FloatArray, directions: FloatArray = MANY_DIRECTIONS) -> FloatArray:
     """The farthest of some points in each of many directions."""
-    if len(points) <= len(DIRECTIONS):
+    if len(points) <= len(directions):
         return points
-    return points[np.unique((points @ DIRECTIONS.T).argmax(axis=0))]
+    return points[np.unique((points @ directions.T).argmax(axis=0))]
+
+
+def _corners(points: FloatArray) -> FloatArray:
+    """The corners of the convex hull of points; all of them where they are flat."""
+    hull = _hull(points)
+    return np.unique(points, axis=0) if hull is None else points[hull.vertices]
 
 
 def _thinned(points: FloatArray, most: int) -> FloatArray:
@@ -330,7 +368,8 @@ def _inside(hull: ConvexHull, points: FloatArray, slack: float = 0.0) -> BoolArr
     low, high = hull.min_bound - slack, hull.max_bound + slack
     left = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
     faces = hull.equations
-    for some in np.array_split(faces, 1 + len(faces) // 16):
+    for start in range(0, len(faces), 16):
+        some = faces[start : start + 16]
         heights = points[left] @ some[:, :3].T + some[:, 3]
         left = left[(heights <= slack).all(axis=1)]
     inside = np.zeros(len(points), dtype=bool)

@@ -7,6 +7,7 @@ import io
 import platform
 import zipfile
 from collections.abc import Callable
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -15,7 +16,7 @@ from harness.core.types import FloatArray
 from harness.core.user_cache import cached, store
 from harness.robot.decomposition.convex_parts import Decomposition
 
-METHOD = 1
+METHOD = 3
 """Version of the decomposition; parts of another version are computed again."""
 
 
@@ -33,8 +34,7 @@ def stored_decomposition(
         triangles: Reads the corners [m], shape (M, 3, 3).
     """
     key = hashlib.sha256(content)
-    versions = (METHOD, np.__version__, version("scipy"), platform.machine())
-    key.update(repr((factors.tolist(), *versions)).encode())
+    key.update(repr((factors.tolist(), METHOD, *_versions())).encode())
     name = f"convex_parts/{key.hexdigest()}.npz"
     found = _read(cached(name))
     if found is None:
@@ -45,24 +45,30 @@ def stored_decomposition(
     return found
 
 
+@cache
+def _versions() -> tuple[str, ...]:
+    return np.__version__, version("scipy"), platform.machine()
+
+
 def _read(content: bytes | None) -> Decomposition | None:
     """What is stored; None where nothing is, or it is damaged."""
     if content is None:
         return None
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            points, ends = arrays["points"], arrays["ends"]
+            hull, points, ends = arrays["hull"], arrays["points"], arrays["ends"]
             excess, hull_excess, is_closed = arrays["measures"].tolist()
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
     parts = tuple(np.split(points, ends[:-1]))
-    return Decomposition(parts, excess, hull_excess, bool(is_closed))
+    return Decomposition(hull, parts, excess, hull_excess, bool(is_closed))
 
 
 def _content(found: Decomposition) -> bytes:
     content = io.BytesIO()
     np.savez(
         content,
+        hull=found.hull,
         points=np.concatenate(found.parts),
         ends=np.cumsum([len(part) for part in found.parts]),
         measures=np.array([found.excess, found.hull_excess, float(found.is_closed)]),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 
 MOST_VOXELS = 1_000_000
 """Largest number of voxels of a grid."""
@@ -72,13 +72,11 @@ def solid_grid(triangles: FloatArray, edge: float) -> SolidGrid:
     shape = np.ceil((high - origin) / edge).astype(np.int64) + BORDER
     points = surface_points(triangles, edge / 3)
     voxel = ((points - origin) / edge).astype(np.int64)
-    surface = np.zeros(shape, dtype=bool)
-    surface[tuple(voxel.T)] = True
-    _, first = np.unique(np.ravel_multi_index(tuple(voxel.T), shape), return_index=True)
-    solid = ~_outside(surface)
-    return SolidGrid(
-        origin, edge, np.asarray(ndimage.distance_transform_edt(~solid)) * edge, points[first]
-    )
+    first = np.full(shape, -1)
+    first[tuple(voxel[::-1].T)] = np.arange(len(points))[::-1]  # the last assignment stays
+    surface = first >= 0
+    depth = np.asarray(ndimage.distance_transform_edt(_outside(surface))) * edge
+    return SolidGrid(origin, edge, depth, points[first[surface]])
 
 
 def _edge(size: FloatArray, edge: float) -> float:
@@ -95,19 +93,29 @@ def _outside(surface: BoolArray) -> BoolArray:
 
 
 def surface_points(triangles: FloatArray, spacing: float) -> FloatArray:
-    """Points on triangles, the corners and others at most a spacing apart, shape (N, 3) [m]."""
-    edges = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
-    steps = np.maximum(np.ceil(edges.max(axis=1) / spacing), 1).astype(np.int64)
-    points: list[FloatArray] = []
-    for count in np.unique(steps):
-        weights = _barycentric(int(count))
-        points.append(np.einsum("wk,tkd->twd", weights, triangles[steps == count]).reshape(-1, 3))
-    return np.concatenate(points)
+    """Points on triangles, the corners and others at most a spacing apart, shape (N, 3) [m].
+
+    They are on lines parallel to a triangle's longest side, so thin triangles have few.
+    """
+    sides = np.roll(triangles, -1, axis=1) - triangles
+    length = np.linalg.norm(sides, axis=2)
+    order = (length.argmax(axis=1)[:, None] + np.arange(3)) % 3
+    a, b, c = np.moveaxis(triangles[np.arange(len(triangles))[:, None], order], 1, 0)
+    longest = length.max(axis=1)
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    lines = _steps(area / np.maximum(longest, 1e-12), spacing)
+    triangle, share = _shares(lines)
+    start, end = (corner[triangle] + share[:, None] * (c - corner)[triangle] for corner in (a, b))
+    line, share = _shares(_steps((1 - share) * longest[triangle], spacing))
+    return start[line] + share[:, None] * (end - start)[line]
 
 
-def _barycentric(steps: int) -> FloatArray:
-    """Weights of a triangular lattice with its corners, shape (W, 3)."""
-    first, second = np.indices((steps + 1, steps + 1)).reshape(2, -1)
-    is_inside = first + second <= steps
-    first, second = first[is_inside], second[is_inside]
-    return np.column_stack([first, second, steps - first - second]) / steps
+def _steps(length: FloatArray, spacing: float) -> IntArray:
+    return np.maximum(np.ceil(length / spacing), 1).astype(np.int64)
+
+
+def _shares(steps: IntArray) -> tuple[IntArray, FloatArray]:
+    """For each row the shares 0, 1/steps, ... 1: the numbers of the rows, and the shares."""
+    row = np.repeat(np.arange(len(steps)), steps + 1)
+    first = np.cumsum(steps + 1) - (steps + 1)
+    return row, (np.arange(len(row)) - first[row]) / steps[row]

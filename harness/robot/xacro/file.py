@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -9,10 +10,12 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
+from harness.core.user_cache import cached, store
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
 from harness.robot.packages import PackagePath
@@ -59,11 +62,26 @@ def refuse_unknown_arguments(args: Mapping[str, Any], paths: Sequence[Path]) -> 
 
 
 def render_bundled(path: Path, mappings: Mapping[str, str]) -> str:
-    """The URDF text of a bundled file.
+    """The URDF text of a bundled file, which the user's cache directory keeps.
+
+    The key holds everything that the text depends on: all files of the robot's folder, the
+    arguments, and the version of xacro.
 
     Raises:
         RobotError: It cannot be rendered with these arguments.
     """
+    key = hashlib.sha256(repr((version("xacro"), str(path), sorted(mappings.items()))).encode())
+    for each in sorted(each for each in path.parent.rglob("*") if each.is_file()):
+        key.update(each.read_bytes())
+    name = f"rendered/{key.hexdigest()}.urdf"
+    stored = cached(name)
+    if stored is None:
+        stored = _rendered_bundled(path, mappings).encode()
+        store(name, stored)
+    return stored.decode()
+
+
+def _rendered_bundled(path: Path, mappings: Mapping[str, str]) -> str:
     import xacro  # here: parsing plain URDFs does not need it
 
     xacro.__dict__["open"] = partial(

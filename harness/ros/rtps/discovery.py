@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from harness.ros.rtps import wire
-from harness.ros.rtps.writer import Address, Qos
+from harness.ros.rtps.wire import Address
 
 LEASE = 100.0
 """Seconds of silence after which peers forget this participant."""
@@ -21,7 +21,20 @@ BUILTIN = 0x3F
 _HEAD = b"\0\3\0\0"
 _VERSION = [(wire.PID_VERSION, wire.VERSION), (wire.PID_VENDOR, wire.VENDOR)]
 
-Parameters = dict[int, list[bytes]]
+
+@dataclass(frozen=True)
+class Qos:
+    """What decides whether a writer and a reader match.
+
+    Attributes:
+        is_reliable: Lost samples are sent again.
+        is_latched: Readers that come later get the kept samples too (transient local).
+        depth: Samples that a writer keeps.
+    """
+
+    is_reliable: bool = True
+    is_latched: bool = False
+    depth: int = 10
 
 
 @dataclass(frozen=True)
@@ -46,10 +59,10 @@ class ParticipantData:
         known = wire.parameters_of(payload)
         lease, domain = known.get(wire.PID_LEASE), known.get(wire.PID_DOMAIN)
         return cls(
-            struct.unpack("<I", domain[0])[0] if domain else None,
+            _first(domain) if domain else None,
             _addresses(known, wire.PID_META_UNICAST),
             _addresses(known, wire.PID_DEFAULT_UNICAST),
-            float(struct.unpack("<iI", lease[0])[0]) if lease else PEER_LEASE,
+            float(_first(lease)) if lease else PEER_LEASE,
         )
 
 
@@ -59,7 +72,7 @@ class Endpoint:
 
     Attributes:
         guid: The GUID of the endpoint.
-        topic: The name of its topic in DDS.
+        topic: The name of its topic in DDS, such as `rt/joint_states`.
         type_name: The name of its type in DDS.
         qos: The quality that it offers or requests.
         addresses: Where it is reached; empty for its participant's addresses.
@@ -75,6 +88,16 @@ class Endpoint:
     def is_writer(self) -> bool:
         """Whether it writes, with a key or without."""
         return self.guid[15] & 0x0F in (0x02, 0x03)
+
+    def matches(self, other: Endpoint) -> bool:
+        """Whether direction, topic, type and quality allow a connection with another endpoint."""
+        offered, requested = (self, other) if self.is_writer else (other, self)
+        return (
+            offered.is_writer > requested.is_writer
+            and (offered.topic, offered.type_name) == (requested.topic, requested.type_name)
+            and offered.qos.is_reliable >= requested.qos.is_reliable
+            and offered.qos.is_latched >= requested.qos.is_latched
+        )
 
     @classmethod
     def parsed(cls, payload: bytes) -> Endpoint:
@@ -107,7 +130,7 @@ class Endpoint:
                 (wire.PID_PARTICIPANT, self.guid[:12] + wire.PARTICIPANT),
                 *_VERSION,
                 (wire.PID_KEY_HASH, self.guid),
-                *((wire.PID_UNICAST, wire.locator(*each)) for each in self.addresses),
+                *((wire.PID_UNICAST, wire.locator(each)) for each in self.addresses),
                 (wire.PID_TOPIC, wire.text(self.topic)),
                 (wire.PID_TYPE, wire.text(self.type_name)),
                 (wire.PID_RELIABILITY, reliability),
@@ -118,7 +141,7 @@ class Endpoint:
 
 def announcement(guid: bytes, domain: int, name: str, addresses: Sequence[Address]) -> bytes:
     """The announcement of this participant."""
-    locators = [wire.locator(*each) for each in addresses]
+    locators = [wire.locator(each) for each in addresses]
     return _HEAD + wire.parameters(
         [
             *_VERSION,
@@ -147,7 +170,7 @@ def is_gone(inline: dict[int, bytes]) -> bool:
     return bool(inline.get(wire.PID_STATUS, b"\0")[-1] & 3)
 
 
-def _addresses(known: Parameters, key: int) -> list[Address]:
+def _addresses(known: dict[int, list[bytes]], key: int) -> list[Address]:
     found = map(wire.address_of, known.get(key, []))
     return [address for address in found if address is not None]
 

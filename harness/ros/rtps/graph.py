@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
+import numpy as np
+
 from harness.ros.graph import Reply
-from harness.ros.interfaces import CANCEL, decoded, message, typestore
+from harness.ros.interfaces import CANCEL, decoded, encoded, message, prepare
 from harness.ros.names import Names
 from harness.ros.rtps import wire
+from harness.ros.rtps.discovery import Endpoint, Qos
 from harness.ros.rtps.participant import Participant
-from harness.ros.rtps.reader import Received
-from harness.ros.rtps.writer import Qos, Writer
+from harness.ros.rtps.reader import Reader
+from harness.ros.rtps.wire import Sample
+from harness.ros.rtps.writer import Writer
 
-SERVICE_DEPTH = 100
+SERVICE = Qos(depth=100)
 DISCOVERY = "ros_discovery_info"
+INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
 CYCLONE = b"\x01\x10"
 """Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
-content: 16 bytes between the encapsulation header and the message, in requests and responses."""
+content, between the encapsulation header and the message of requests and responses."""
+CYCLONE_IDENTITY = 16
 GID = 16
 """Bytes of a GUID in rmw_dds_common/msg/Gid since Jazzy."""
 
@@ -38,52 +43,35 @@ class _Publisher:
 
     @property
     def subscribers(self) -> int:
-        return len(self.writer.readers)
+        return len(self.writer.matched)
 
     def publish(self, message: Any) -> None:
-        if self.writer.readers or self.writer.qos.is_latched:
-            self.writer.write(bytes(typestore().serialize_cdr(message, self.kind)))
+        if self.writer.matched or self.writer.endpoint.qos.is_latched:
+            self.writer.write(encoded(message, self.kind))
 
 
 @dataclass
 class _Client:
+    """A client of a service; `waiting` has what takes each response, by the request's identity."""
+
     writer: Writer
+    reader: Reader
     kind: str
-    own_reader: bytes
-    """GUID of the reader of the responses."""
-    replies: set[bytes]
-    """Writers of responses that were discovered; shared with the reader."""
-    waiting: dict[int, Callable[[Any], None]] = field(
-        default_factory=dict[int, Callable[[Any], None]]
+    waiting: dict[bytes, Callable[[Any], None]] = field(
+        default_factory=dict[bytes, Callable[[Any], None]]
     )
 
     @property
     def is_ready(self) -> bool:
-        return bool(self.writer.readers) and bool(self.replies)
+        return bool(self.writer.matched) and bool(self.reader.matched)
 
     def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
-        payload = bytes(typestore().serialize_cdr(request, f"{self.kind}_Request"))
-        number = self.writer.last + 1
-        self.waiting[number] = on_response
-        if any(guid.startswith(CYCLONE) for guid in self.writer.readers):
-            self.writer.write(_with_identity(payload, self.own_reader[8:] + _little(number)))
-            return
-        identity = self.own_reader + wire.sequence_number(number)
-        self.writer.write(payload, wire.parameters([(wire.PID_RELATED, identity)]))
-
-    def take(self, response: Any, received: Received) -> None:
-        """Hand a response to the request that it answers."""
-        if received.writer.startswith(CYCLONE):
-            own, number = received.payload[4:12], received.payload[12:20]
-            is_own = own == self.own_reader[8:]
-            key = int.from_bytes(number, "little", signed=True)
-        else:
-            related = _related(received)
-            is_own = related[:16] == self.own_reader
-            key = wire.number_at(related, 16, "<") if is_own else 0
-        waiting = self.waiting.pop(key, None) if is_own else None
-        if waiting is not None:
-            waiting(response)
+        number, guid = self.writer.last + 1, self.reader.endpoint.guid
+        identity = guid + wire.sequence_number(number)
+        if any(server.startswith(CYCLONE) for server in self.writer.matched):
+            identity = guid[8:] + number.to_bytes(8, "little")
+        self.waiting[identity] = on_response
+        self.writer.write(*_framed(encoded(request, f"{self.kind}_Request"), identity))
 
 
 class RtpsGraph:
@@ -98,28 +86,19 @@ class RtpsGraph:
             is_local: Whether it talks to this machine alone.
 
         Raises:
-            NetworkError: There is no such domain, or no free port.
+            SpecError: There is no such domain.
+            NetworkError: There is no free port.
         """
         self.participant = Participant(domain, name=node, is_local=is_local)
         self._node = node
-        self._entities: tuple[list[bytes], list[bytes]] = ([], [])
-        info = "rmw_dds_common/msg/ParticipantEntitiesInfo"
-        self._discovery = self.participant.writer(
-            DISCOVERY, dds_type(info), Qos(is_latched=True, depth=1)
-        )
+        latched = Qos(is_latched=True, depth=1)
+        self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), latched)
         self._introduce()
 
     def advertise(
-        self,
-        topic: str,
-        kind: str,
-        *,
-        latched: bool = False,
-        depth: int = 10,
+        self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
     ) -> _Publisher:
-        self._prepare(kind)
-        qos = Qos(is_latched=latched, depth=depth)
-        return _Publisher(self._writer(f"rt{topic}", dds_type(kind), qos), kind)
+        return _Publisher(self._writer(f"rt{topic}", kind, Qos(True, latched, depth)), kind)
 
     def subscribe(
         self,
@@ -130,45 +109,34 @@ class RtpsGraph:
         latched: bool = False,
         reliable: bool = True,
     ) -> None:
-        qos = Qos(is_reliable=reliable, is_latched=latched)
+        qos = Qos(reliable, latched)
         self._reader(f"rt{topic}", kind, qos, lambda content, _: on_message(content))
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
-        self._prepare(f"{kind}_Response")
-        qos = Qos(depth=SERVICE_DEPTH)
-        writer = self._writer(f"rr{name}Reply", dds_type(f"{kind}_Response"), qos)
+        writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE)
 
-        def answer(received: Received, response: Any) -> None:
-            payload = bytes(typestore().serialize_cdr(response, f"{kind}_Response"))
-            if received.writer.startswith(CYCLONE):
-                payload = _with_identity(payload, received.payload[4:20])
-                writer.write(payload, target=received.writer[:12])
-                return
-            client = _related(received)[:16] or received.writer
-            identity = client + wire.sequence_number(received.number)
-            related = [(wire.PID_RELATED, identity), (wire.PID_RELATED_OLD, identity)]
-            writer.write(payload, wire.parameters(related), target=client[:12])
+        def take(request: Any, sample: Sample) -> None:
+            def answer(response: Any) -> None:
+                payload = encoded(response, f"{kind}_Response")
+                writer.write(*_framed(payload, _request(sample)), target=sample.writer[:12])
 
-        def take(request: Any, received: Received) -> None:
-            on_request(request, partial(answer, received))
+            on_request(request, answer)
 
-        self._reader(f"rq{name}Request", f"{kind}_Request", qos, take)
+        self._reader(f"rq{name}Request", f"{kind}_Request", SERVICE, take)
 
     def client(self, name: str, kind: str) -> _Client:
-        qos = Qos(depth=SERVICE_DEPTH)
+        def take(response: Any, sample: Sample) -> None:
+            on_response = client.waiting.pop(_answered_request(sample), None)
+            if on_response is not None:
+                on_response(response)
 
-        def take(response: Any, received: Received) -> None:
-            client.take(response, received)
-
-        reader = self._reader(f"rr{name}Reply", f"{kind}_Response", qos, take)
-        writer = self._writer(f"rq{name}Request", dds_type(f"{kind}_Request"), qos)
-        own = self.participant.guid(reader.entity)
-        client = _Client(writer, kind, own, reader.writers.keys())  # pyright: ignore[reportArgumentType]
+        reader = self._reader(f"rr{name}Reply", f"{kind}_Response", SERVICE, take)
+        writer = self._writer(f"rq{name}Request", f"{kind}_Request", SERVICE)
+        client = _Client(writer, reader, kind)
         return client
 
     def names(self) -> tuple[Names, Names]:
-        own, others = self.participant.own_topics(), self.participant.known_topics()
-        return _names(*own), _names(*others)
+        return _names(self.participant.own_endpoints()), _names(self.participant.known_endpoints())
 
     def spin(self, until: float) -> None:
         self.participant.spin(until)
@@ -176,78 +144,83 @@ class RtpsGraph:
     def close(self) -> None:
         self.participant.close()
 
-    @staticmethod
-    def _prepare(kind: str) -> None:
-        """Let rosbags write the code of a type now, which takes some milliseconds."""
-        payload = typestore().serialize_cdr(message(kind), kind)
-        typestore().deserialize_cdr(payload, kind)
-
-    def _writer(self, topic: str, type_name: str, qos: Qos) -> Writer:
-        made = self.participant.writer(topic, type_name, qos)
-        self._entities[1].append(self.participant.guid(made.entity))
+    def _writer(self, topic: str, kind: str, qos: Qos) -> Writer:
+        prepare(kind)
+        made = self.participant.writer(topic, dds_type(kind), qos)
         self._introduce()
         return made
 
     def _reader(
-        self, topic: str, kind: str, qos: Qos, take: Callable[[Any, Received], None]
-    ) -> Any:
-        is_service = not topic.startswith("rt")
+        self, topic: str, kind: str, qos: Qos, take: Callable[[Any, Sample], None]
+    ) -> Reader:
+        def deliver(sample: Sample) -> None:
+            content = decoded(_message_of(sample, topic), kind)
+            if content is not None:
+                take(content, sample)
 
-        def deliver(received: Received) -> None:
-            payload = received.payload
-            if is_service and received.writer.startswith(CYCLONE):
-                payload = payload[:4] + payload[20:]
-            try:
-                content = decoded(payload, kind)
-            except Exception:  # noqa: BLE001 - bytes of another program; no content of them is certain
-                return
-            take(content, received)
-
-        self._prepare(kind)
+        prepare(kind)
         made = self.participant.reader(topic, dds_type(kind), qos, deliver)
-        self._entities[0].append(self.participant.guid(made.entity))
         self._introduce()
         return made
 
     def _introduce(self) -> None:
         """Say which endpoints belong to the node: `ros2 node info` reads it."""
-        import numpy as np
 
         def gid(guid: bytes) -> Any:
             padded = np.frombuffer(guid.ljust(GID, b"\0"), np.uint8)
             return message("rmw_dds_common/msg/Gid", data=padded)
 
-        readers, writers = ([gid(guid) for guid in guids] for guids in self._entities)
+        own = [each for each in self.participant.own_endpoints() if each.topic != DISCOVERY]
         node = message(
             "rmw_dds_common/msg/NodeEntitiesInfo",
             node_namespace="/",
             node_name=self._node,
-            reader_gid_seq=readers,
-            writer_gid_seq=writers,
+            reader_gid_seq=[gid(each.guid) for each in own if not each.is_writer],
+            writer_gid_seq=[gid(each.guid) for each in own if each.is_writer],
         )
-        kind = "rmw_dds_common/msg/ParticipantEntitiesInfo"
-        own = gid(self.participant.guid(wire.PARTICIPANT))
-        info = message(kind, gid=own, node_entities_info_seq=[node])
-        self._discovery.write(bytes(typestore().serialize_cdr(info, kind)))
+        info = message(INFO, gid=gid(self.participant.guid), node_entities_info_seq=[node])
+        self._discovery.write(encoded(info, INFO))
 
 
-def _names(*topics: set[str]) -> Names:
+def _names(endpoints: Iterable[Endpoint]) -> Names:
     """Names in ROS of what is written and what is read in DDS; services are left out."""
-    return Names.of(*({name[2:] for name in each if name.startswith("rt/")} for each in topics))
+    topics = [(e.is_writer, e.topic[2:]) for e in endpoints if e.topic.startswith("rt/")]
+    return Names.of(*([name for kind, name in topics if kind is which] for which in (True, False)))
 
 
-def _related(received: Received) -> bytes:
-    """The reader and the number of a request that a sample names; empty where it names none."""
+# -- what identifies a request: a reader and a number in 24 bytes, or 16 bytes of Cyclone DDS -----
+
+
+def _framed(payload: bytes, identity: bytes) -> tuple[bytes, bytes]:
+    """The payload and the inline parameters of a request or a response."""
+    if len(identity) == CYCLONE_IDENTITY:
+        return payload[:4] + identity + payload[4:], b""
+    keys = wire.PID_RELATED, wire.PID_RELATED_OLD
+    return payload, wire.parameters([(key, identity) for key in keys])
+
+
+def _message_of(sample: Sample, topic: str) -> bytes:
+    """The serialised message alone."""
+    is_framed = sample.writer.startswith(CYCLONE) and not topic.startswith("rt")
+    return sample.payload[:4] + sample.payload[20:] if is_framed else sample.payload
+
+
+def _request(sample: Sample) -> bytes:
+    """The identity of a request."""
+    if sample.writer.startswith(CYCLONE):
+        return sample.payload[4:20]
+    return (_related(sample)[:16] or sample.writer) + wire.sequence_number(sample.number)
+
+
+def _answered_request(sample: Sample) -> bytes:
+    """The identity of the request that a response answers."""
+    return sample.payload[4:20] if sample.writer.startswith(CYCLONE) else _related(sample)
+
+
+def _related(sample: Sample) -> bytes:
+    """The reader and the number that a sample names; empty where it names none."""
     for key in (wire.PID_RELATED, wire.PID_RELATED_OLD):
-        related = received.inline.get(key, b"")
+        related = sample.inline.get(key, b"")
         if len(related) >= 24 and any(related[:12]):
             return related[:24]
     return b""
-
-
-def _with_identity(payload: bytes, identity: bytes) -> bytes:
-    return payload[:4] + identity + payload[4:]
-
-
-def _little(number: int) -> bytes:
-    return number.to_bytes(8, "little", signed=True)

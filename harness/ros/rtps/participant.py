@@ -12,14 +12,27 @@ from dataclasses import dataclass, field
 
 from harness.core.errors import Problem, SpecError
 from harness.ros.rtps import wire
-from harness.ros.rtps.discovery import Endpoint, ParticipantData, announcement, farewell, is_gone
-from harness.ros.rtps.reader import Reader, Received
+from harness.ros.rtps.discovery import (
+    Endpoint,
+    ParticipantData,
+    Qos,
+    announcement,
+    farewell,
+    is_gone,
+)
+from harness.ros.rtps.reader import Reader
 from harness.ros.rtps.sockets import Sockets
-from harness.ros.rtps.writer import Address, Qos, Writer
+from harness.ros.rtps.wire import Address, Sample
+from harness.ros.rtps.writer import Writer
 
 MOST_DOMAINS = 232
 ANNOUNCE_EVERY = 1.0
 REMIND_EVERY = 0.1
+DISCOVERY_PAIRS = (
+    (wire.PUBLICATIONS_WRITER, wire.PUBLICATIONS_READER),
+    (wire.SUBSCRIPTIONS_WRITER, wire.SUBSCRIPTIONS_READER),
+)
+"""Entities with which participants announce their writers and their readers."""
 
 
 @dataclass
@@ -54,59 +67,48 @@ class Participant:
             raise SpecError([Problem(f"ROS domain {domain}", 0, 0, said)])
         self.domain, self.name = domain, name
         self.prefix = wire.VENDOR + os.urandom(10)
+        self.guid = self.prefix + wire.PARTICIPANT
         self._sockets = Sockets(domain, is_local=is_local)
         self._peers: dict[bytes, _Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
-        self._arrived: deque[tuple[Callable[[Received], None], Received]] = deque()
-        self._entities = 0
+        self._arrived: deque[tuple[Callable[[Sample], None], Sample]] = deque()
         self._next_announcement = self._next_reminder = 0.0
-        self._publications = self._builtin_writer(wire.PUBLICATIONS_WRITER)
-        self._subscriptions = self._builtin_writer(wire.SUBSCRIPTIONS_WRITER)
-        self._builtin_reader(wire.PUBLICATIONS_READER)
-        self._builtin_reader(wire.SUBSCRIPTIONS_READER)
+        builtin = Qos(is_latched=True, depth=1000)
+        for writer, reader in DISCOVERY_PAIRS:
+            written, read = (Endpoint(self.prefix + e, "", "", builtin) for e in (writer, reader))
+            self._writers[writer] = Writer(written, self._send)
+            self._readers[reader] = Reader(read, self._send, self._take_endpoint)
 
     # -- endpoints ----------------------------------------------------------------------------
 
     def writer(self, topic: str, type_name: str, qos: Qos) -> Writer:
         """A writer of a topic, known to the peers from now on."""
-        entity = self._entity(0x03)
-        made = Writer(entity, topic, type_name, qos, self._send)
-        self._writers[entity] = made
-        self._announce_endpoint(self._publications, made)
+        made = Writer(self._endpoint(0x03, topic, type_name, qos), self._send)
+        self._writers[made.endpoint.guid[12:]] = made
+        self._publish(wire.PUBLICATIONS_WRITER, made)
         return made
 
     def reader(
-        self, topic: str, type_name: str, qos: Qos, deliver: Callable[[Received], None]
+        self, topic: str, type_name: str, qos: Qos, deliver: Callable[[Sample], None]
     ) -> Reader:
         """A reader of a topic, known to the peers from now on."""
-        entity = self._entity(0x04)
 
-        def arrive(received: Received) -> None:
-            self._arrived.append((deliver, received))
+        def arrive(sample: Sample) -> None:
+            self._arrived.append((deliver, sample))
 
-        made = Reader(entity, topic, type_name, qos, self._send, arrive)
-        self._readers[entity] = made
-        self._announce_endpoint(self._subscriptions, made)
+        made = Reader(self._endpoint(0x04, topic, type_name, qos), self._send, arrive)
+        self._readers[made.endpoint.guid[12:]] = made
+        self._publish(wire.SUBSCRIPTIONS_WRITER, made)
         return made
 
-    def guid(self, entity: bytes) -> bytes:
-        """The GUID of an endpoint of this participant."""
-        return self.prefix + entity
+    def own_endpoints(self) -> list[Endpoint]:
+        """The writers and readers of this participant."""
+        return [each.endpoint for each in self._all() if each.endpoint.topic]
 
-    def own_topics(self) -> tuple[set[str], set[str]]:
-        """Names in DDS of the topics that are written and read here."""
-        written = {each.topic for each in self._writers.values()}
-        return written, {each.topic for each in self._readers.values()}
-
-    def known_topics(self) -> tuple[set[str], set[str]]:
-        """Names in DDS of the topics that peers write and read."""
-        written: set[str] = set()
-        read: set[str] = set()
-        for peer in self._peers.values():
-            for endpoint in peer.endpoints.values():
-                (written if endpoint.is_writer else read).add(endpoint.topic)
-        return written, read
+    def known_endpoints(self) -> list[Endpoint]:
+        """The writers and readers of all peers."""
+        return [each for peer in self._peers.values() for each in peer.endpoints.values()]
 
     # -- time ---------------------------------------------------------------------------------
 
@@ -126,7 +128,7 @@ class Participant:
     def close(self) -> None:
         """Leave the domain, and let the peers know."""
         for prefix, peer in self._peers.items():
-            self._send(prefix, farewell(self.guid(wire.PARTICIPANT)), peer.meta)
+            self._send(prefix, farewell(self.guid), peer.meta)
         self._sockets.close()
 
     def _tend(self) -> None:
@@ -155,8 +157,8 @@ class Participant:
             with suppress(struct.error, IndexError, KeyError, ValueError):
                 self._take(datagram)
         while self._arrived:
-            deliver, received = self._arrived.popleft()
-            deliver(received)
+            deliver, sample = self._arrived.popleft()
+            deliver(sample)
 
     def _take(self, datagram: bytes) -> None:
         source, is_for_us = datagram[8:20], True
@@ -165,60 +167,64 @@ class Participant:
         for message in wire.submessages(datagram):
             if message.kind == wire.INFO_DST:
                 is_for_us = message.body[:12] in (self.prefix, bytes(12))
+            elif is_for_us and message.kind in (wire.DATA, wire.DATA_FRAG):
+                self._take_sample(source, wire.sample_of(source, message))
             elif is_for_us:
-                self._take_submessage(source, message)
+                self._take_status(source, message)
 
-    def _take_submessage(self, source: bytes, message: wire.Submessage) -> None:
+    def _take_status(self, source: bytes, message: wire.Submessage) -> None:
+        """What a peer's writer has, or what its reader lacks."""
         body, order = message.body, message.order
-        if message.kind in (wire.DATA, wire.DATA_FRAG):
-            self._take_sample(source, message)
-        elif message.kind == wire.HEARTBEAT:
-            first, last = wire.number_at(body, 8, order), wire.number_at(body, 16, order)
-            for reader in self._addressed(body[:4], source + body[4:8]):
-                reader.heartbeat(source + body[4:8], first, last, is_final=bool(message.flags & 2))
+        first, second = body[:4], body[4:8]
+        if message.kind == wire.HEARTBEAT:
+            oldest, last = wire.number_at(body, 8, order), wire.number_at(body, 16, order)
+            for reader in self._addressed(first, source + second):
+                reader.heartbeat(source + second, oldest, last, is_final=bool(message.flags & 2))
         elif message.kind == wire.GAP:
             base, numbers = wire.numbers_of(body, 16, order)
-            for reader in self._addressed(body[:4], source + body[4:8]):
-                reader.gap(source + body[4:8], wire.number_at(body, 8, order), base, numbers)
-        elif message.kind == wire.ACKNACK and body[4:8] in self._writers:
+            for reader in self._addressed(first, source + second):
+                reader.gap(source + second, wire.number_at(body, 8, order), base, numbers)
+        elif message.kind == wire.ACKNACK and second in self._writers:
             base, numbers = wire.numbers_of(body, 8, order)
-            self._writers[body[4:8]].acknowledge(source + body[:4], base, numbers)
-        elif message.kind == wire.NACK_FRAG and body[4:8] in self._writers:
+            self._writers[second].acknowledge(source + first, base, numbers)
+        elif message.kind == wire.NACK_FRAG and second in self._writers:
             number, places = wire.number_at(body, 8, order), wire.fragments_of(body, 16, order)
-            self._writers[body[4:8]].resend_fragments(source + body[:4], number, places)
+            self._writers[second].resend_fragments(source + first, number, places)
 
-    def _take_sample(self, source: bytes, message: wire.Submessage) -> None:
-        sample = wire.sample_of(message)
-        if sample.writer == wire.SPDP_WRITER:
+    def _take_sample(self, source: bytes, sample: Sample) -> None:
+        if sample.writer[12:] == wire.SPDP_WRITER:
             self._take_participant(source, sample)
             return
         if source in self._peers:
             self._peers[source].knows_us = True
-        for reader in self._addressed(sample.reader, source + sample.writer):
-            reader.take(source + sample.writer, sample)
+        for reader in self._addressed(sample.reader, sample.writer):
+            reader.take(sample)
 
     def _addressed(self, entity: bytes, writer: bytes) -> Iterable[Reader]:
         if entity != wire.NO_ENTITY:
             return (self._readers[entity],) if entity in self._readers else ()
-        return [reader for reader in self._readers.values() if writer in reader.writers]
+        return [reader for reader in self._readers.values() if writer in reader.matched]
 
     # -- discovery ----------------------------------------------------------------------------
 
     def _announce(self, *addresses: Address) -> None:
-        guid, own = self.guid(wire.PARTICIPANT), self._sockets.unicast
-        payload = announcement(guid, self.domain, self.name, own)
+        payload = announcement(self.guid, self.domain, self.name, self._sockets.unicast)
         sample = wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload)
         for address in addresses:
             self._send(b"", sample, address)
 
-    def _announce_endpoint(self, publisher: Writer, made: Writer | Reader) -> None:
-        guid, own = self.guid(made.entity), self._sockets.unicast[-1:]
-        publisher.write(Endpoint(guid, made.topic, made.type_name, made.qos, own).payload())
-        for peer in self._peers.values():
-            for endpoint in peer.endpoints.values():
-                self._match(made, endpoint, peer)
+    def _endpoint(self, kind: int, topic: str, type_name: str, qos: Qos) -> Endpoint:
+        entity = (len(self._writers) + len(self._readers)).to_bytes(3, "big") + bytes([kind])
+        own = self._sockets.unicast[-1:]
+        return Endpoint(self.prefix + entity, topic, type_name, qos, own)
 
-    def _take_participant(self, source: bytes, sample: wire.Sample) -> None:
+    def _publish(self, announcer: bytes, made: Writer | Reader) -> None:
+        self._writers[announcer].write(made.endpoint.payload())
+        for peer in self._peers.values():
+            for other in peer.endpoints.values():
+                self._match(made, other, peer)
+
+    def _take_participant(self, source: bytes, sample: Sample) -> None:
         if is_gone(sample.inline):
             self._forget(source)
             return
@@ -234,65 +240,39 @@ class Participant:
             self._announce(meta)
         if is_new:
             latched = Qos(is_latched=True)
-            for writer, reader in (
-                (wire.PUBLICATIONS_WRITER, wire.PUBLICATIONS_READER),
-                (wire.SUBSCRIPTIONS_WRITER, wire.SUBSCRIPTIONS_READER),
-            ):
-                self._writers[writer].match(source + reader, meta, latched)
-                self._readers[reader].match(source + writer, meta, latched)
+            for writer, reader in DISCOVERY_PAIRS:
+                self._writers[writer].match(Endpoint(source + reader, "", "", latched), meta)
+                self._readers[reader].match(Endpoint(source + writer, "", "", latched), meta)
 
-    def _forget(self, prefix: bytes) -> None:
-        self._peers.pop(prefix, None)
-        for writer in self._writers.values():
-            for guid in [guid for guid in writer.readers if guid[:12] == prefix]:
-                del writer.readers[guid]
-        for reader in self._readers.values():
-            for guid in [guid for guid in reader.writers if guid[:12] == prefix]:
-                del reader.writers[guid]
-
-    def _take_endpoint(self, received: Received) -> None:
+    def _take_endpoint(self, sample: Sample) -> None:
         """A peer made or removed a writer or a reader."""
-        if is_gone(received.inline):
-            self._remove_endpoint(received)
+        if is_gone(sample.inline):
+            guid = sample.inline.get(wire.PID_KEY_HASH)
+            if guid is None and len(sample.payload) > 4:
+                guid = wire.parameters_of(sample.payload)[wire.PID_ENDPOINT][0][:16]
+            if guid is not None:
+                self._forget(guid)
             return
-        endpoint = Endpoint.parsed(received.payload)
+        endpoint = Endpoint.parsed(sample.payload)
         peer = self._peers.get(endpoint.guid[:12])
         if peer is not None:
             peer.endpoints[endpoint.guid] = endpoint
-            for mine in (self._readers if endpoint.is_writer else self._writers).values():
+            for mine in self._all():
                 self._match(mine, endpoint, peer)
 
     def _match(self, mine: Writer | Reader, other: Endpoint, peer: _Peer) -> None:
-        """Connect two endpoints where direction, topic, type and quality allow it."""
-        is_same = (other.topic, other.type_name) == (mine.topic, mine.type_name)
-        is_writer = isinstance(mine, Writer)
-        offered, requested = (mine.qos, other.qos) if is_writer else (other.qos, mine.qos)
-        if is_same and other.is_writer != is_writer and offered.serves(requested):
-            address = self._sockets.reachable(other.addresses) or peer.user
-            mine.match(other.guid, address, other.qos)
+        """Connect two endpoints where they fit."""
+        if mine.endpoint.matches(other):
+            mine.match(other, self._sockets.reachable(other.addresses) or peer.user)
 
-    def _remove_endpoint(self, received: Received) -> None:
-        guid = received.inline.get(wire.PID_KEY_HASH)
-        if guid is None and len(received.payload) > 4:
-            guid = wire.parameters_of(received.payload)[wire.PID_ENDPOINT][0][:16]
-        if guid is None:
-            return
-        if guid[:12] in self._peers:
-            self._peers[guid[:12]].endpoints.pop(guid, None)
-        for writer in self._writers.values():
-            writer.readers.pop(guid, None)
-        for reader in self._readers.values():
-            reader.writers.pop(guid, None)
+    def _forget(self, gone: bytes) -> None:
+        """Remove an endpoint, or a participant with all endpoints, by GUID or prefix."""
+        self._peers.pop(gone, None)
+        if gone[:12] in self._peers:
+            self._peers[gone[:12]].endpoints.pop(gone, None)
+        for mine in self._all():
+            for guid in [guid for guid in mine.matched if guid.startswith(gone)]:
+                del mine.matched[guid]
 
-    def _builtin_writer(self, entity: bytes) -> Writer:
-        made = Writer(entity, "", "", Qos(is_latched=True, depth=1000), self._send)
-        self._writers[entity] = made
-        return made
-
-    def _builtin_reader(self, entity: bytes) -> None:
-        qos = Qos(is_latched=True)
-        self._readers[entity] = Reader(entity, "", "", qos, self._send, self._take_endpoint)
-
-    def _entity(self, kind: int) -> bytes:
-        self._entities += 1
-        return self._entities.to_bytes(3, "big") + bytes([kind])
+    def _all(self) -> list[Writer | Reader]:
+        return [*self._writers.values(), *self._readers.values()]

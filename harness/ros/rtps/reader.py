@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from harness.ros.rtps import wire
-from harness.ros.rtps.writer import Address, Qos, Send
+from harness.ros.rtps.discovery import Endpoint
+from harness.ros.rtps.wire import Address, Sample
+from harness.ros.rtps.writer import Send
 
 FAST_DDS = b"\x01\x0f"
 """Vendor at the start of a GUID."""
@@ -15,22 +17,8 @@ FAST_DDS = b"\x01\x0f"
 MOST_WAITING = 4096
 """Samples of one writer that wait for an earlier one."""
 
-
-@dataclass(frozen=True)
-class Received:
-    """A sample that arrived.
-
-    Attributes:
-        writer: GUID of its writer.
-        number: The sequence number of the sample.
-        payload: Encapsulation header and content.
-        inline: Parameters that came with it.
-    """
-
-    writer: bytes
-    number: int
-    payload: bytes
-    inline: dict[int, bytes]
+LARGEST_SAMPLE = 2**26
+"""Samples that claim to be larger are ignored [bytes]."""
 
 
 @dataclass
@@ -43,70 +31,70 @@ class _Partial:
 
 @dataclass
 class _Writer:
-    """A matched writer of another participant."""
+    """A matched writer of another participant.
+
+    Attributes:
+        address: Where it is reached.
+        is_reliable: Whether lost samples come again.
+        expected: The number of the next sample; 0 before anything is known.
+        waiting: Samples that wait for an earlier one, by number.
+        partial: Samples of which fragments are missing, by number.
+        count: The number of acknowledgements so far.
+    """
 
     address: Address
-    qos: Qos
+    is_reliable: bool
     expected: int = 0
-    """Number of the next sample; 0 before anything is known."""
-    waiting: dict[int, Received] = field(default_factory=dict[int, Received])
+    waiting: dict[int, Sample] = field(default_factory=dict[int, Sample])
     partial: dict[int, _Partial] = field(default_factory=dict[int, _Partial])
     count: int = 0
 
 
-@dataclass
 class Reader:
     """A reader of one topic.
 
     Attributes:
-        entity: The entity identifier of the reader.
-        topic: The name of the topic in DDS.
-        type_name: The name of its type in DDS.
-        qos: The quality that it requests.
-        send: Sends submessages to another participant.
-        deliver: Called with every sample, those of a writer in order.
+        endpoint: The reader as it is announced.
+        matched: The writers of other participants, by GUID.
     """
 
-    entity: bytes
-    topic: str
-    type_name: str
-    qos: Qos
-    send: Send
-    deliver: Callable[[Received], None]
-    writers: dict[bytes, _Writer] = field(default_factory=dict[bytes, _Writer])
+    def __init__(self, endpoint: Endpoint, send: Send, deliver: Callable[[Sample], None]) -> None:
+        """Call `deliver` with every whole sample, those of a writer in order."""
+        self.endpoint, self._send, self._deliver = endpoint, send, deliver
+        self.matched: dict[bytes, _Writer] = {}
 
-    def match(self, guid: bytes, address: Address, qos: Qos) -> None:
+    def match(self, other: Endpoint, address: Address) -> None:
         """Listen to a writer from now on."""
-        proxy = self.writers.setdefault(guid, _Writer(address, qos))
+        is_reliable = self.endpoint.qos.is_reliable and other.qos.is_reliable
+        proxy = self.matched.setdefault(other.guid, _Writer(address, is_reliable))
         proxy.address = address
-        if self.qos.is_reliable and qos.is_reliable:
+        if is_reliable:
             # what was sent before comes again: Fast DDS answers a base of 0 at once, and one of 1
             # with its next heartbeat, three seconds later
-            self._acknowledge(guid, proxy, 0 if guid.startswith(FAST_DDS) else 1, [])
+            self._acknowledge(other.guid, proxy, 0 if other.guid.startswith(FAST_DDS) else 1, [])
 
-    def take(self, guid: bytes, sample: wire.Sample) -> None:
+    def take(self, sample: Sample) -> None:
         """A sample or a fragment of a matched writer arrived."""
-        proxy = self.writers.get(guid)
+        proxy = self.matched.get(sample.writer)
         if proxy is None:
             return
-        whole = self._assembled(proxy, sample) if sample.first else sample.payload
+        whole = _assembled(proxy, sample) if sample.first else sample
         if whole is None:
             return
-        received = Received(guid, sample.number, whole, sample.inline)
-        if not (self.qos.is_reliable and proxy.qos.is_reliable):
+        if not proxy.is_reliable:
             if sample.number >= proxy.expected:
                 proxy.expected = sample.number + 1
-                self.deliver(received)
+                self._deliver(whole)
             return
         proxy.expected = proxy.expected or sample.number
         if sample.number >= proxy.expected and len(proxy.waiting) < MOST_WAITING:
-            proxy.waiting[sample.number] = received
+            proxy.waiting[sample.number] = whole
             self._drain(proxy)
 
     def heartbeat(self, guid: bytes, first: int, last: int, *, is_final: bool) -> None:
         """A writer has samples `first` to `last`; request what is missing."""
-        proxy = self.writers.get(guid)
-        if proxy is None or not self.qos.is_reliable:
+        proxy = self.matched.get(guid)
+        if proxy is None or not self.endpoint.qos.is_reliable:
             return
         proxy.expected = max(proxy.expected, first)
         self._drain(proxy)
@@ -117,7 +105,7 @@ class Reader:
 
     def gap(self, guid: bytes, first: int, base: int, numbers: list[int]) -> None:
         """Samples `first` to `base` - 1, and some more, will never come."""
-        proxy = self.writers.get(guid)
+        proxy = self.matched.get(guid)
         if proxy is None:
             return
         if first <= (proxy.expected or first):
@@ -127,38 +115,39 @@ class Reader:
         self._drain(proxy)
 
     def _drain(self, proxy: _Writer) -> None:
-        for number in [n for n in proxy.waiting if n < proxy.expected]:
-            del proxy.waiting[number]
-        for number in [n for n in proxy.partial if n < proxy.expected]:
-            del proxy.partial[number]
+        for passed in (proxy.waiting, proxy.partial):
+            for number in [number for number in passed if number < proxy.expected]:
+                del passed[number]
         while proxy.expected in proxy.waiting:
-            received = proxy.waiting.pop(proxy.expected)
+            sample = proxy.waiting.pop(proxy.expected)
             proxy.expected += 1
-            self.deliver(received)
+            self._deliver(sample)
 
     def _acknowledge(self, guid: bytes, proxy: _Writer, base: int, missing: list[int]) -> None:
         proxy.count += 1
-        body = self.entity + guid[12:] + wire.number_set(base, missing)
+        body = self.endpoint.guid[12:] + guid[12:] + wire.number_set(base, missing)
         body += struct.pack("<I", proxy.count)
-        self.send(guid[:12], wire.submessage(wire.ACKNACK, body), proxy.address)
+        self._send(guid[:12], wire.submessage(wire.ACKNACK, body), proxy.address)
 
-    def _assembled(self, proxy: _Writer, sample: wire.Sample) -> bytes | None:
-        """The whole sample when this fragment was its last; None before."""
-        if sample.size > wire.LARGEST_SAMPLE or sample.fragment_size == 0:
-            return None
-        count = -(-sample.size // sample.fragment_size)
-        partial = proxy.partial.get(sample.number)
-        if partial is None:
-            partial = _Partial(bytearray(sample.size), set(range(1, count + 1)))
-            proxy.partial[sample.number] = partial
-        place, rest = sample.first, memoryview(sample.payload)
-        while len(rest) and place <= count and len(partial.content) == sample.size:
-            begin = (place - 1) * sample.fragment_size
-            part = rest[: min(sample.fragment_size, sample.size - begin)]
-            partial.content[begin : begin + len(part)] = part
-            partial.missing.discard(place)
-            place, rest = place + 1, rest[sample.fragment_size :]
-        if partial.missing:
-            return None
-        del proxy.partial[sample.number]
-        return bytes(partial.content)
+
+def _assembled(proxy: _Writer, sample: Sample) -> Sample | None:
+    """The whole sample when this fragment was its last; None before."""
+    size, step = sample.size, sample.fragment_size
+    if size > LARGEST_SAMPLE or step == 0:
+        return None
+    count = -(-size // step)
+    partial = proxy.partial.get(sample.number)
+    if partial is None:
+        partial = _Partial(bytearray(size), set(range(1, count + 1)))
+        proxy.partial[sample.number] = partial
+    place, rest = sample.first, memoryview(sample.payload)
+    while len(rest) and place <= count and len(partial.content) == size:
+        begin = (place - 1) * step
+        part = rest[: min(step, size - begin)]
+        partial.content[begin : begin + len(part)] = part
+        partial.missing.discard(place)
+        place, rest = place + 1, rest[step:]
+    if partial.missing:
+        return None
+    del proxy.partial[sample.number]
+    return replace(sample, payload=bytes(partial.content))

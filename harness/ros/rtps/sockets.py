@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 
 from harness.core.errors import HarnessError
-from harness.ros.rtps.writer import Address
+from harness.ros.rtps.wire import Address
 
 GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"

@@ -10,14 +10,12 @@ VERSION = b"\x02\x03"
 VENDOR = b"\x01\x7a"
 """A vendor that is not registered: peers use no private extension with it."""
 
-NO_ENTITY = bytes(4)
-SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
+NO_ENTITY, PARTICIPANT, SPDP_WRITER = bytes(4), b"\x00\x00\x01\xc1", b"\x00\x01\x00\xc2"
 PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
 SUBSCRIPTIONS_WRITER, SUBSCRIPTIONS_READER = b"\x00\x00\x04\xc2", b"\x00\x00\x04\xc7"
-PARTICIPANT = b"\x00\x00\x01\xc1"
 
 ACKNACK, HEARTBEAT, GAP, INFO_TS, INFO_DST = 0x06, 0x07, 0x08, 0x09, 0x0E
-NACK_FRAG, HEARTBEAT_FRAG, DATA, DATA_FRAG = 0x12, 0x13, 0x15, 0x16
+NACK_FRAG, DATA, DATA_FRAG = 0x12, 0x15, 0x16
 
 PID_SENTINEL, PID_LEASE, PID_TOPIC, PID_TYPE = 0x01, 0x02, 0x05, 0x07
 PID_DOMAIN, PID_VERSION, PID_VENDOR = 0x0F, 0x15, 0x16
@@ -30,21 +28,15 @@ PID_RELATED_OLD = 0x800F
 
 FRAGMENT = 57_344
 """Bytes of a sample in one datagram; UDP carries at most 65,507."""
-LARGEST_SAMPLE = 2**26
-"""Samples that claim to be larger are ignored [bytes]."""
 MOST_BITS = 256
 """Sequence numbers in one set."""
+
+Address = tuple[str, int]
 
 
 @dataclass(frozen=True)
 class Submessage:
-    """One submessage of a datagram.
-
-    Attributes:
-        kind: The identifier of its kind.
-        flags: The eight bits of its flags.
-        body: What follows its header.
-    """
+    """One submessage of a datagram; the body is what follows its header."""
 
     kind: int
     flags: int
@@ -61,12 +53,12 @@ class Sample:
     """A sample or a part of one, as DATA and DATA_FRAG carry it.
 
     Attributes:
-        reader: Entity of the reader; zeros for all readers.
-        writer: Entity of the writer.
+        reader: The entity of the reader; zeros for all readers.
+        writer: The GUID of the writer.
         number: The sequence number of the sample.
         inline: Parameters that come with the sample.
-        payload: Encapsulation header and content, or fragments of them.
-        first: Number of the first fragment, from 1; 0 for a whole sample.
+        payload: The encapsulation header and the content, or fragments of them.
+        first: The number of the first fragment, from 1; 0 for a whole sample.
         fragment_size: Bytes of each fragment but the last.
         size: Bytes of the whole sample.
     """
@@ -168,8 +160,7 @@ def parsed_parameters(body: bytes, place: int, order: str) -> tuple[dict[int, li
 
 def parameters_of(payload: bytes) -> dict[int, list[bytes]]:
     """The parameters of a discovery sample, after its encapsulation header."""
-    order = "<" if payload[1] & 1 else ">"
-    return parsed_parameters(payload, 4, order)[0]
+    return parsed_parameters(payload, 4, "<" if payload[1] & 1 else ">")[0]
 
 
 def text(value: str) -> bytes:
@@ -184,12 +175,12 @@ def text_of(value: bytes) -> str:
     return value[4 : 4 + length].rstrip(b"\0").decode("utf-8", "replace")
 
 
-def locator(address: str, port: int) -> bytes:
+def locator(address: Address) -> bytes:
     """A UDPv4 locator."""
-    return struct.pack("<iI", 1, port) + bytes(12) + bytes(map(int, address.split(".")))
+    return struct.pack("<iI", 1, address[1]) + bytes(12) + bytes(map(int, address[0].split(".")))
 
 
-def address_of(value: bytes) -> tuple[str, int] | None:
+def address_of(value: bytes) -> Address | None:
     """Address and port of a UDPv4 locator; None for other kinds."""
     kind, port = struct.unpack_from("<iI", value)
     if kind != 1 or len(value) < 24 or not 0 < port < 2**16:
@@ -204,27 +195,37 @@ def data(reader: bytes, writer: bytes, number: int, payload: bytes, inline: byte
     return submessage(DATA, head + inline + payload, flags)
 
 
-def fragment(
-    reader: bytes, writer: bytes, number: int, payload: bytes, place: int, inline: bytes = b""
-) -> bytes:
-    """Fragment `place` of a sample, from 1."""
-    part = payload[(place - 1) * FRAGMENT : place * FRAGMENT]
+def fragments(
+    reader: bytes, writer: bytes, number: int, payload: bytes, inline: bytes = b""
+) -> list[bytes]:
+    """A sample in submessages that fit into one datagram each: DATA, or every DATA_FRAG."""
+    if len(payload) <= FRAGMENT:
+        return [data(reader, writer, number, payload, inline)]
     head = struct.pack("<HH", 0, 28) + reader + writer + sequence_number(number)
-    head += struct.pack("<IHHI", place, 1, FRAGMENT, len(payload))
-    return submessage(DATA_FRAG, head + inline + part, 0x02 if inline else 0)
+    return [
+        submessage(
+            DATA_FRAG,
+            head
+            + struct.pack("<IHHI", place, 1, FRAGMENT, len(payload))
+            + inline
+            + payload[begin : begin + FRAGMENT],
+            0x02 if inline else 0,
+        )
+        for place, begin in enumerate(range(0, len(payload), FRAGMENT), 1)
+    ]
 
 
-def sample_of(message: Submessage) -> Sample:
-    """What DATA or DATA_FRAG carries."""
-    body, order, is_part = message.body, message.order, message.kind == DATA_FRAG
+def sample_of(source: bytes, message: Submessage) -> Sample:
+    """What DATA or DATA_FRAG of a participant carries."""
+    body, order = message.body, message.order
     (to_inline,) = struct.unpack_from(f"{order}H", body, 2)
     number, place = number_at(body, 12, order), 4 + to_inline
     inline: dict[int, bytes] = {}
     if message.flags & 0x02:
         listed, place = parsed_parameters(body, place, order)
         inline = {key: values[0] for key, values in listed.items()}
-    rest = body[4:8], body[8:12], number, inline, body[place:]
-    if not is_part:
+    rest = body[4:8], source + body[8:12], number, inline, body[place:]
+    if message.kind == DATA:
         return Sample(*rest)
     first, _, fragment_size, size = struct.unpack_from(f"{order}IHHI", body, 20)
     return Sample(*rest, first, fragment_size, size)

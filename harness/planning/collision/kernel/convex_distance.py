@@ -1,7 +1,7 @@
 """Bounds of the distance between two convex sets."""
 
 # Plain loops over arrays, no objects, no exceptions: numba compiles the functions below.
-# ruff: noqa: ANN001, ANN201, D417
+# ruff: noqa: ANN001, ANN201
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Poses of the moving joints, and bounds of the motion of bodies over an interval."""
 
 # Plain loops over arrays, no objects, no exceptions: numba compiles the functions below.
-# ruff: noqa: ANN001, ANN201, D417
+# ruff: noqa: ANN001, ANN201
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Whether two trees of convex sets keep a distance over an interval."""
 
 # Plain loops over arrays, no objects, no exceptions: numba compiles the functions below.
-# ruff: noqa: ANN001, ANN201, D417
+# ruff: noqa: ANN001, ANN201
 
 from __future__ import annotations
 

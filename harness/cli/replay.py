@@ -1,0 +1,53 @@
+"""`harness replay`: the recorded commands of external programs, once more."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from harness.cli.files import run_folder
+from harness.cli.output import only_json_on_stdout, say
+from harness.cli.shared_options import add_json, add_plugin
+from harness.suite.outcome import EXIT_CODES
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Add the options of `harness replay`."""
+    command.add_argument("run", metavar="RUN", help="the run's report folder")
+    text = "write the replayed run into this folder"
+    command.add_argument("--report-dir", metavar="DIR", default="", help=text)
+    add_json(command)
+    add_plugin(command)
+    command.set_defaults(ticks=False)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run a recorded command stream again; exit code 1 when the digest differs."""
+    folder = run_folder(arguments.run)
+    from harness.recording.store import read_run
+    from harness.ros.replay import replay
+
+    target = Path(arguments.report_dir) if arguments.report_dir else None
+    recorded = read_run(folder)
+    case = replay(folder, target)
+    is_equal = case.digest == recorded.digest
+    count = sum(command.kind != "end" for command in recorded.run.commands)
+    if arguments.json:
+        with only_json_on_stdout() as write_json:
+            write_json(
+                {
+                    "format": "armharness-replay/1",
+                    "outcome": case.outcome,
+                    "commands": count,
+                    "digest": case.digest,
+                    "recorded_digest": recorded.digest,
+                    "is_equal": is_equal,
+                }
+            )
+    else:
+        say(f"{count} commands replayed; {case.outcome}")
+        if case.outcome not in ("passed", "failed"):
+            say(case.message)
+        same = "equal to the recorded one" if is_equal else f"recorded: {recorded.digest[:12]}"
+        say(f"digest {case.digest[:12]}, {same}")
+    return 0 if is_equal else EXIT_CODES["failed"]

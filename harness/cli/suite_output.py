@@ -1,0 +1,202 @@
+"""The results of a suite: its files, and what the terminal shows of them."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from harness.cli.output import complain, output, say, say_text
+from harness.suite.cases import progress_text
+
+if TYPE_CHECKING:
+    from harness.reporting.suite.columns import Columns
+    from harness.reporting.terminal import Style
+    from harness.session.run_request import RunRequest
+    from harness.suite.suite_run import SuiteRun
+
+MOST_FAILURES = 20
+"""Failures that are shown in full; the rest is counted."""
+
+
+def write_suite_files(
+    arguments: argparse.Namespace, suite: SuiteRun
+) -> tuple[Path | None, Columns | None]:
+    """The files of a suite; GitHub's summary of the job where there is one.
+
+    Returns:
+        The page, and what varies in the cases; None where no files are written.
+    """
+    from harness.reporting.suite.github import append_summary
+
+    append_summary(suite.record)
+    if not has_page(arguments, suite):
+        return None, None
+    from harness.reporting.suite.history import history_of
+    from harness.suite.write import write_results
+
+    history = history_of(Path(arguments.history)) if arguments.history else {}
+    return write_results(suite, Path(arguments.report_dir), history)
+
+
+def has_page(arguments: argparse.Namespace, suite: SuiteRun) -> bool:
+    """Whether a suite writes files of its own, next to the reports of its cases."""
+    is_alone = len(suite.plan) == 1 and not suite.is_part
+    return not (arguments.no_report or is_alone or arguments.repeat > 1)
+
+
+def show_json(suite: SuiteRun) -> int:
+    """Print all results as one JSON document."""
+    from harness.reporting.suite.record import results_json
+
+    for part in results_json(suite.record, suite.exit_code):
+        output().document(part)
+    return suite.exit_code
+
+
+def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
+    """A line for each thing that went wrong: for editors, or as GitHub's annotations."""
+    from harness.reporting.suite.cause import short_lines
+    from harness.reporting.suite.github import error_annotations
+
+    if arguments.format == "github":
+        for line in error_annotations(suite.failures()):
+            output().command(line)
+    else:
+        say(*short_lines(suite.failures()))
+    return suite.exit_code
+
+
+def show_results(
+    arguments: argparse.Namespace,
+    suite: SuiteRun,
+    seconds: float,
+    page: Path | None,
+    columns: Columns | None,
+) -> None:
+    """Failures, rates, tables and the last lines.
+
+    Args:
+        page: The page of the suite; None where there is none.
+        columns: What varies in the cases; None where this is not known yet.
+    """
+    from harness.reporting.sampled import missed
+    from harness.reporting.suite.github import annotations_for_action
+    from harness.reporting.terminal import Style, repeats, report_link, summary
+
+    style = Style.of(sys.stdout)
+    _print_failures(arguments, suite, style)
+    say("")
+    if arguments.repeat > 1:
+        for runs in suite.repetitions():
+            name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
+            say(f"{name}: {repeats(runs, style)}")
+        for index, said in suite.differences.items():
+            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
+    else:
+        _print_rates(suite, columns, style)
+    rates = missed(suite.rates)
+    rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
+    if suite.results:
+        outcomes = (outcome for _, outcome in suite.results.outcomes())
+        say(f"{summary(outcomes, seconds, style)}{rate_text}")
+    if len(suite.files) > 1:
+        say(suite.files_text)
+    if suite.resumed:
+        say(f"{suite.resumed} of them were known from before")
+    if columns is not None and (shared := columns.shared.sentence()):
+        say(shared)
+    if page is not None:
+        say(f"reports: {style.link(str(page), page.resolve().as_uri())}")
+    elif written := [result for result in suite.results.values() if result.report_dir]:
+        one = report_link(written[0], style)
+        say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
+    for line in annotations_for_action(suite.failures()):
+        output().command(line)
+    if len(suite.processors) > 1:
+        say(
+            f"the cases ran on {len(suite.processors)} processor families"
+            f" ({'; '.join(sorted(suite.processors))}): compare their verdicts, not their digests"
+        )
+    show_interruption(arguments, suite, seconds)
+
+
+def show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:
+    """What an interruption left undone, and how to go on; nothing where there was none."""
+    if not suite.is_interrupted:
+        return
+    after = f"interrupted after {seconds:.1f} s"
+    if len(suite.jobs) == 1:
+        where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())
+        complain(f"{after}{where}: the run did not finish, and no report was written")
+        return
+    complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
+    for index, event in suite.unfinished.items():
+        complain(f"  {suite.jobs[index].file}: during {progress_text(event)}")
+    if arguments.repeat == 1 and not arguments.no_report:
+        complain("the same command with --resume runs the rest")
+
+
+def _print_failures(arguments: argparse.Namespace, suite: SuiteRun, style: Style) -> None:
+    from harness.reporting.terminal import failure
+    from harness.suite.header import source_lines
+
+    failed = [
+        index
+        for index, outcome in suite.results.outcomes()
+        if outcome != "passed" and (index % arguments.repeat == 0 or outcome == "error")
+    ]
+    for index in failed[:MOST_FAILURES]:
+        result = suite.results[index]
+        job = suite.jobs[index]
+        again, source = _command(arguments, job), source_lines(job.file)
+        say("")
+        say_text(failure(result, style, again=again, source=source))
+        folder = job.report_dir
+        if folder and not result.report_dir and (folder / "run.json").is_file():
+            say(f"  no report was written; {folder} is of an earlier run")
+    if len(failed) > MOST_FAILURES:
+        say("", f"... and {len(failed) - MOST_FAILURES} more that did not pass")
+
+
+def _print_rates(suite: SuiteRun, columns: Columns | None, style: Style) -> None:
+    from harness.reporting.sampled import rate_line
+
+    for group in suite.rates:
+        name = f"{group.file} [{group.group}]" if group.group else group.file
+        say(rate_line(name, group.rate, style))
+    if not any(each.header.varied for each in suite.plan.files):
+        return
+    from harness.reporting.suite.columns import Columns
+    from harness.reporting.suite.tables import table_lines
+
+    for line in table_lines(columns or Columns(suite.record.cases), style):
+        say(line)
+
+
+def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
+    """The command that runs one case again as it was run."""
+    words = ["harness", "run", str(job.file)]
+    if job.case:
+        words += ["--case", job.case]
+    for path, value in arguments.overrides:
+        words += ["--set", f"{path}={value}"]
+    for folder in arguments.package_folders:
+        words += ["--package-path", str(folder)]
+    for module in arguments.plugins:
+        words += ["--plugin", module]
+    if arguments.seed is not None:
+        words += ["--seed", str(arguments.seed)]
+    if arguments.samples is not None:
+        words += ["--samples", str(arguments.samples)]
+    for node in arguments.nodes:
+        words += ["--node", node]
+    words += ["--strict"] if arguments.strict else []
+    words += ["--bag"] if arguments.bag else []
+    for name in arguments.reporters:
+        words += ["--reporter", name]
+    if arguments.report_dir != "reports":
+        words += ["--report-dir", arguments.report_dir]
+    return shlex.join(words)
