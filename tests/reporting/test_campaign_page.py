@@ -43,7 +43,8 @@ def page_file(tmp_path_factory):
 
 FIND = """
 words => {
-  const canvas = document.querySelector("#map canvas"), said = document.querySelector("#map output");
+  const canvas = document.querySelector("#map canvas");
+  const said = document.querySelector("#map output");
   const box = canvas.getBoundingClientRect();
   for (let x = box.left + 60; x < box.right - 10; x += 9) {
     for (let y = box.top + 24; y < box.bottom - 34; y += 9) {
