@@ -98,7 +98,7 @@ def test_the_memory_of_a_driver_does_not_grow_with_the_number_of_cases(tmp_path,
     )
     stream = Stream(tmp_path)
     for number, (index, result) in enumerate(
-        RayCluster("ray", 2).run(jobs, [], function=trivial), start=1
+        RayCluster(jobs, function=trivial).run("ray", 2, []), start=1
     ):
         stream.write(jobs[index], result)
         if number in (1_000, 10_000, count):
