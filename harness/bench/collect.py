@@ -20,11 +20,11 @@ from harness.ports.motions import FreeMotion
 from harness.recording.run import StepRecord
 from harness.session.prepare import Prepared, prepare
 
-OnMotion = Callable[["Motion"], None]
+OnMotion = Callable[["MotionTrials"], None]
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionTrials:
     """A motion of a scenario with its planning trials.
 
     Attributes:
@@ -53,7 +53,7 @@ def collect(
     on_motion: OnMotion,
     *,
     overrides: Mapping[str, str] | None = None,
-) -> list[Motion]:
+) -> list[MotionTrials]:
     """Plan every free motion (`move_to`) of a scenario with every planner and seed.
 
     There is no physics: each motion starts where the previous one ends, at the goal's nearest
@@ -107,7 +107,7 @@ class _BenchPlanner(DryPlanner):
         super().__init__(prepared.planner, prepared.program.description)
         if not isinstance(prepared.scene, CoalScene):
             raise HarnessError("clearances can be measured only in Coal's planning scene")
-        self.motions: list[Motion] = []
+        self.motions: list[MotionTrials] = []
         self._real = prepared.planner
         self._scene = prepared.scene
         self._file, self._planners, self._seeds, self._on_motion = file, planners, seeds, on_motion
@@ -132,7 +132,7 @@ class _BenchPlanner(DryPlanner):
             trials.append(trial)
             if trial.is_straight:
                 break  # a free straight line needs no search, with any planner
-        motion = Motion(self._file, step.id, step.summary, step.line, tuple(trials))
+        motion = MotionTrials(self._file, step.id, step.summary, step.line, tuple(trials))
         self.motions.append(motion)
         self._on_motion(motion)
         return jump

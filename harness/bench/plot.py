@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from harness.bench.collect import Motion
+from harness.bench.collect import MotionTrials
 from harness.bench.summary import QUANTITIES, ComparedQuantity, of_planner, values
 
 PANEL_WIDTH, LABEL_WIDTH, ROW, TOP, BOTTOM, GAP = 360, 130, 26, 42, 34, 24  # [px]
@@ -22,7 +22,7 @@ WIDE = 20.0
 INK, FAINT, BOX, LINE = "#333", "#ddd", "#9ec1e0", "#1f5f99"
 
 
-def plot(motions: Sequence[Motion], planners: Sequence[str], title: str) -> str:
+def plot(motions: Sequence[MotionTrials], planners: Sequence[str], title: str) -> str:
     """The text of an SVG file: boxes from quartile to quartile, whiskers to the extremes.
 
     Args:
@@ -48,7 +48,7 @@ def plot(motions: Sequence[Motion], planners: Sequence[str], title: str) -> str:
     return "\n".join([*parts, "</svg>", ""])
 
 
-def _success(motions: Sequence[Motion], planners: Sequence[str]) -> list[str]:
+def _success(motions: Sequence[MotionTrials], planners: Sequence[str]) -> list[str]:
     parts = _frame("success [%]", planners, [(0, "0"), (0.5, "50"), (1, "100")])
     for row, planner in enumerate(planners):
         trials = of_planner(motions, planner)
@@ -59,7 +59,7 @@ def _success(motions: Sequence[Motion], planners: Sequence[str]) -> list[str]:
 
 
 def _boxes(
-    quantity: ComparedQuantity, motions: Sequence[Motion], planners: Sequence[str]
+    quantity: ComparedQuantity, motions: Sequence[MotionTrials], planners: Sequence[str]
 ) -> list[str]:
     found = {planner: values(quantity, of_planner(motions, planner)) for planner in planners}
     every = [value for row in found.values() for value in row]

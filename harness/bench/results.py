@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from harness.bench.collect import Motion
+from harness.bench.collect import MotionTrials
 from harness.bench.plot import plot
 from harness.bench.trial import Trial
 from harness.core.errors import HarnessError
@@ -19,7 +19,7 @@ RESULTS, PICTURE = "results.json", "benchmark.svg"
 
 
 def document(
-    motions: Sequence[Motion], planners: Sequence[str], seeds: Sequence[int]
+    motions: Sequence[MotionTrials], planners: Sequence[str], seeds: Sequence[int]
 ) -> dict[str, Any]:
     """All measurements as plain data; deterministic for the same files, except `wall_times`.
 
@@ -44,8 +44,8 @@ def document(
     }
 
 
-def write_results(
-    folder: Path, motions: Sequence[Motion], planners: Sequence[str], seeds: Sequence[int]
+def write_bench(
+    folder: Path, motions: Sequence[MotionTrials], planners: Sequence[str], seeds: Sequence[int]
 ) -> None:
     """Write both files into a folder, each whole or not at all.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.bench.collect import Motion
+from harness.bench.collect import MotionTrials
 from harness.bench.trial import Trial
 
 
@@ -52,7 +52,7 @@ def values(quantity: ComparedQuantity, trials: Sequence[Trial]) -> list[float]:
     return [value for value in found if np.isfinite(value)]
 
 
-def of_planner(motions: Sequence[Motion], planner: str) -> list[Trial]:
+def of_planner(motions: Sequence[MotionTrials], planner: str) -> list[Trial]:
     """A planner's trials on the motions that are searched."""
     return [
         trial
@@ -63,7 +63,7 @@ def of_planner(motions: Sequence[Motion], planner: str) -> list[Trial]:
     ]
 
 
-def planner_table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
+def planner_table(motions: Sequence[MotionTrials], planners: Sequence[str]) -> str:
     """One row per planner: its successes, then the medians."""
     rows = [["planner", "success", *(quantity.name for quantity in QUANTITIES)]]
     for planner in planners:
@@ -84,7 +84,7 @@ def planner_table(motions: Sequence[Motion], planners: Sequence[str]) -> str:
     )
 
 
-def motion_line(motion: Motion) -> str:
+def motion_line(motion: MotionTrials) -> str:
     """A motion in one line: its place in the file and how many of its trials succeeded."""
     place = f"{motion.file}:{motion.line}"
     if not motion.is_searched:

@@ -2,14 +2,110 @@
 
 from __future__ import annotations
 
+import re
+import warnings
+from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
-from harness.cameras.collada_parts import load_collada
-from harness.cameras.mesh_part import MeshPart, coarsen
-from harness.cameras.obj_parts import load_obj
+import numpy as np
+
 from harness.core.errors import RobotError
-from harness.core.geometry import Mesh
-from harness.robot.mesh_file import read_triangles
+from harness.core.geometry import Mesh, Rgba
+from harness.core.types import FloatArray, IntArray
+from harness.robot.mesh_file import metres_per_unit, read_triangles
+
+GRID = 0.002
+"""Size of the cells in which vertices merge [m]: about a pixel in a picture of an arm."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPart:
+    """Triangles of one colour.
+
+    Attributes:
+        vertices: The vertices, shape (V, 3) [m].
+        faces: The faces as indices of vertices, shape (F, 3).
+        rgba: None where the file gives no colour.
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    rgba: Rgba | None
+
+
+def coarsen(
+    vertices: FloatArray, faces: IntArray, grid: float = GRID
+) -> tuple[FloatArray, IntArray]:
+    """Merge vertices that share a cell of a grid [m] and drop triangles that collapse."""
+    cells = np.round(vertices / grid).astype(np.int64)
+    cells -= cells.min(axis=0, initial=0)
+    numbers = np.ravel_multi_index((*cells.T,), (*(cells.max(axis=0, initial=0) + 1),))
+    inverse = np.unique(numbers, return_inverse=True)[1]
+    counts = np.bincount(inverse)[:, None]
+    merged = np.stack([np.bincount(inverse, vertices[:, i]) for i in range(3)], axis=1) / counts
+    faces = inverse[faces]
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    used, faces = np.unique(faces, return_inverse=True)
+    return merged[used], faces.reshape(-1, 3)
+
+
+def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
+    """Read a Wavefront OBJ file of triangles, one part per material.
+
+    Polygons are split into fans. Diffuse colours of the MTL file are linear, as Blender writes
+    them, and are converted to sRGB.
+    """
+    text = geometry.path.read_text(encoding="utf-8", errors="replace")
+    lines = " ".join(re.findall(r"^v (.*)$", text, re.MULTILINE))
+    vertices = np.fromstring(lines, sep=" ").reshape(-1, 3) * np.array(geometry.scale)
+    colours = _read_mtl(geometry.path, text)
+    parts: list[MeshPart] = []
+    for name, section in _sections(text):
+        faces = _faces(section, len(vertices))
+        if len(faces):
+            parts.append(MeshPart(*coarsen(vertices, faces), colours.get(name)))
+    return tuple(part for part in parts if len(part.faces))
+
+
+def _sections(text: str) -> list[tuple[str, str]]:
+    """Faces by material: the text after each `usemtl`, or the whole text."""
+    pieces = re.split(r"^usemtl (.*)$", text, flags=re.MULTILINE)
+    if len(pieces) == 1:
+        return [("", text)]
+    return list(zip(pieces[1::2], pieces[2::2], strict=True))
+
+
+def _faces(section: str, count: int) -> IntArray:
+    lines = re.findall(r"^f (.*)$", section, re.MULTILINE)
+    corners = [len(line.split()) for line in lines[:1]]
+    if corners == [3]:
+        first = np.fromstring(re.sub(r"/\S*", "", " ".join(lines)), dtype=np.int64, sep=" ")
+        if len(first) == 3 * len(lines):
+            faces = first.reshape(-1, 3)
+            return np.where(faces < 0, faces + count, faces - 1)
+    fans: list[tuple[int, int, int]] = []
+    for line in lines:
+        polygon = [int(corner.split("/")[0]) for corner in line.split()]
+        polygon = [index + count if index < 0 else index - 1 for index in polygon]
+        fans += [(polygon[0], b, c) for b, c in pairwise(polygon[1:])]
+    return np.array(fans, dtype=np.int64).reshape(-1, 3)
+
+
+def _read_mtl(path: Path, text: str) -> dict[str, Rgba]:
+    library = re.search(r"^mtllib (.*)$", text, re.MULTILINE)
+    file = path.parent / library.group(1).strip() if library else None
+    if file is None or not file.is_file():
+        return {}
+    pattern = r"^newmtl (.*)$(?:(?!^newmtl)[\s\S])*?^Kd (\S+) (\S+) (\S+)"
+    colours: dict[str, Rgba] = {}
+    for name, *linear in re.findall(pattern, file.read_text(encoding="utf-8"), re.MULTILINE):
+        red, green, blue = (min(1.0, float(value)) ** (1 / 2.2) for value in linear)
+        colours[name] = (red, green, blue, 1.0)
+    return colours
 
 
 @lru_cache(maxsize=256)
@@ -26,3 +122,60 @@ def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
                 return (MeshPart(*coarsen(triangles.vertices, triangles.faces), None),)
     except (RobotError, OSError, ValueError):
         return ()
+
+
+def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
+    """The triangles of a file's scene, one part per colour.
+
+    As in the collision geometry of the same file, its `unit` is applied and its `up_axis` is not.
+
+    Raises:
+        RobotError: The file is too large or damaged, or its scene has no triangles.
+    """
+    import collada  # here: few robots have COLLADA files
+    import collada.common
+
+    scale = metres_per_unit(geometry) * np.array(geometry.scale)
+    unknown = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
+    try:
+        with warnings.catch_warnings():  # the library uses numpy.matrix
+            warnings.simplefilter("ignore", PendingDeprecationWarning)
+            scene = collada.Collada(str(geometry.path), ignore=unknown).scene
+            pieces = _pieces(scene, scale) if scene else {}
+    except (collada.common.DaeError, AttributeError, ValueError, IndexError) as error:
+        raise RobotError(f"{geometry.path.name} cannot be read: it is damaged") from error
+    if not pieces:
+        raise RobotError(f"{geometry.path.name} has a scene without triangles")
+    return tuple(MeshPart(*coarsen(*_joined(found)), rgba) for rgba, found in pieces.items())
+
+
+def _pieces(
+    scene: Any, scale: np.ndarray
+) -> dict[Rgba | None, list[tuple[np.ndarray, np.ndarray]]]:
+    """Vertices [m] and faces of every primitive that has triangles, by colour."""
+    pieces: dict[Rgba | None, list[tuple[np.ndarray, np.ndarray]]] = {}
+    for shown in scene.objects("geometry"):
+        for primitive in shown.primitives():
+            polygons = hasattr(primitive, "triangleset")
+            triangles = primitive.triangleset() if polygons else primitive
+            corners = np.asarray(getattr(triangles, "vertex_index", ()))
+            if corners.size and corners.ndim == 2 and corners.shape[1] == 3:  # lines have two
+                colour = _diffuse(triangles.material)
+                pieces.setdefault(colour, []).append((triangles.vertex * scale, corners))
+    return pieces
+
+
+def _joined(pieces: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    vertices = np.concatenate([vertices for vertices, _ in pieces])
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])
+    faces = [faces + start for (_, faces), start in zip(pieces, starts, strict=False)]
+    return vertices, np.concatenate(faces).astype(np.int64)
+
+
+def _diffuse(material: Any) -> Rgba | None:
+    """The material's colour; None for a texture or no colour."""
+    colour = getattr(getattr(material, "effect", None), "diffuse", None)
+    if not isinstance(colour, tuple) or len(colour) < 3:
+        return None
+    red, green, blue = (float(min(1.0, max(0.0, value))) for value in colour[:3])
+    return red, green, blue, 1.0

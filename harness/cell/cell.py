@@ -65,7 +65,7 @@ class Belief:
 class StepNotes:
     """What a step leaves in its record."""
 
-    trajectory: Mapping[str, Any] | None = None
+    trajectory: JointTrajectory | None = None
     planner: dict[str, Any] = field(default_factory=dict[str, Any])
     explanation: Details = field(default_factory=Details)
     result: Details = field(default_factory=Details)
@@ -345,7 +345,7 @@ class Cell:
 
     def carry_out(self, plan: MotionPlan) -> None:
         """Note a plan, check it against the step's timeout, then follow it."""
-        self.notes.trajectory = trajectory_record(plan.trajectory)
+        self.notes.trajectory = plan.trajectory
         self.notes.planner.update(plan.statistics)
         self.notes.explanation = plan.explanation
         for part in plan.result:
@@ -367,14 +367,3 @@ def rounded(measured: FloatArray, resolution: float) -> FloatArray:
         return measured
     steps: FloatArray = np.round(np.asarray(measured) / resolution)
     return steps * resolution + 0.0  # no negative zero
-
-
-def trajectory_record(trajectory: JointTrajectory) -> dict[str, Any]:
-    """A commanded trajectory as the run keeps it."""
-    return {
-        "joint_names": list(trajectory.joint_names),
-        "times": trajectory.times,
-        "positions": trajectory.positions,
-        "velocities": trajectory.velocities,
-        "accelerations": trajectory.accelerations,
-    }

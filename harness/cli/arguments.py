@@ -87,7 +87,7 @@ def override_argument(text: str) -> tuple[str, str]:
     return pair(text, "PATH=VALUE", "robot.model=ur5e")
 
 
-def positive(what: str) -> Callable[[str], float]:
+def positive_number(what: str) -> Callable[[str], float]:
     """The type of an option that is a finite number of something above 0."""
 
     def number_of(text: str) -> float:
@@ -102,12 +102,12 @@ def positive(what: str) -> Callable[[str], float]:
     return number_of
 
 
-seconds = positive("seconds")
+seconds = positive_number("seconds")
 
 
-def share(text: str) -> float:
+def share_of_one(text: str) -> float:
     """A share above 0, at most 1."""
-    number = positive("a share")(text)
+    number = positive_number("a share")(text)
     if number > 1:
         raise argparse.ArgumentTypeError(f"'{text}' is more than 1")
     return number

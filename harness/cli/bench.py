@@ -56,12 +56,12 @@ def run(arguments: argparse.Namespace) -> int:
 def _bench(
     arguments: argparse.Namespace, files: list[Path], planners: list[str]
 ) -> tuple[int, object]:
-    from harness.bench.collect import Motion, collect
-    from harness.bench.results import PICTURE, document, write_results
+    from harness.bench.collect import MotionTrials, collect
+    from harness.bench.results import PICTURE, document, write_bench
     from harness.bench.summary import motion_line, planner_table
 
     seeds = list(range(1, arguments.seeds + 1))
-    motions: list[Motion] = []
+    motions: list[MotionTrials] = []
     code = 0
     for file in files:
         try:
@@ -83,6 +83,6 @@ def _bench(
     say_text(planner_table(motions, planners))
     if not arguments.no_report:
         folder = Path(arguments.report_dir) / "bench"
-        write_results(folder, motions, planners, seeds)
+        write_bench(folder, motions, planners, seeds)
         say(f"picture: {folder / PICTURE}", f"numbers: {folder / 'results.json'}")
     return code, document(motions, planners, seeds)

@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.arguments import positive
-from harness.cli.files import refuse_existing, run_folder, write_text, writing
+from harness.cli.arguments import positive_number
+from harness.cli.files import refuse_existing, refusing_unwritable, run_folder, write_text
 from harness.cli.output import say
 from harness.suite.discovery import UsageError
 
@@ -29,7 +29,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     text = "store the bag in this format (default: mcap, compressed)"
     add("--storage", choices=("mcap", "sqlite3"), default="mcap", help=text)
     text = "write joints, frames and clock at this rate (default: 100)"
-    rate = positive("messages a second")
+    rate = positive_number("messages a second")
     add("--rate", metavar="HZ", type=rate, default=100.0, help=text)
     text = "write the cameras' pictures uncompressed too"
     add("--raw-images", action="store_true", help=text)
@@ -80,7 +80,7 @@ def _write_bag(bag: Path, stored: StoredRun, options: BagOptions) -> None:
     """Write it next to its place, then move it there."""
     from harness.reporting.rosbag.write import write_bag
 
-    with writing():
+    with refusing_unwritable():
         bag.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=bag.parent, prefix=f".{bag.name}.") as place:
             written = Path(place) / bag.name

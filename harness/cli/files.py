@@ -47,7 +47,7 @@ def refuse_existing(path: Path, *, is_forced: bool = False) -> None:
 
 
 @contextmanager
-def writing() -> Iterator[None]:
+def refusing_unwritable() -> Iterator[None]:
     """Report a file that cannot be written as wrong usage.
 
     Raises:
@@ -65,6 +65,6 @@ def write_text(path: Path, text: str) -> None:
     Raises:
         UsageError: It cannot be written.
     """
-    with writing():
+    with refusing_unwritable():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8", newline="")

@@ -7,7 +7,7 @@ import re
 import sys
 from pathlib import Path
 
-from harness.cli.arguments import positive, seconds, whole_number
+from harness.cli.arguments import positive_number, seconds, whole_number
 from harness.cli.output import only_json_on_stdout, say
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json, add_plugin, add_report_dir
@@ -33,10 +33,10 @@ def add_options(command: argparse.ArgumentParser) -> None:
     add("--examples", metavar="N", type=whole_number, default=100, help=text)
     text = "draw the cases with this seed (default: 0)"
     add("--seed", metavar="N", type=int, default=0, help=text)
+    length, angle = positive_number("metres"), positive_number("radians")
     text = "accept answers within this distance of the target [m] (default: 0.0001)"
-    add("--position-tolerance", metavar="M", type=positive("metres"), default=1e-4, help=text)
+    add("--position-tolerance", metavar="M", type=length, default=1e-4, help=text)
     text = "accept answers within this angle of the target [rad] (default: 0.001)"
-    angle = positive("radians")
     add("--orientation-tolerance", metavar="RAD", type=angle, default=1e-3, help=text)
     text = "count a call as hanging after this wall time (default: 5)"
     add("--call-limit", metavar="SECONDS", type=seconds, default=5.0, help=text)

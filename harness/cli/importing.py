@@ -7,7 +7,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from harness.cli.files import refuse_existing, writing
+from harness.cli.files import refuse_existing, refusing_unwritable
 from harness.cli.output import say
 from harness.cli.robot_options import add_robot_options, source_of
 from harness.suite.discovery import SUFFIX, UsageError
@@ -147,7 +147,7 @@ def _write(files: dict[Path, bytes], *, is_forced: bool) -> None:
         refuse_existing(path, is_forced=is_forced)
     written: list[tuple[str, Path]] = []
     try:
-        with writing():
+        with refusing_unwritable():
             for path, content in files.items():
                 path.parent.mkdir(parents=True, exist_ok=True)
                 with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from harness.cli.files import run_folder
 from harness.cli.output import only_json_on_stdout, say
 from harness.cli.shared_options import STRICT, add_json, add_plugin
+from harness.recording.run import ContactRecord
+from harness.reporting.terminal import PLAIN, Style
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
 
@@ -29,9 +32,9 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Judge a run's folder and print every verdict."""
     folder = run_folder(arguments.folder)
+    from harness.cli.judge import contact_lines
     from harness.observation.contacts import contact_records
     from harness.recording.store import blames_changes, read_run
-    from harness.reporting.contacts import contact_lines
     from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.rejudge import judge_stored
 
@@ -81,3 +84,17 @@ def run(arguments: argparse.Namespace) -> int:
     if ended_early:
         say(f"the run ended early with {ended_early}: it has failed, whatever holds until then")
     return code
+
+
+def contact_lines(contacts: Sequence[ContactRecord], style: Style = PLAIN) -> Iterator[str]:
+    """A table, the first to touch first; what is a collision is marked."""
+    if not contacts:
+        yield "contacts: none"
+        return
+    names = [" and ".join(contact.pair) for contact in contacts]
+    width = max(map(len, names))
+    yield style.strong(f"{'contacts':<{width}}  {'first':>9}  {'for':>9}  {'at most':>10}")
+    for name, contact in zip(names, contacts, strict=True):
+        times = f"{contact.first_time:>7.3f} s  {contact.duration:>7.3f} s"
+        mark = style.bad("  collision") if contact.is_collision else ""
+        yield f"{name:<{width}}  {times}  {contact.peak_force:>8.2f} N{mark}"

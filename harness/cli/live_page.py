@@ -60,7 +60,7 @@ class LivePage:
 
     def _write(self, now: float) -> None:
         from harness.reporting.suite.record import SuiteRecord
-        from harness.reporting.suite.write import write_page
+        from harness.reporting.suite.write import write_suite_page
 
         done, total = len(self._arrived), len(self._suite.jobs)
         new, known = done - self._known, self._known
@@ -71,4 +71,4 @@ class LivePage:
             self._suite.rates,
             progress=f"{done} of {total} runs done{left}",
         )
-        write_page(self._folder, record, self._columns)
+        write_suite_page(self._folder, record, self._columns)

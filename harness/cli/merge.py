@@ -8,7 +8,7 @@ from pathlib import Path
 
 from harness.cli.output import complain
 from harness.cli.shared_options import add_format, add_history, add_report_dir
-from harness.cli.suite_output import show_json, show_lines, show_results, write_files
+from harness.cli.suite_output import show_json, show_lines, show_results, write_suite_files
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         seed=record.seed,
         samples=record.samples,
     )
-    page, columns = write_files(options, suite)
+    page, columns = write_suite_files(options, suite)
     if arguments.format == "json":
         show_json(suite)
     elif arguments.format == "full":

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.arguments import whole_number
-from harness.cli.files import refuse_existing, write_text, writing
+from harness.cli.files import refuse_existing, refusing_unwritable, write_text
 from harness.cli.output import only_json_on_stdout, say
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json
@@ -108,7 +108,7 @@ def _draw(description: RobotDescription, state: str, image: Path) -> list[str]:
     from harness.robot_tools.robot_source import positions_of
 
     positions = positions_of(description, state)
-    with writing():
+    with refusing_unwritable():
         image.parent.mkdir(parents=True, exist_ok=True)
         note = save_robot_picture(description, positions, image)
     return [f"wrote {image}", *([f"note: {note}"] if note else [])]

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.cli.arguments import share, whole_number
+from harness.cli.arguments import share_of_one, whole_number
 from harness.cli.output import complain, only_json_on_stdout, output
 from harness.cli.shared_options import (
     STRICT,
@@ -28,7 +28,7 @@ from harness.cli.suite_output import (
     show_json,
     show_lines,
     show_results,
-    write_files,
+    write_suite_files,
 )
 from harness.core.lazy import LazySequence
 from harness.core.registry import registry
@@ -108,7 +108,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     add("--robot", choices=("simulated", "ros2"), default="simulated", help=text)
     add("--yes", action="store_true", help="with --robot ros2: confirm the plan in advance")
     text = "with --robot ros2: scale the planned speed by this share (default: 1)"
-    add("--velocity-scaling", metavar="SHARE", type=share, default=1.0, help=text)
+    add("--velocity-scaling", metavar="SHARE", type=share_of_one, default=1.0, help=text)
     add_domain(command)
     text = "show the cases on a page of this machine while they run; needs the extra `studio`"
     add("--live", action="store_true", help=text)
@@ -157,12 +157,12 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
         if arguments.format == "json":
             with only_json_on_stdout():
                 suite.collect(server, on_result=update_page)
-                write_files(arguments, suite)
+                write_suite_files(arguments, suite)
                 show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite)
         if arguments.format != "full":
             suite.collect(server, on_result=update_page)
-            write_files(arguments, suite)
+            write_suite_files(arguments, suite)
             show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
@@ -183,7 +183,7 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
 
         suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
-    page, columns = write_files(arguments, suite)
+    page, columns = write_suite_files(arguments, suite)
     output().status(None)
     show_results(arguments, suite, time.monotonic() - start, page, columns)
     return suite.exit_code

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from harness.cli.files import writing
+from harness.cli.files import refusing_unwritable
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
 
@@ -25,7 +25,7 @@ def run(arguments: argparse.Namespace) -> int:
     if file is None:
         output().document(schema_text())
         return 0
-    with writing():
+    with refusing_unwritable():
         Path(file).write_text(schema_text(), encoding="utf-8")
     say(f"wrote {file}; the first line of a scenario can name it:")
     say(f"# yaml-language-server: $schema={file}")

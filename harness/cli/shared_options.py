@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.arguments import folder, override_argument, positive, seconds
+from harness.cli.arguments import folder, override_argument, positive_number, seconds
 
 STRICT = "fail where a verdict has a warning, such as `already true at the start`"
 
@@ -138,10 +138,12 @@ def add_served_robot(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--pace",
         metavar="FACTOR",
-        type=positive("simulated seconds in a second"),
+        type=positive_number("simulated seconds in a second"),
         default=1.0,
         help="advance this many simulated seconds in one second of wall time (default: 1)",
     )
     add_seed(command)
     add_report_dir(command)
     command.add_argument("--no-report", action="store_true", help="write no report")
+    text = "write the report without its page"
+    command.add_argument("--no-page", action="store_true", help=text)

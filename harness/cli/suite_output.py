@@ -21,7 +21,7 @@ MOST_FAILURES = 20
 """Failures that are shown in full; the rest is counted."""
 
 
-def write_files(
+def write_suite_files(
     arguments: argparse.Namespace, suite: SuiteRun
 ) -> tuple[Path | None, Columns | None]:
     """The files of a suite; GitHub's summary of the job where there is one.

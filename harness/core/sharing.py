@@ -37,7 +37,7 @@ T = TypeVar("T")
 
 
 @dataclass
-class Tally:
+class SharedTally:
     """How many results of each kind a case took from others, and how many it computed."""
 
     taken: Counter[str] = field(default_factory=Counter[str])
@@ -59,7 +59,7 @@ class SharedResults:
 
     def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
         self.folder = folder
-        self.tally = Tally()
+        self.tally = SharedTally()
         self._folder = str(folder)
         self._most_bytes = most_bytes
         self._kept = 0
@@ -107,7 +107,7 @@ class SharedResults:
                 path.unlink(missing_ok=True)
 
 
-class Chain:
+class KeyChain:
     """Results of one case that follow from each other, such as the parts of a motion.
 
     A chain is kept from a result on that a second case computes, so that results which are
@@ -169,14 +169,14 @@ def close_folder() -> None:
         _shared = None
 
 
-def begin(*, share: bool = True) -> Tally:
+def begin(*, share: bool = True) -> SharedTally:
     """Begin a case in this process, which takes nothing from others unless it may share.
 
     Returns:
         What the case takes and computes from here on; nothing where nothing is shared.
     """
     global _shared
-    tally = Tally()
+    tally = SharedTally()
     if not share:
         _shared = None
     if _shared is not None:
@@ -184,7 +184,7 @@ def begin(*, share: bool = True) -> Tally:
     return tally
 
 
-def count(tally: Tally) -> None:
+def count(tally: SharedTally) -> None:
     """Add what a fork of this process took and computed to the tally of its case."""
     if _shared is not None:
         _shared.tally.taken += tally.taken
@@ -196,9 +196,9 @@ def is_sharing() -> bool:
     return _shared is not None
 
 
-def chain(kind: str) -> Chain | None:
+def chain(kind: str) -> KeyChain | None:
     """A chain of results of a kind; None where nothing is shared."""
-    return None if _shared is None else Chain(_shared, kind)
+    return None if _shared is None else KeyChain(_shared, kind)
 
 
 def shared(

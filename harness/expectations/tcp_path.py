@@ -158,11 +158,11 @@ def _planned(window: Window) -> list[FloatArray]:
         if window.cut_short:
             raise NotReached(window.cut_short)
         raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
-    planned = np.asarray(step.trajectory["positions"], dtype=float)
+    planned = step.trajectory.positions
     rows = [0, len(planned) // 2, -1] if step_class(step.verb).is_arc else [0, -1]
     columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
     positions = np.repeat(window.cut(run.signals.joint_positions)[:1], len(rows), axis=0)
-    for joint, values in zip(step.trajectory["joint_names"], planned[rows].T, strict=True):
+    for joint, values in zip(step.trajectory.joint_names, planned[rows].T, strict=True):
         positions[:, columns[joint]] = values
     tcp = placed_links(run.robot, positions, [run.robot.tcp_link]).get(run.robot.tcp_link)
     if tcp is None or len(tcp) != len(rows):

@@ -18,7 +18,7 @@ from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, SuccessRate
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.reporting.suite.write import replaced, write_page, writing
+from harness.reporting.suite.write import replaced, write_suite_page, writing
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated
 from harness.suite.discovery import SUFFIX
@@ -123,7 +123,7 @@ def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder:
     rates = [_sampled(found, failure_rate(start))] if start else []
     with writing(folder), replaced(folder / NUMBERS) as file:
         file.write(json_text(search_document(found, written)).encode())
-    return write_page(folder, SuiteRecord(outcome, cases, rates))
+    return write_suite_page(folder, SuiteRecord(outcome, cases, rates))
 
 
 def is_failing(found: SearchResult) -> bool:

@@ -16,7 +16,7 @@ from harness.iktest.contract import UnusableSolver, call_arguments, call_text, t
 from harness.iktest.offset import common_offset
 from harness.iktest.properties import BRANCHES, PROPERTIES, Property, within_reach
 from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed
-from harness.iktest.search import draw, shrink
+from harness.iktest.search import draw, shrink_case
 from harness.iktest.solver import InProcess, Isolated, Solver
 from harness.iktest.text import report_lines
 from harness.iktest.trial import HANGS, Flaw, SolverTrial
@@ -106,9 +106,9 @@ def run_ik_test(test: IkTest) -> IkReport:
     )
     if test.report_dir is None:
         return report
-    from harness.iktest.write import write_report
+    from harness.iktest.write import write_ik_report
 
-    return write_report(report, chain, test.report_dir)
+    return write_ik_report(report, chain, test.report_dir)
 
 
 def check_ik(
@@ -243,7 +243,7 @@ class _Search:
             return next((flaw for flaw in each.flaws(trial, case) if flaw.kind == kind), None)
 
         trial.take_cost()
-        return shrink(each.cases(trial), shows, lambda case: each.size(trial, case),
+        return shrink_case(each.cases(trial), shows, lambda case: each.size(trial, case),
                       tried, self._test.seed, trial.take_cost)  # fmt: skip
 
     def _finding(self, each: Property, flaw: Flaw, shown: int, tried: int) -> IkFinding:

@@ -45,7 +45,7 @@ def draw(
 
     Args:
         count: The largest number of cases.
-        number: The seed; `shrink` with the same one draws the same cases.
+        number: The seed; `shrink_case` with the same one draws the same cases.
     """
 
     @seed(_inner_seed(number))
@@ -59,7 +59,7 @@ def draw(
         run()
 
 
-def shrink(
+def shrink_case(
     strategy: st.SearchStrategy[C],
     shows: Callable[[C], F | None],
     size: Callable[[C], tuple[float, ...]],

@@ -15,7 +15,7 @@ from harness.suite.discovery import UsageError
 FILE = "ik_test.json"
 
 
-def write_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
+def write_ik_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
     """Write a report; findings of an earlier one in the folder are replaced.
 
     Returns:
@@ -37,13 +37,21 @@ def write_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
 
 
 def _with_picture(finding: IkFinding, chain: Chain, folder: Path) -> IkFinding:
-    from harness.robot_tools.ik_pictures import draw_ik_example
+    """Draw the arm where its answer puts it, translucent where the target is reached."""
+    from harness.cameras.ik_comparison_picture import draw_ik_comparison
 
     target, answer = finding.target, finding.answer
     reached = answer if answer is not None and np.all(np.isfinite(answer)) else None
     if target.joint_positions is None and reached is None:
         reached = chain.home
     name = f"finding-{finding.number}-{finding.property}.jpg"
-    caption = f"{finding.kind}: {finding.detail}" if finding.detail else finding.kind
-    draw_ik_example(chain, target, reached, folder / name, caption)
+    draw_ik_comparison(
+        chain.description,
+        chain.link,
+        target.pose,
+        None if target.joint_positions is None else chain.whole(target.joint_positions),
+        None if reached is None else chain.whole(reached),
+        folder / name,
+        f"{finding.kind}: {finding.detail}" if finding.detail else finding.kind,
+    )
     return replace(finding, picture=name)

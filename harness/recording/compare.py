@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from difflib import SequenceMatcher
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import arrays_of
 from harness.recording.run import Run, StepRecord, Verdict
-from harness.recording.scenario_lines import NONE, line_changes
 from harness.recording.store import StoredRun
 
 DERIVED = ("clearance", "planned_clearances")
@@ -200,7 +202,7 @@ def _trajectory(name: str, one: StepRecord, two: StepRecord) -> list[Change]:
     if ours is None or theirs is None:
         words = ["planned" if step.trajectory else NONE for step in (one, two)]
         return _words("trajectory", name, words[0], words[1])
-    joints = [", ".join(map(str, trajectory["joint_names"])) for trajectory in (ours, theirs)]
+    joints = [", ".join(trajectory.joint_names) for trajectory in (ours, theirs)]
     if joints[0] != joints[1]:
         return [Change("trajectory", name, joints[0], joints[1])]
     before, after = _resampled(ours), _resampled(theirs)
@@ -211,9 +213,8 @@ def _trajectory(name: str, one: StepRecord, two: StepRecord) -> list[Change]:
     return [Change("trajectory", name, words[0], words[1], apart, "rad or m apart")]
 
 
-def _resampled(trajectory: Mapping[str, Any]) -> FloatArray:
-    times = np.asarray(trajectory["times"], dtype=float)
-    positions = np.asarray(trajectory["positions"], dtype=float)
+def _resampled(trajectory: JointTrajectory) -> FloatArray:
+    times, positions = trajectory.times, trajectory.positions
     at = np.linspace(float(times[0]), float(times[-1]), 200)
     resampled = np.empty((len(at), positions.shape[1]))
     for joint in range(positions.shape[1]):
@@ -281,3 +282,29 @@ def _findings(one: Run, two: Run) -> list[Change]:
         counts = [sum(found.kind == kind for found in run.findings) for run in (one, two)]
         changes += _words("findings", kind, str(counts[0]), str(counts[1]))
     return changes
+
+
+NONE = "-"
+"""Stands for what one of two runs does not have."""
+MOST = 20
+"""Changes that are listed one by one."""
+
+
+def line_changes(one: Run, two: Run) -> list[tuple[str, str]]:
+    """Each line before and after; the last says how many more there are."""
+    ours, theirs = (_lines(run.resolved) for run in (one, two))
+    found: list[tuple[str, str]] = []
+    matcher = SequenceMatcher(None, ours, theirs, autojunk=False)
+    for kind, a, b, c, d in matcher.get_opcodes():
+        if kind != "equal":
+            found += zip_longest(ours[a:b], theirs[c:d], fillvalue=NONE)
+    if len(found) <= MOST:
+        return found
+    more = f"{len(found) - MOST} more lines"
+    return [*found[:MOST], (more, more)]
+
+
+def _lines(text: str) -> list[str]:
+    """Without indentation, the dashes of lists and comments, which say the seeds of steps."""
+    lines = (line.strip().removeprefix("- ") for line in text.splitlines())
+    return [line for line in lines if line and not line.startswith("#")]

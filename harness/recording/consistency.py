@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
-from typing import Any, cast
 
 import numpy as np
 
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import BY_NAME, BY_PAIR
 from harness.recording.npz_file import ArrayHeader
@@ -24,8 +24,8 @@ PER_SAMPLE = tuple(
 )
 """Signals that every run has."""
 MESH_ARRAYS = {"vertices": "float32", "faces": "int32"}
-TRAJECTORY = ("joint_names", "times", "positions")
-"""Keys that every trajectory has."""
+TABLES = tuple(entry.name for entry in fields(JointTrajectory) if entry.name != "joint_names")
+"""The arrays of a trajectory."""
 
 
 @dataclass(frozen=True)
@@ -116,37 +116,17 @@ def _step_flaws(key: str, step: StepRecord, samples: int) -> Iterator[Inconsiste
         yield from _trajectory_flaws(f"{key}.trajectory", step.trajectory)
 
 
-def _trajectory_flaws(key: str, trajectory: Mapping[str, Any]) -> Iterator[Inconsistency]:
-    missing = [name for name in TRAJECTORY if name not in trajectory]
-    if missing:
-        yield from ((f"{key}.{name}", "this key is missing") for name in missing)
-        return
-    names, times = trajectory["joint_names"], trajectory["times"]
-    if not _are_texts(names):
-        yield f"{key}.joint_names", "expected a list of names"
-    elif not isinstance(times, np.ndarray) or times.ndim != 1 or not times.size:  # pyright: ignore[reportUnknownMemberType]
+def _trajectory_flaws(key: str, trajectory: JointTrajectory) -> Iterator[Inconsistency]:
+    if trajectory.times.ndim != 1 or not trajectory.times.size:
         yield f"{key}.times", "expected an array of one time per waypoint"
-    else:
-        shape = (times.size, len(names))  # pyright: ignore[reportUnknownMemberType]
-        for name, value in trajectory.items():
-            if name != "joint_names":
-                yield from _table_flaws(
-                    f"{key}.{name}", value, shape[:1] if name == "times" else shape
-                )
-
-
-def _are_texts(value: Any) -> bool:
-    return isinstance(value, list) and all(isinstance(item, str) for item in value)  # pyright: ignore[reportUnknownVariableType]
-
-
-def _table_flaws(key: str, value: Any, shape: tuple[int, ...]) -> Iterator[Inconsistency]:
-    if not isinstance(value, np.ndarray):
-        yield key, "expected the name of an array"
-    else:
-        array = cast("np.ndarray[Any, Any]", value)
-        yield from ExpectedArray(shape, "float64").flaw(key, ArrayHeader(array.shape, array.dtype))
+        return
+    shape = (trajectory.times.size, len(trajectory.joint_names))
+    for name in TABLES:
+        array = getattr(trajectory, name)
+        expected = ExpectedArray(shape[:1] if name == "times" else shape, "float64")
+        yield from expected.flaw(f"{key}.{name}", ArrayHeader(array.shape, array.dtype))
         if array.dtype.kind == "f" and not np.isfinite(array).all():
-            yield key, "expected finite numbers"
+            yield f"{key}.{name}", "expected finite numbers"
 
 
 def _camera_flaws(run: Run) -> Iterator[Inconsistency]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import struct
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, cast
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
+from harness.core.trajectory import JointTrajectory
 from harness.recording.arrays import arrays_of
 from harness.recording.run import Run, Verdict
 
@@ -32,7 +34,7 @@ def _chunks(run: Run, verdicts: Sequence[Verdict]) -> Iterator[bytes]:
     for step in run.steps:
         if step.trajectory is not None:
             yield b"trajectory"
-            yield from _value(step.trajectory)
+            yield from _trajectory(step.trajectory)
     for name, array in sorted(arrays_of(run.signals).items()):
         yield name.encode()
         yield from _array(array)
@@ -56,24 +58,11 @@ def _array(array: np.ndarray[Any, Any]) -> Iterator[bytes]:
     yield canonical.tobytes()
 
 
-def _value(value: Any) -> Iterator[bytes]:
-    """Plain data of a trajectory: mappings by sorted key, numbers as arrays."""
-    match value:
-        case Mapping():
-            mapping = cast("Mapping[str, Any]", value)
-            for key in sorted(mapping):
-                yield str(key).encode()
-                yield from _value(mapping[key])
-        case np.ndarray():
-            yield from _array(cast("np.ndarray[Any, Any]", value))
-        case list() | tuple() if _are_names(cast("Sequence[Any]", value)):
-            for name in cast("Sequence[str]", value):
-                yield name.encode()
-        case list() | tuple() | float() | int():
-            yield from _array(np.asarray(value, dtype=float))
-        case _:
-            yield str(value).encode()
-
-
-def _are_names(values: Sequence[Any]) -> bool:
-    return any(isinstance(item, str) for item in values)
+def _trajectory(trajectory: JointTrajectory) -> Iterator[bytes]:
+    """Its parts in the order of their names."""
+    for name in sorted(entry.name for entry in fields(trajectory)):
+        yield name.encode()
+        if name == "joint_names":
+            yield from (joint.encode() for joint in trajectory.joint_names)
+        else:
+            yield from _array(getattr(trajectory, name))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from harness.core.pose_arrays import IDENTITY, compose
 from harness.core.types import FloatArray
-from harness.recording.run import LinkPlacement, RobotRecord
+from harness.recording.run import LinkPlacement, RobotRecord, Run, StepRecord
 
 
 def replayed_link_poses(
@@ -30,6 +30,30 @@ def replayed_link_poses(
         moved = joint_positions[:, columns[placement.joint]] if placement.joint else None
         poses[placement.link] = compose(parent, placement_poses(placement, moved))
     return poses if links is None else {name: poses[name] for name in links if name in poses}
+
+
+def planned_tcp_poses(
+    run: Run, step: StepRecord, joint_names: Sequence[str], positions: FloatArray
+) -> FloatArray | None:
+    """T_world_tcp where some joints move and the others stay as when the step began.
+
+    Args:
+        run: The run, whose robot and joint positions count.
+        step: The step that plans the motion.
+        joint_names: The joints that move.
+        positions: Their positions, shape (N, joints).
+
+    Returns:
+        The poses, shape (N, 7); None where the placement of the TCP was not recorded.
+    """
+    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
+    if not len(positions) or any(name not in columns for name in joint_names):
+        return None
+    start = min(step.start_index, len(run.signals.times) - 1)
+    rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
+    rows[:, [columns[name] for name in joint_names]] = positions
+    poses = replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
 
 
 def _with_carriers(robot: RobotRecord, links: Collection[str]) -> set[str]:

@@ -13,6 +13,7 @@ from harness.core.camera import Camera
 from harness.core.details import Details
 from harness.core.geometry import Rgba, Shape
 from harness.core.quantity import distinct
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.recording.commands import CommandRecord
 
@@ -197,7 +198,7 @@ class StepRecord:
         end_time: The simulated time at its end [s].
         start_index: First sample of the step.
         end_index: One past its last sample.
-        trajectory: Commanded trajectory (joint_names, times, positions) for motion steps.
+        trajectory: The commanded trajectory; None for steps without a motion.
         planner: Statistics: planner_id, checks, attempts, path lengths ...
         explanation: Plain data: IK solutions and what became of them, blocking pairs, nearest pose.
         result: What the step reports; `harness.recording.step_results` has the common parts.
@@ -216,7 +217,7 @@ class StepRecord:
     error_code: str = ""
     expected_error: str = ""
     message: str = ""
-    trajectory: Mapping[str, Any] | None = None
+    trajectory: JointTrajectory | None = None
     planner: Mapping[str, Any] = field(default_factory=dict[str, Any])
     explanation: Mapping[str, Any] = field(default_factory=dict[str, Any])
     result: Details = field(default_factory=Details)

@@ -19,8 +19,11 @@ import numpy as np
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.geometry import Rgba
 from harness.core.printable import json_printable
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
 from harness.recording.arrays import arrays_of, is_signal, signals_from, write_npz
 from harness.recording.consistency import (
+    TABLES,
     Inconsistency,
     mesh_flaws,
     mesh_header_flaws,
@@ -222,14 +225,14 @@ def _mappings(document: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
     return cast("list[dict[str, Any]]", items)
 
 
-def _needed(document: Mapping[str, Any], name: str) -> Any:
+def _needed(document: Mapping[str, Any], name: str, within: str = "") -> Any:
     if name not in document:
-        raise PlainError(name, "this key is missing")
+        raise PlainError(f"{within}{name}", "this key is missing")
     return document[name]
 
 
 def _field(document: Mapping[str, Any], name: str, kind: Any, within: str = "") -> Any:
-    return from_plain(_needed(document, name), kind, f"{within}{name}")
+    return from_plain(_needed(document, name, within), kind, f"{within}{name}")
 
 
 def _with_arrays(
@@ -250,21 +253,21 @@ def _with_arrays(
     return replace(run, signals=signals, steps=steps)
 
 
-def _trajectory(plain: Any, key: str, file: NpzFile) -> dict[str, Any] | None:
+def _trajectory(plain: Any, key: str, file: NpzFile) -> JointTrajectory | None:
     if plain is None:
         return None
     content = from_plain(plain, Mapping[str, Any], key)
-    return {
-        name: value if name == "joint_names" else _array(file, value, f"{key}.{name}")
-        for name, value in content.items()
-    }
+    return JointTrajectory(
+        _field(content, "joint_names", tuple[str, ...], f"{key}."),
+        **{name: _array(file, content, name, f"{key}.") for name in TABLES},
+    )
 
 
-def _array(file: NpzFile, plain: Any, key: str) -> np.ndarray[Any, Any]:
+def _array(file: NpzFile, content: Mapping[str, Any], key: str, within: str) -> FloatArray:
     """The array that run.json names."""
-    name = from_plain(plain, Mapping[str, str], key).get("array", "")
+    name = _field(content, key, Mapping[str, str], within).get("array", "")
     if name not in file.headers:
-        raise NpzError(name, f"this array is missing, though {RUN} names it as {key}")
+        raise NpzError(name, f"this array is missing, though {RUN} names it as {within}{key}")
     return file.read(name)
 
 
@@ -402,18 +405,16 @@ def _meshes(document: Mapping[str, Any]) -> tuple[MeshRecord, ...]:
 def _step(step: StepRecord, index: int, arrays: dict[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
     """A step in run.json: its summary is `step`; `sim_time` is how long it took [s]."""
     plain = to_plain(replace(step, trajectory=None))
-    trajectory: dict[str, Any] = {}
-    for key, value in (step.trajectory or {}).items():
-        if isinstance(value, np.ndarray):
-            name = f"trajectories/{index}/{key}"
-            arrays[name] = value
-            trajectory[key] = {"array": name}
-        else:
-            trajectory[key] = to_plain(value)
+    if step.trajectory is not None:
+        names = {name: f"trajectories/{index}/{name}" for name in TABLES}
+        arrays |= {name: getattr(step.trajectory, key) for key, name in names.items()}
+        plain["trajectory"] = {
+            "joint_names": list(step.trajectory.joint_names),
+            **{key: {"array": name} for key, name in names.items()},
+        }
     summary = plain.pop("summary")
     head = {"id": plain.pop("id"), "step": summary, "status": plain.pop("status")}
     head |= {"error_code": plain.pop("error_code"), "sim_time": step.end_time - step.start_time}
-    plain["trajectory"] = None if step.trajectory is None else trajectory
     return head | plain
 
 

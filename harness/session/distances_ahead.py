@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from harness.core import sharing
 from harness.core.activity import Activity, unobserved
-from harness.core.sharing import Tally
+from harness.core.sharing import SharedTally
 from harness.engine.execute import ProgramExecution
 from harness.observation.beliefs import believed_poses
 from harness.ports.simulation import Simulator
@@ -34,7 +34,7 @@ class DistancesAhead:
         self._prepared = prepared
         self._measured: Parts = {}
         self._begun = 0
-        self._background: Background[tuple[Parts, Tally]] | None = None
+        self._background: Background[tuple[Parts, SharedTally]] | None = None
 
     def __enter__(self) -> DistancesAhead:
         return self
@@ -87,7 +87,7 @@ class DistancesAhead:
         simulator: MujocoSimulator,
         numbers: range,
         _: Activity,
-    ) -> tuple[Parts, Tally]:
+    ) -> tuple[Parts, SharedTally]:
         """Parts of the run, and what was shared to measure them; in the other process."""
         from harness.observation.clearance import CoalClearance
 

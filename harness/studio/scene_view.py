@@ -10,8 +10,7 @@ from typing import Any, Literal
 import numpy as np
 import viser
 
-from harness.cameras.mesh_part import coarsen
-from harness.cameras.meshes import mesh_parts
+from harness.cameras.meshes import coarsen, mesh_parts
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray

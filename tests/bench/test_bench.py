@@ -83,7 +83,7 @@ def test_a_trial_is_the_plan_of_a_run_with_the_same_seed(file, motions, tmp_path
     steps = {step.id: step for step in read_run(tmp_path / "run").run.steps}
     [motion] = [motion for motion in motions if motion.step == "past_the_plates"]
     [trial] = [t for t in motion.trials if (t.planner, t.seed) == ("BKPIECE", 2)]
-    positions = steps["past_the_plates"].trajectory["positions"]
+    positions = steps["past_the_plates"].trajectory.positions
     assert length(np.asarray(positions)) == pytest.approx(trial.path_length, rel=1e-6)
 
 

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.cameras.mesh_part import coarsen
-from harness.cameras.meshes import mesh_parts
-from harness.cameras.obj_parts import load_obj
+from harness.cameras.meshes import coarsen, load_obj, mesh_parts
 from harness.core.geometry import Mesh
 from harness.robot.mesh_file import read_triangles
 from tests.robot.test_mesh_file import DAE, STL, sorted_rows, write

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.recording.compare import compare
+from harness.recording.compare import MOST, compare, line_changes
 from harness.recording.run import Verdict
-from harness.recording.scenario_lines import MOST, line_changes
 from harness.recording.store import StoredRun
 from harness.reporting.comparison import comparison_lines
 from tests.assertions.synthetic_run import ROBOT, make_run

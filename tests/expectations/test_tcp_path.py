@@ -7,6 +7,7 @@ import pytest
 
 from harness.assertions.window import NotObservable
 from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.recording.run import LinkPlacement
@@ -139,11 +140,10 @@ def sliding(z, planned, verb="lin"):
     )
     tcp = at(200, (0.1, 0.2, 0.3))
     tcp[:, 2] += z
-    trajectory = {
-        "joint_names": ["shoulder"],
-        "times": np.linspace(0, 1.99, len(planned)),
-        "positions": np.asarray(planned, dtype=float)[:, None],
-    }
+    positions = np.asarray(planned, dtype=float)[:, None]
+    still = np.zeros_like(positions)
+    times = np.linspace(0, 1.99, len(planned))
+    trajectory = JointTrajectory(("shoulder",), times, positions, still, still)
     moving = step("go", 0, 200, verb, trajectory=trajectory)
     return make_run(tcp_pose=tcp, robot=replace(ROBOT, placements=places), steps=(moving,))
 

@@ -90,10 +90,10 @@ def test_what_a_verdict_says_enters(change):
 
 def test_commanded_trajectories_enter():
     first, *others = RUN.steps
-    positions = first.trajectory["positions"] + 1e-12
-    other = replace(first, trajectory={**first.trajectory, "positions": positions})
+    moved = replace(first.trajectory, positions=first.trajectory.positions + 1e-12)
+    other = replace(first, trajectory=moved)
     assert digest(replace(RUN, steps=(other, *others)), VERDICTS) != BASE
-    renamed = replace(first, trajectory={**first.trajectory, "joint_names": ["elbow"]})
+    renamed = replace(first, trajectory=replace(first.trajectory, joint_names=("elbow",)))
     assert digest(replace(RUN, steps=(renamed, *others)), VERDICTS) != BASE
     assert digest(lift_run(), ()) != digest(lift_run(height=0.09), ())
 

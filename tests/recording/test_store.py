@@ -15,6 +15,7 @@ from harness.core.camera import Camera
 from harness.core.errors import HarnessError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
 from harness.expectations.clearance import Clearance
 from harness.expectations.grasped import Grasped
 from harness.expectations.lifted import Lifted
@@ -53,11 +54,9 @@ def full_run():
     times = np.array([0.0, 0.1])
     first = replace(
         first,
-        trajectory={
-            "joint_names": ["shoulder"],
-            "times": times,
-            "positions": np.array([[0.1], [1 / 3]]),
-        },
+        trajectory=JointTrajectory(
+            ("shoulder",), times, np.array([[0.1], [1 / 3]]), *np.zeros((2, 2, 1))
+        ),
         planner={"checks": 12, "length": float("inf"), "note": None},
         explanation={"solutions": [{"positions": [0.1, float("nan")], "pair": ["a", "b"]}]},
         result=SavedResult(verb=first.verb, saved={"stalled": True}),
@@ -142,9 +141,11 @@ def assert_equal_runs(a, b):
     for one, other in zip(a.steps, b.steps, strict=True):
         assert to_plain(replace(one, trajectory=None)) == to_plain(replace(other, trajectory=None))
         assert (one.trajectory is None) == (other.trajectory is None)
-        for key, value in (one.trajectory or {}).items():
-            assert type(other.trajectory[key]) is type(value)
-            np.testing.assert_array_equal(other.trajectory[key], value)
+        if one.trajectory is not None:
+            assert one.trajectory.joint_names == other.trajectory.joint_names
+            for key in ("times", "positions", "velocities", "accelerations"):
+                there, back = getattr(one.trajectory, key), getattr(other.trajectory, key)
+                np.testing.assert_array_equal(back, there)
     assert len(a.meshes) == len(b.meshes)
     for one, other in zip(a.meshes, b.meshes, strict=True):
         assert (one.path, one.scale, one.rgba) == (other.path, other.scale, other.rgba)

@@ -9,7 +9,7 @@ import pytest
 from harness.reporting.suite.campaign import campaign_html, sensitivities
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.reporting.suite.write import write_page
+from harness.reporting.suite.write import write_suite_page
 from tests.reporting.suites import failed, passed
 
 
@@ -38,7 +38,7 @@ def page_file(tmp_path_factory):
         )
         for each in campaign(60)
     ]  # fmt: skip
-    return write_page(folder, SuiteRecord("failed", cases))
+    return write_suite_page(folder, SuiteRecord("failed", cases))
 
 
 def place_of(page, words):
@@ -111,7 +111,7 @@ def test_sensitivities_of_noise_are_near_zero_on_average():
 
 
 def test_a_page_of_many_samples_stays_small(tmp_path):
-    page = write_page(tmp_path, SuiteRecord("failed", campaign(20_000)))
+    page = write_suite_page(tmp_path, SuiteRecord("failed", campaign(20_000)))
     text = page.read_text()
     assert len(text) < 5_000_000
     assert "10000 of 20000 runs are drawn" in text
@@ -121,7 +121,7 @@ def test_a_page_of_many_samples_stays_small(tmp_path):
 
 def test_hostile_words_stay_text(tmp_path, visit):
     words = ("</script><script>document.title = 'taken over'</script>", "<b>bold</b>")
-    page = write_page(tmp_path, SuiteRecord("failed", campaign(20, words)))
+    page = write_suite_page(tmp_path, SuiteRecord("failed", campaign(20, words)))
     seen = visit(page)
     assert "taken over" not in seen.page.title()
     seen.page.select_option("#map select[name=y]", "2")

@@ -17,11 +17,10 @@ from harness.core.geometry import Box, Mesh
 from harness.recording.run import Finding, MeshRecord, Verdict
 from harness.recording.store import StoredRun
 from harness.reporting.html import bundle
-from harness.reporting.html.extremes import thin
 from harness.reporting.html.groups import LEAST, groups_of
-from harness.reporting.html.meshes import pack_mesh
-from harness.reporting.html.packing import Packer
+from harness.reporting.html.packing import Packer, thin
 from harness.reporting.html.page import page_html
+from harness.reporting.html.scene import pack_mesh
 from harness.reporting.html.story import last_line, ordered_steps
 from tests.assertions.synthetic_run import at, lift_run, make_run, step, thing
 

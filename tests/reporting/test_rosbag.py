@@ -192,12 +192,12 @@ def test_planned_trajectories_are_those_of_the_steps(messages, stored):
         planned, messages["/planned_trajectory"], messages["/display_planned_path"], strict=True
     ):
         assert time == pytest.approx(step.start_time)
-        assert message.joint_names == list(step.trajectory["joint_names"])
+        assert message.joint_names == list(step.trajectory.joint_names)
         rows = np.array([point.positions for point in message.points])
-        assert np.array_equal(rows, step.trajectory["positions"])
+        assert np.array_equal(rows, step.trajectory.positions)
         last = message.points[-1].time_from_start
         seconds = last.sec + last.nanosec * 1e-9
-        assert seconds == pytest.approx(step.trajectory["times"][-1], abs=1e-8)
+        assert seconds == pytest.approx(step.trajectory.times[-1], abs=1e-8)
         [trajectory] = shown.trajectory
         assert len(trajectory.joint_trajectory.points) == len(rows)
         start = dict(

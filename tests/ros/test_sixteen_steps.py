@@ -24,11 +24,12 @@ def motions_of(run):
             motions.append({"gripper": float(step.result.plain()["target"])})
         elif step.trajectory is not None:
             times, positions, velocities = (
-                step.trajectory[key].tolist() for key in ("times", "positions", "velocities")
+                getattr(step.trajectory, key).tolist()
+                for key in ("times", "positions", "velocities")
             )
             velocities[-1] = [0.0] * len(velocities[-1])
             points = list(zip(times, positions, velocities, strict=True))
-            names = list(map(str, step.trajectory["joint_names"]))
+            names = list(step.trajectory.joint_names)
             motions.append({"joint_names": names, "points": points})
     return motions
 

@@ -37,7 +37,7 @@ class RecordedTrack:
         return np.array(self.logged, dtype=np.int64), np.array(self.stamps, dtype=np.int64)
 
 
-def joined(tracks: Sequence[RecordedTrack]) -> RecordedTrack:
+def joined_tracks(tracks: Sequence[RecordedTrack]) -> RecordedTrack:
     """The times of several tracks as one, without their numbers where there are several."""
     if len(tracks) == 1:
         return tracks[0]

@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, RecordedTrack, Tracks, joined
+from harness.grading.bag.content import BagContent, RecordedTrack, Tracks, joined_tracks
 from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
 from harness.recording.run import LinkPlacement
 from harness.robot.description import RobotDescription
@@ -41,7 +41,7 @@ def reference_track(
         best = [names for names in content.joints if len(arm.intersection(names)) == most]
         longest = max(best, key=lambda names: (len(content.joints[names].logged), names))
         same = arm.intersection(longest)
-        return joined([content.joints[names] for names in best if same <= set(names)])
+        return joined_tracks([content.joints[names] for names in best if same <= set(names)])
     for joint in description.joints:
         if joint.name in arm and (joint.parent, joint.child) in content.edges:
             return content.edges[joint.parent, joint.child]

@@ -11,7 +11,7 @@ from typing import Any
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from harness.grading.bag.content import BagContent, BagTopics, RecordedTrack, Tracks
-from harness.grading.bag.raw import RawMessage, bag_error
+from harness.grading.bag.message_files import RawMessage, bag_error
 from harness.grading.bag.storage import bag_files, messages
 
 MOST_NUMBERS = 20_000_000

@@ -30,7 +30,7 @@ from harness.grading.bag.joints import (
     reference_track,
     sample_times,
 )
-from harness.grading.bag.raw import bag_error
+from harness.grading.bag.message_files import bag_error
 from harness.grading.bag.reader import read_bag
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import (

@@ -12,9 +12,14 @@ import yaml
 import zstandard
 
 from harness.core.errors import Problem, SpecError
-from harness.grading.bag.mcap_file import mcap_messages
-from harness.grading.bag.raw import LARGEST_RECORD, RawMessage, bag_error, unzstd
-from harness.grading.bag.sqlite_file import sqlite_messages
+from harness.grading.bag.message_files import (
+    LARGEST_RECORD,
+    RawMessage,
+    bag_error,
+    mcap_messages,
+    sqlite_messages,
+    unzstd,
+)
 
 METADATA = "metadata.yaml"
 SUFFIXES = (".mcap", ".db3")
@@ -69,6 +74,8 @@ def messages(files: BagFiles) -> Iterator[RawMessage]:
     for path in files.paths:
         with tempfile.TemporaryDirectory() as place:
             file = _unpacked(path, Path(place)) if path.suffix == ".zstd" else path
+            if not file.stat().st_size:
+                raise bag_error(path, "is empty")
             read = mcap_messages if _suffix(path) == ".mcap" else sqlite_messages
             for message in read(file, path):
                 if files.has_packed_messages:

@@ -11,8 +11,7 @@ import numpy as np
 from harness.recording.run import Run, Verdict
 from harness.reporting.html import joint_groups as joints
 from harness.reporting.html import world_groups as world
-from harness.reporting.html.extremes import pack, thin
-from harness.reporting.html.packing import Packer
+from harness.reporting.html.packing import Packer, pack, thin
 from harness.reporting.html.plot_group import Group, Limit
 
 STRETCHES_PER_SECOND, FEWEST_STRETCHES, MOST_STRETCHES = 40, 600, 3000

@@ -8,7 +8,7 @@ from string import Template
 
 from harness.recording.store import StoredRun
 from harness.reporting.html import bundle
-from harness.reporting.html.content_policy import content_policy
+from harness.reporting.html.bundle import content_policy
 from harness.reporting.html.groups import pack_groups
 from harness.reporting.html.packing import Packer
 from harness.reporting.html.paths import pack_plan, pack_tcp_path

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.explanation import recorded_explanation
-from harness.recording.link_poses import replayed_link_poses
+from harness.recording.link_poses import planned_tcp_poses, replayed_link_poses
 from harness.recording.run import Floats, Run, StepRecord
 from harness.reporting.html.packing import Packer
 
@@ -43,9 +42,9 @@ def pack_plan(run: Run, step: StepRecord, index: int, packer: Packer) -> dict[st
 def _planned_poses(run: Run, step: StepRecord) -> FloatArray | None:
     if step.trajectory is None:
         return None
-    names = cast("Sequence[str]", step.trajectory["joint_names"])
-    positions = np.asarray(step.trajectory["positions"], dtype=float)
-    return _tool_poses(run, step, names, positions[_spread(len(positions), PLAN_POINTS)])
+    positions = step.trajectory.positions
+    shown = positions[_spread(len(positions), PLAN_POINTS)]
+    return planned_tcp_poses(run, step, step.trajectory.joint_names, shown)
 
 
 def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
@@ -53,7 +52,7 @@ def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
     raw = step.planner.get("raw_path")
     if raw is None or step.trajectory is None:
         return None
-    names = cast("Sequence[str]", step.trajectory["joint_names"])
+    names = step.trajectory.joint_names
     waypoints = np.asarray(raw, dtype=float)
     if waypoints.ndim != 2 or len(waypoints) < 2 or waypoints.shape[1] != len(names):
         return None
@@ -61,21 +60,7 @@ def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
     before = np.minimum(places.astype(int), len(waypoints) - 2)
     share = (places - before)[:, None]
     between = (1 - share) * waypoints[before] + share * waypoints[before + 1]
-    return _tool_poses(run, step, names, between)
-
-
-def _tool_poses(
-    run: Run, step: StepRecord, names: Sequence[str], positions: FloatArray
-) -> FloatArray | None:
-    """T_world_tcp where some joints move and the others stand as when the step began."""
-    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
-    if not len(positions) or any(name not in columns for name in names):
-        return None
-    start = min(step.start_index, len(run.signals.times) - 1)
-    rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
-    rows[:, [columns[name] for name in names]] = positions
-    poses = replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
-    return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
+    return planned_tcp_poses(run, step, names, between)
 
 
 def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:

@@ -20,9 +20,8 @@ from harness.core.geometry import (
 )
 from harness.core.types import FloatArray, IntArray
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.run import ObjectRecord, Run
-from harness.reporting.html.meshes import pack_mesh
-from harness.reporting.html.packing import Packer, differences
+from harness.recording.run import MeshRecord, ObjectRecord, Run
+from harness.reporting.html.packing import Packer, differences, zigzag
 
 FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0
 """Poses a second [Hz]; the page goes from one to the next in straight lines."""
@@ -188,3 +187,27 @@ def _sphere(clouds: Sequence[FloatArray], room: float = 0.0) -> dict[str, Any]:
 
 def _rounded(values: Any, digits: int = 6) -> list[float]:
     return [round(float(value), digits) for value in values]
+
+
+SMALLEST = 1e-9
+STEPS = 65535
+
+
+def pack_mesh(mesh: MeshRecord, number: int, packer: Packer) -> dict[str, Any]:
+    """Put a mesh into the page's data, vertices in the order in which faces use them."""
+    used, first, faces = np.unique(mesh.faces.ravel(), return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(used), dtype=np.int64)
+    rank[order] = np.arange(len(used))
+    vertices = mesh.vertices[used[order]]
+    low = vertices.min(axis=0) if len(vertices) else np.zeros(3)
+    size = np.ptp(vertices, axis=0) if len(vertices) else np.zeros(3)
+    stored = np.rint((vertices - low) / np.maximum(size, SMALLEST) * STEPS)
+    indices = zigzag(rank[faces.ravel()])
+    return {
+        "vertices": packer.add(f"mesh.{number}.vertices", differences(stored.T)),
+        "faces": packer.add(f"mesh.{number}.faces", indices),
+        "wide": bool(indices.dtype == np.uint32),
+        "low": low.tolist(),
+        "size": size.tolist(),
+    }

@@ -19,7 +19,7 @@ from harness.core.geometry import (
 )
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.recording.link_poses import replayed_link_poses
+from harness.recording.link_poses import planned_tcp_poses
 from harness.recording.run import MeshRecord, ObjectRecord, Run, StepRecord
 from harness.reporting.rosbag.frames import WORLD, moving_objects
 from harness.reporting.rosbag.messages import (
@@ -135,17 +135,10 @@ def _meshes(run: Run, shape: Shape) -> Iterator[MeshRecord]:
 
 def _planned(run: Run, step: StepRecord) -> FloatArray | None:
     """Where a step's trajectory was to take the TCP, shape (points, 3) [m]."""
-    trajectory, tcp = step.trajectory, run.robot.tcp_link
-    if trajectory is None or step.start_index >= len(run.signals.times):
+    if step.trajectory is None or step.start_index >= len(run.signals.times):
         return None
-    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
-    names = [str(name) for name in trajectory["joint_names"]]
-    positions = np.asarray(trajectory["positions"], dtype=float)
-    if not len(positions) or any(name not in columns for name in names):
-        return None
-    rows = np.tile(run.signals.joint_positions[step.start_index], (len(positions), 1))
-    rows[:, [columns[name] for name in names]] = positions
-    poses = replayed_link_poses(run.robot, rows, [tcp]).get(tcp)
+    names, positions = step.trajectory.joint_names, step.trajectory.positions
+    poses = planned_tcp_poses(run, step, names, positions)
     return None if poses is None else poses[:, :3]
 
 

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.run import Run, StepRecord
 from harness.reporting.rosbag.frames import WORLD
 from harness.reporting.rosbag.messages import (
     NOTHING,
     DisplayTrajectory,
-    JointTrajectory,
     JointTrajectoryPoint,
     MultiDOFJointState,
     MultiDOFJointTrajectory,
@@ -26,6 +26,7 @@ from harness.reporting.rosbag.messages import (
     joint_state,
     pose_message,
 )
+from harness.reporting.rosbag.messages import JointTrajectory as TrajectoryMessage
 from harness.reporting.rosbag.samples import Message, samples_at
 from harness.reporting.rosbag.topics import DISPLAY_PLANNED_PATH, PLANNED_TRAJECTORY, TCP_PATH
 
@@ -42,7 +43,7 @@ def planned(run: Run) -> Iterator[Message]:
     """Each motion's trajectory when it begins, as such and as MoveIt shows it."""
     for step in run.steps:
         if step.trajectory is not None and step.status != "not reached":
-            trajectory = _trajectory(step)
+            trajectory = _trajectory(step.start_time, step.trajectory)
             yield Message(step.start_time, PLANNED_TRAJECTORY, trajectory)
             yield Message(step.start_time, DISPLAY_PLANNED_PATH, _display(run, step, trajectory))
 
@@ -71,25 +72,20 @@ def tcp_path(run: Run) -> Iterator[Message]:
             yield Message(time, TCP_PATH, Path(header=header(time, WORLD), poses=list(kept)))
 
 
-def _trajectory(step: StepRecord) -> Any:
-    plan = step.trajectory or {}
-    times = np.asarray(plan["times"], dtype=float)
+def _trajectory(start: float, plan: JointTrajectory) -> Any:
+    rows = zip(plan.times, plan.positions, plan.velocities, plan.accelerations, strict=True)
     points = [
         JointTrajectoryPoint(
-            positions=np.asarray(plan["positions"][row], dtype=float),
-            velocities=_row(plan.get("velocities"), row),
-            accelerations=_row(plan.get("accelerations"), row),
+            positions=positions,
+            velocities=velocities,
+            accelerations=accelerations,
             effort=NOTHING,
-            time_from_start=duration(float(times[row] - times[0])),
+            time_from_start=duration(float(time - plan.times[0])),
         )
-        for row in range(len(times))
+        for time, positions, velocities, accelerations in rows
     ]
-    names = [str(name) for name in plan["joint_names"]]
-    return JointTrajectory(header=header(step.start_time), joint_names=names, points=points)
-
-
-def _row(values: Any, row: int) -> FloatArray:
-    return NOTHING if values is None else np.asarray(values[row], dtype=float)
+    names = list(plan.joint_names)
+    return TrajectoryMessage(header=header(start), joint_names=names, points=points)
 
 
 def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:

@@ -14,7 +14,7 @@ from urllib.parse import quote
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.reporting.suite.columns import PASSED, Columns, Parameter
+from harness.reporting.suite.columns import PASSED, Columns, VariedQuantity
 from harness.reporting.suite.record import SuiteCase
 
 FEWEST_RUNS = 8
@@ -44,7 +44,7 @@ def campaign_html(columns: Columns, cases: Sequence[SuiteCase], folder: Path) ->
 
 
 def _map(
-    columns: Columns, parameters: Sequence[Parameter], cases: Sequence[SuiteCase], folder: Path
+    columns: Columns, parameters: Sequence[VariedQuantity], cases: Sequence[SuiteCase], folder: Path
 ) -> str:
     runs = len(columns.numbers)
     failed, passed = (
@@ -156,7 +156,7 @@ def _histogram(expectation: str, unit: str, values: FloatArray) -> str:
     )
 
 
-def _sensitivities(columns: Columns, parameters: Sequence[Parameter]) -> str:
+def _sensitivities(columns: Columns, parameters: Sequence[VariedQuantity]) -> str:
     shares = sensitivities(columns, parameters)
     rows = "".join(
         f'<li><span>{escape(path)}</span><span class="bar" role="img" aria-label="{share:.0%}">'
@@ -171,7 +171,7 @@ def _sensitivities(columns: Columns, parameters: Sequence[Parameter]) -> str:
     )
 
 
-def sensitivities(columns: Columns, parameters: Sequence[Parameter]) -> Mapping[str, float]:
+def sensitivities(columns: Columns, parameters: Sequence[VariedQuantity]) -> Mapping[str, float]:
     """How much of the variance of the worst margin each parameter explains alone, from 0 to 1.
 
     The runs are divided into groups of equal size by the parameter; the share is epsilon squared
@@ -188,7 +188,7 @@ def sensitivities(columns: Columns, parameters: Sequence[Parameter]) -> Mapping[
     return {each.path: _explained(each, measured) for each in parameters}
 
 
-def _explained(parameter: Parameter, measured: FloatArray) -> float:
+def _explained(parameter: VariedQuantity, measured: FloatArray) -> float:
     known = np.isfinite(parameter.numbers) & np.isfinite(measured)
     numbers, values = parameter.numbers[known], measured[known]
     distinct = np.unique(numbers)

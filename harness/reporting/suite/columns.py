@@ -24,7 +24,7 @@ ABSENT, WORD = -1, -2
 
 
 @dataclass(frozen=True)
-class Parameter:
+class VariedQuantity:
     """A quantity that varies, as numbers.
 
     Attributes:
@@ -68,9 +68,9 @@ class _Column:
         self.numbers.append(number)
         self.kinds.append(kind)
 
-    def parameter(self, path: str) -> Parameter:
+    def parameter(self, path: str) -> VariedQuantity:
         if len(self.units) == 1 and not self.words:
-            return Parameter(path, self.units[0], (), np.array(self.numbers))
+            return VariedQuantity(path, self.units[0], (), np.array(self.numbers))
         words, texts = list(self.words), dict[str, int]()
         numbers = [
             math.nan if kind == ABSENT else texts.setdefault(
@@ -79,7 +79,7 @@ class _Column:
             )
             for number, kind in zip(self.numbers, self.kinds, strict=True)
         ]  # fmt: skip
-        return Parameter(path, "", tuple(texts), np.array(numbers, dtype=float))
+        return VariedQuantity(path, "", tuple(texts), np.array(numbers, dtype=float))
 
 
 class Columns:
@@ -151,7 +151,7 @@ class Columns:
         return sorted(-index for _, _, index in self._urgent)
 
     @property
-    def parameters(self) -> list[Parameter]:
+    def parameters(self) -> list[VariedQuantity]:
         """Everything that varies in some run, in the order in which the runs name it."""
         return [column.parameter(path) for path, column in self._columns.items()]
 

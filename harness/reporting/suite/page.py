@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from harness.recording.run import Verdict
 from harness.reporting.html import bundle
-from harness.reporting.html.content_policy import content_policy
+from harness.reporting.html.bundle import content_policy
 from harness.reporting.margins import allowance_used
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, missed, rate_text, short_value

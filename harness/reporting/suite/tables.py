@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.reporting.suite.columns import Columns, Parameter
+from harness.reporting.suite.columns import Columns, VariedQuantity
 from harness.reporting.terminal import PLAIN, Style
 
 BINS = 4
@@ -37,7 +37,7 @@ def table_lines(columns: Columns, style: Style = PLAIN) -> Iterator[str]:
 
 
 def _rows(
-    parameter: Parameter, is_good: NDArray[np.bool_]
+    parameter: VariedQuantity, is_good: NDArray[np.bool_]
 ) -> Iterator[tuple[str, NDArray[np.bool_]]]:
     """Label of each value, or of each part of a range of numbers, and which runs passed there."""
     known = np.isfinite(parameter.numbers)

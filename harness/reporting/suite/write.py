@@ -60,10 +60,10 @@ def write_suite(
                 file.write(part.encode())
         with replaced(folder / JUNIT) as file:
             junit.write(file)
-    return write_page(folder, record, columns, history), columns
+    return write_suite_page(folder, record, columns, history), columns
 
 
-def write_page(
+def write_suite_page(
     folder: Path,
     record: SuiteRecord,
     columns: Columns | None = None,

@@ -1,12 +1,11 @@
-"""Messages of an MCAP file, record by record, in the order of the file.
-
-QoS metadata is not read: its variants are no reason to refuse a recording.
-"""
+"""Messages of the files of a recording: MCAP and SQLite in rosbag2's format."""
 
 from __future__ import annotations
 
+import sqlite3
 from collections.abc import Iterator
-from dataclasses import replace
+from contextlib import closing
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,40 @@ from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
-from harness.core.errors import HarnessError
-from harness.grading.bag.raw import LARGEST_RECORD, RawMessage, bag_error, unzstd
+from harness.core.errors import HarnessError, Problem, SpecError
+
+LARGEST_RECORD = 256 * 2**20
+"""Largest unpacked message or chunk of messages [bytes]."""
+
+
+@dataclass(frozen=True)
+class RawMessage:
+    """A recorded message.
+
+    Attributes:
+        log_time: Time of receipt by the recorder's clock [ns].
+        data: The message in CDR.
+    """
+
+    topic: str
+    msgtype: str
+    log_time: int
+    data: bytes
+
+
+def bag_error(path: Path, message: str, hint: str = "") -> SpecError:
+    """The error of a recording that cannot be used."""
+    return SpecError([Problem(str(path), 0, 0, message, hint)])
+
+
+def unzstd(data: bytes, largest: int, named: Path) -> bytes:
+    """Unpack data of at most a given size, whatever size the data declare."""
+    with zstandard.ZstdDecompressor().stream_reader(data) as stream:
+        content = stream.read(largest + 1)
+    if len(content) > largest:
+        raise bag_error(named, f"unpacks to more than the maximum of {largest} bytes")
+    return content
+
 
 RECOVER = "`mcap recover FILE -o WHOLE.mcap` saves what is whole"
 """Advice for an MCAP file that its recorder did not close."""
@@ -31,10 +62,8 @@ def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         named: The file in messages; it differs from `file` when that is an unpacked copy.
 
     Raises:
-        SpecError: The file is empty, damaged, or not an MCAP file.
+        SpecError: The file is damaged, or not an MCAP file.
     """
-    if not file.stat().st_size:
-        raise bag_error(named, "is empty")
     schemas: dict[int, str] = {}
     channels: dict[int, Channel] = {}
     with file.open("rb") as stream:
@@ -93,3 +122,47 @@ def _unpacked_chunk(chunk: Chunk, named: Path) -> Chunk:
         case other:
             raise bag_error(named, f"has chunks compressed by '{other}'; known: zstd, lz4")
     return replace(chunk, compression="", data=data)
+
+
+MOST_TOPICS = 10_000
+
+
+def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
+    """Every message of a SQLite file.
+
+    Args:
+        file: The file to read.
+        named: The file in messages; it differs from `file` when that is an unpacked copy.
+
+    Raises:
+        SpecError: The file is damaged, or not a SQLite recording.
+    """
+    try:
+        with closing(sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)) as database:
+            database.text_factory = _text
+            database.execute("PRAGMA trusted_schema = OFF")
+            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
+            kinds = dict(database.execute("SELECT name, type FROM sqlite_master"))
+            if any(kinds.get(name) != "table" for name in ("topics", "messages")):
+                raise bag_error(
+                    named, "is not a recording: it lacks the tables `topics` and `messages`"
+                )
+            topics = {
+                number: (str(name), str(msgtype))
+                for number, name, msgtype in database.execute(
+                    "SELECT id, name, type FROM topics LIMIT ?", (MOST_TOPICS,)
+                )
+            }
+            rows = database.execute("SELECT topic_id, timestamp, data FROM messages ORDER BY id")
+            for number, time, data in rows:
+                if number in topics and isinstance(data, bytes) and isinstance(time, int):
+                    yield RawMessage(*topics[number], time, data)
+    except (sqlite3.Error, MemoryError, OverflowError, UnicodeDecodeError) as error:
+        hint = "`sqlite3 FILE .recover | sqlite3 WHOLE.db3` saves what is whole"
+        said = str(error) or type(error).__name__
+        raise bag_error(named, f"cannot be read as a database: {said}", hint) from error
+
+
+def _text(data: bytes) -> str:
+    """A text of the database, with damaged bytes replaced; names with such bytes match nothing."""
+    return data.decode("utf-8", errors="replace")
