@@ -27,7 +27,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     add_robot_options(command)
     text = "place this link at the targets (default: the TCP)"
     add("--link", metavar="LINK", default="", help=text)
-    text = "the function claims to return every solution for a target"
+    text = "test that the function returns every solution for a target"
     add("--branches", action="store_true", help=text)
     text = "try N cases of each property (default: 100)"
     add("--examples", metavar="N", type=whole_number, default=100, help=text)

@@ -21,7 +21,7 @@ COMMANDS = {
     "search": "search for conditions under which a scenario fails",
     "check": "validate scenarios and the reach of their goals",
     "explain": "print the program that a scenario becomes",
-    "list": "list what a scenario may name",
+    "list": "list robots, worlds, steps and all else that a scenario may name",
     "view": "open the page of a run",
     "studio": "open a robot cell in the browser, and make a scenario",
     "judge": "judge a saved run again",
