@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from harness.cli.arguments import positive_number, seconds, whole_number
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json, add_plugin, add_report_dir
 from harness.suite.outcome import EXIT_CODES
@@ -66,12 +66,10 @@ def run(arguments: argparse.Namespace) -> int:
         patience=arguments.call_limit,
         report_dir=folder,
     )
+    report = run_ik_test(test)
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            report = run_ik_test(test)
-            write_json(report.facts())
+        say_json(report.facts())
     else:
-        report = run_ik_test(test)
         for line in report_lines(report, folder or Path()):
             say(line)
         if folder is not None:
