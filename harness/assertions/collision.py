@@ -96,7 +96,7 @@ def why_not_excused(run: Run, pair: Pair) -> str:
             if not is_excused:
                 continue
             moved = dragged(run, held, other, first, last)
-            if moved.max(initial=0.0) >= DRAG:
+            if moved.max() >= DRAG:
                 return f"dragged along it by {amount(float(moved.max()), 'm')}"
             beyond[first:last] = (force - limit)[first:last]
             limits[first:last] = limit[first:last]
@@ -205,12 +205,11 @@ def _contacts_in_hand(run: Run, held: str, other: str) -> list[tuple[int, int, b
         return []
     holds = episodes(_holds(run, held))
     contacts = bridged(run.signals.times, episodes(force_between(run, {held}, {other}) > 0))
-    carries = is_below(run, other, held) if holds and contacts else np.zeros(0, dtype=bool)
     found: list[tuple[int, int, bool]] = []
     for hold_start, hold_stop in holds:
         for start, stop in contacts:
             if start < hold_stop and stop > hold_start:
-                put_down = stop > hold_stop and bool(carries[hold_stop - 1])
+                put_down = stop > hold_stop and bool(is_below(run, other, held)[hold_stop - 1])
                 span = max(start, hold_start), min(stop, hold_stop)
                 found.append((*span, start <= hold_start or put_down))
     return found

@@ -1,4 +1,4 @@
-"""Mesh files (OBJ, STL, DAE) as coloured triangles for pictures and pages."""
+"""Mesh files as coloured triangles for pictures and pages."""
 
 from __future__ import annotations
 

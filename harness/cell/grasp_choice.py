@@ -124,12 +124,11 @@ def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[Float
     states = _solutions(approach.before, search, cell)
     padding = cell.current.options.padding
     free = [state for state in states if not cell.scene.touches(state, padding)]
+    options = replace(search.options, path_only=True, is_explained=False)
     for state in free[:MOST_BRANCHES]:
         try:
             plan = cell.planner.plan(
-                MotionRequest(
-                    search.group, state, LinearMotion(goal), replace(search.options, path_only=True)
-                )
+                MotionRequest(search.group, state, LinearMotion(goal), options)
             )
         except PlanningFailed:
             continue

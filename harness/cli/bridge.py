@@ -52,7 +52,11 @@ def bridge_request(
     if not arguments.no_report:
         folder = report_folders([file], Path(arguments.report_dir))[0]
     request = RunRequest(
-        file, overrides=dict(arguments.overrides), seed=arguments.seed, report_dir=folder
+        file,
+        overrides=dict(arguments.overrides),
+        seed=arguments.seed,
+        report_dir=folder,
+        page=not arguments.no_page,
     )
     loaded = read_scenario(file, request.overrides, request.seed).loaded
     if loaded is not None and not any(isinstance(s, External) for s in loaded.scenario.steps):

@@ -145,3 +145,5 @@ def add_served_robot(command: argparse.ArgumentParser) -> None:
     add_seed(command)
     add_report_dir(command)
     command.add_argument("--no-report", action="store_true", help="write no report")
+    text = "write the report without its page"
+    command.add_argument("--no-page", action="store_true", help=text)

@@ -54,7 +54,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A triangle mesh file (STL, OBJ, DAE), its convex hull, or one of its convex parts.
+    """A triangle mesh file (STL, OBJ, DAE, PLY, GLB), its convex hull, or one of its convex parts.
 
     Planner and physics both collide with the hull or the part. With the collision mode `exact`, the
     planner collides with the triangles, which are a surface, and the physics with the parts.

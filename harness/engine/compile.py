@@ -173,9 +173,8 @@ class _Compiler:
             self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
                 problems.append(f"two objects are called '{spec.name}'")
-            if spec.name in RESERVED:
-                said = f"a word of expectations: {RESERVED[spec.name]}"
-                problems.append(f"'{spec.name}' cannot be an object's name: it is {said}")
+            if taken := self._other_meaning(spec.name):
+                problems.append(f"'{spec.name}' cannot be an object's name: it is {taken}")
             frame, base = spec.pose.frame, SE3.identity()
             if frame in resolved:
                 base = resolved[frame].pose
@@ -224,27 +223,25 @@ class _Compiler:
 
     def _resolve(self, spec: ObjectSpec, loc: Loc, pose: SE3) -> WorldObject | None:
         self.object_locs[spec.name] = loc
-        description = self.sources.description
-        for kind, names in (
-            ("link", ("world", *description.link_names)),
-            ("joint", description.joint_names),
-        ):
-            if spec.name in names:
-                self.problems.add(
-                    (*loc, "name"),
-                    f"'{spec.name}' is a robot {kind}'s name",
-                    "choose another",
-                    needs=("robot",),
-                )
-        if spec.name in RESERVED:
-            said = f"'{spec.name}' is a word of expectations: {RESERVED[spec.name]}"
-            self.problems.add((*loc, "name"), said, "choose another", needs=())
+        if taken := self._other_meaning(spec.name):
+            self.problems.add(
+                (*loc, "name"), f"'{spec.name}' is {taken}", "choose another", needs=("robot",)
+            )
         try:
             return self._object(spec, pose, self.sources.base_dir)
         except ObjectUnusableError as unusable:
             self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
             self.problems.add_unusable(spec.name)
             return None
+
+    def _other_meaning(self, name: str) -> str:
+        """What else a name of an object stands for; empty where it is free."""
+        if name in RESERVED:
+            return f"a word of expectations: {RESERVED[name]}"
+        description = self.sources.description
+        if name in ("world", *description.link_names):
+            return "a robot link's name"
+        return "a robot joint's name" if name in description.joint_names else ""
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
         """The object, its mesh files looked into; raises ObjectUnusableError."""

@@ -47,6 +47,7 @@ class Grasped(ObjectPredicate):
     """
 
     quantities = (FINGERS, BETWEEN, HELD, SLIP, TURN)
+    is_proposed = True
     synonyms = ("held", "holding")
     opposite = "released"
 

@@ -34,6 +34,7 @@ class GripperState(Predicate):
     word = "gripper"
     short = "named_target"
     quantities = (POSITION_ERROR, GAP, STALLED)
+    is_proposed = True
 
     named_target: Name | None = Field(
         default=None, description="The name of an SRDF group state of the gripper."

@@ -19,6 +19,7 @@ class NamedTarget(Predicate):
 
     short = "state"
     quantities = (POSITION_ERROR,)
+    is_proposed = True
 
     state: Name = Field(description="The name of the SRDF group state.")
     group: Name | None = Field(

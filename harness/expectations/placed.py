@@ -72,6 +72,7 @@ class Placed(ObjectPredicate):
     """
 
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
+    is_proposed = True
 
     on: Name | None = Field(
         default=None,

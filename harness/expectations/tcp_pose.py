@@ -30,6 +30,7 @@ class TcpPose(Predicate):
     """The TCP, or another link, stands at a pose."""
 
     quantities = (POSITION, ORIENTATION)
+    is_proposed = True
 
     pose: Pose = Field(description="The pose where it stands.")
     link: Name | None = Field(

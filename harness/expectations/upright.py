@@ -23,6 +23,7 @@ class Upright(ObjectPredicate):
     """The object's z axis points up."""
 
     quantities = (LEAN,)
+    is_proposed = True
 
     tolerance: Annotated[AngleBetween, Field(gt=0)] = Field(
         default=0.1, description="The largest angle between its z axis and the vertical [rad]."

@@ -66,6 +66,7 @@ class ExpectationFields(SpecModel):
         synonyms: What people call the expectation; an error suggests its word for them.
         opposite: The predicate that holds at the end where this one does not; empty without one.
         is_upper_bound: Whether it demands a small value by itself, as `slip` does.
+        is_proposed: Whether the studio proposes it where it holds: it is rarely true by chance.
     """
 
     plugin_kind: ClassVar[str] = KIND
@@ -74,6 +75,7 @@ class ExpectationFields(SpecModel):
     synonyms: ClassVar[tuple[str, ...]] = ()
     opposite: ClassVar[str] = ""
     is_upper_bound: ClassVar[bool] = False
+    is_proposed: ClassVar[bool] = False
 
     during: Name | None = Field(
         default=None,

@@ -33,6 +33,7 @@ class PlanningOptions:
         max_jerk: The max jerk of every joint [rad/s^3 or m/s^3]; inf for none.
         cartesian_limits: The cartesian limits of the link, on lines and arcs.
         path_only: Leave out the times: the plan jumps from its start to its end.
+        is_explained: Explain a failure, which takes longer than many plans.
     """
 
     pipeline: str = "ompl"
@@ -49,6 +50,7 @@ class PlanningOptions:
     max_jerk: float = float("inf")
     cartesian_limits: CartesianLimits = PILZ_LIMITS
     path_only: bool = False
+    is_explained: bool = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,14 +1,16 @@
-"""Mesh files (STL, OBJ, DAE) as triangles, convex hulls and parts, for planner and physics alike.
+"""Mesh files as triangles, convex hulls and parts, for planner and physics alike.
 
-Coal reads them with Assimp, as MoveIt and RViz do. As there, a COLLADA file's `unit` is applied and
-its `up_axis` is not.
+As in MoveIt and RViz, a COLLADA file's `unit` is applied and its `up_axis` is not; nor is a GLB
+file turned, whose second axis points up by convention.
 """
 
 # pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
+import io
 import re
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -23,7 +25,8 @@ from harness.core.types import FloatArray, IntArray
 from harness.robot.decomposition.convex_parts import Decomposition
 from harness.robot.decomposition.parts_cache import stored_decomposition
 
-SUFFIXES = (".stl", ".obj", ".dae")
+SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".glb")
+KINDS = "STL, OBJ, DAE, PLY or GLB"
 LARGEST_FILE = 64_000_000
 """Largest mesh file [bytes]."""
 
@@ -51,15 +54,35 @@ class Triangles:
 
 @lru_cache(maxsize=128)
 def read_triangles(geometry: Mesh) -> Triangles:
-    """All triangles of a file, for pictures.
+    """All triangles of a file.
 
     Raises:
         RobotError: The file is of an unsupported kind, too large, or damaged.
     """
-    model = _load(geometry)
-    corners = [model.tri_indices(number) for number in range(model.num_tris)]
-    faces = np.array([(face[0], face[1], face[2]) for face in corners], dtype=np.int64)
-    return Triangles(np.array(model.vertices()), faces.reshape(-1, 3))
+    import trimesh  # here: most robots are loaded without reading their meshes
+
+    path = geometry.path
+    scale = np.array(geometry.scale, dtype=float) * metres_per_unit(geometry)
+    kind = path.suffix[1:].lower()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            # As a stream, so that the file cannot name others, such as textures.
+            stream = io.BytesIO(path.read_bytes())
+            scene = trimesh.load_scene(stream, file_type=kind, process=False, skip_materials=True)
+            mesh = scene.to_mesh()
+            mesh.merge_vertices(merge_tex=True, merge_norm=True)
+        vertices, faces = np.array(mesh.vertices) * scale, np.array(mesh.faces, dtype=np.int64)
+        corners = vertices[faces]
+    except Exception as error:  # every format's reader has errors of its own
+        raise RobotError(
+            f"{path.name} cannot be read: it is damaged or not in {kind.upper()} format"
+        ) from error
+    if not len(faces) or not np.isfinite(corners).all():
+        raise RobotError(
+            f"{path.name} has no triangles: it is empty, damaged or not in {kind.upper()} format"
+        )
+    return Triangles(vertices, faces)
 
 
 @lru_cache(maxsize=128)
@@ -69,7 +92,17 @@ def exact_surface(geometry: Mesh) -> Any:
     Raises:
         RobotError: As `read_triangles`.
     """
-    return _load(geometry)
+    import coal
+
+    mesh = read_triangles(geometry)
+    corners, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    corners.extend(list(mesh.vertices))
+    faces.extend([coal.Triangle(*face) for face in mesh.faces.tolist()])
+    surface = coal.BVHModelOBBRSS()
+    surface.beginModel(len(faces), len(corners))
+    surface.addSubModel(corners, faces)
+    surface.endModel()
+    return surface
 
 
 @lru_cache(maxsize=512)
@@ -144,23 +177,6 @@ def hull_points(geometry: Mesh) -> FloatArray:
     return np.array(hull.points(), dtype=float).reshape(-1, 3)
 
 
-def _load(geometry: Mesh) -> Any:
-    import coal  # here: most robots are loaded without their meshes
-
-    path = geometry.path
-    scale = np.array(geometry.scale, dtype=float) * metres_per_unit(geometry)
-    try:
-        model = coal.MeshLoader().load(str(path), scale)
-    except (RuntimeError, ValueError) as error:
-        kind = path.suffix[1:].upper()
-        raise RobotError(
-            f"{path.name} cannot be read: it is damaged or not in {kind} format"
-        ) from error
-    if model.num_tris == 0 or not np.isfinite(model.vertices()).all():
-        raise RobotError(f"{path.name} has no triangles")
-    return model
-
-
 def metres_per_unit(geometry: Mesh) -> float:
     """Metres of a COLLADA file's unit; 1 for other files, which are in metres.
 
@@ -170,7 +186,7 @@ def metres_per_unit(geometry: Mesh) -> float:
     path = geometry.path
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise RobotError(f"{path.name} is not an STL, OBJ or DAE file")
+        raise RobotError(f"{path.name} is not a {KINDS} file")
     try:
         size = path.stat().st_size
         with path.open("rb") as file:

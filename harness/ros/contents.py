@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from harness.core.types import FloatArray
 from harness.ros.action_server import Status
 from harness.ros.control.goals import Code
@@ -75,16 +77,15 @@ def gripper_result(outcome: Gripped) -> tuple[Status, Any]:
 def follow_feedback(tracking: Tracking, names: tuple[str, ...]) -> Any:
     """Feedback of a trajectory that is followed."""
 
-    def point(positions: FloatArray, velocities: FloatArray) -> Any:
+    def point(motion: FloatArray) -> Any:
+        positions, velocities = np.ascontiguousarray(motion)
         return message(POINT, positions=positions, velocities=velocities)
 
-    desired, actual = tracking.desired, tracking.actual
-    speeds = tracking.desired_velocities, tracking.actual_velocities
     return message(
         f"{FOLLOW}_Feedback",
         header=message("std_msgs/msg/Header", stamp=stamp(tracking.time)),
         joint_names=list(names),
-        desired=point(desired, speeds[0]),
-        actual=point(actual, speeds[1]),
-        error=point(desired - actual, speeds[0] - speeds[1]),
+        desired=point(tracking.desired),
+        actual=point(tracking.actual),
+        error=point(tracking.desired - tracking.actual),
     )

@@ -319,14 +319,14 @@ class MujocoSimulator:
         """Names of the joints with a servo, in the order of set points."""
         return tuple(self.description.joint_names[place] for place in self.physics.actuated)
 
-    def stream(self, rows: tuple[FloatArray, FloatArray, FloatArray]) -> None:
+    def stream(self, rows: FloatArray) -> None:
         """Advance along set points of all actuated joints, one physics step from row to row.
 
         `command` has to follow the last of these calls, before anything is held.
 
         Args:
-            rows: Positions, velocities and accelerations, shape (N + 1, m) each; the first row is
-                where the command stands.
+            rows: Positions, velocities and accelerations, shape (3, N + 1, m); the first of the
+                N + 1 is where the command stands.
         """
         points = SetPoints(*rows)
         self._recording.refuse_beyond(len(points) - 1)

@@ -111,13 +111,11 @@ class Document:
         ]
 
     def base_key(self) -> str:
-        """Text that changes when the cell has to be built again."""
+        """Text that changes when the cell has to be built again, for other reasons than steps."""
         plain = self.root.plain()
         assert isinstance(plain, dict)
         keys = ("robot", "world", "objects", "cameras", "params")
-        parts = [plain.get(key) for key in keys]
-        added = _added_objects(plain.get("steps"))
-        return json.dumps([parts, added], sort_keys=True, default=str)
+        return json.dumps([plain.get(key) for key in keys], sort_keys=True, default=str)
 
     def with_step(self, step: str, index: int) -> Document:
         """The document with one more step, given as `verb: keys` on one line or several."""
@@ -283,18 +281,3 @@ def _executed(step: Plain) -> Plain:
 
 def _items_of(value: Plain) -> list[Plain]:
     return value if isinstance(value, list) else []
-
-
-def _added_objects(steps: Plain) -> list[Plain]:
-    """Every object that steps add, wherever they are nested."""
-    found: list[Plain] = []
-    if isinstance(steps, Mapping):
-        for key, value in steps.items():
-            if key == "add_object":
-                found.append(value)
-            else:
-                found += _added_objects(value)
-    elif isinstance(steps, list):
-        for item in steps:
-            found += _added_objects(item)
-    return found

@@ -11,6 +11,7 @@ import viser
 from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.language.step import STEPS
 from harness.studio.files import StudioFiles
 from harness.studio.live_studio import LiveStudio
 from harness.studio.messages import failure_message
@@ -190,7 +191,7 @@ class GoalActions(LiveStudio):
 
     def motion_text(self, message: Message) -> str:
         """The step that a page's goal is."""
-        verb = str(message.get("verb", "move_to"))
+        verb = str(message.get("verb") or MOTIONS[0])
         if verb not in MOTIONS:
             raise RefusedError(f"a motion is one of {', '.join(MOTIONS)}")
         description = self.cell.description
@@ -210,7 +211,7 @@ class GoalActions(LiveStudio):
             keys = pose_keys(description, group, pose, frame)
         else:
             raise RefusedError("there is no goal: drag the handle, or choose a named state")
-        if verb == "circ":
+        if STEPS[verb].is_arc:
             keys["interim"] = {"xyz": [round(float(value), 5) for value in message["interim"]]}
         if message.get("planner"):
             given = str(message["planner"])

@@ -8,7 +8,11 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import yaml
+
+from harness.language.language import EXPECTATIONS
 from harness.language.schema import scenario_schema
+from harness.language.step import STEPS
 
 Schema = Mapping[str, Any]
 Path = tuple[str, ...]
@@ -16,8 +20,9 @@ Path = tuple[str, ...]
 ITEM = "-"
 """In a path: an item of a list."""
 
-_KEY = re.compile(r"""^(\s*)((?:- +)*)(?:(["']?)([\w.-]+)\3\s*:(?:\s|$))?""")
-_FLOW_KEY = re.compile(r"""([\w.-]+)["']?\s*:\s*$""")
+MARK = "\ue000"
+"""A character of no script, put where the cursor is."""
+
 _WORD = re.compile(r"[\w./-]*$")
 
 
@@ -36,54 +41,27 @@ class Option:
     help: str
 
 
-@dataclass(frozen=True)
-class Names:
-    """Names that exist in a cell, by what they name."""
+Names = Mapping[str, Sequence[str]]
+"""Names that exist in a cell, by the fields that take them: `object`, `link`, `joints`."""
 
-    states: Sequence[str] = ()
-    gripper_states: Sequence[str] = ()
-    joints: Sequence[str] = ()
-    links: Sequence[str] = ()
-    objects: Sequence[str] = ()
-    groups: Sequence[str] = ()
-    worlds: Sequence[str] = ()
-    robots: Sequence[str] = ()
-    grippers: Sequence[str] = ()
+GRIPPER_TARGET = "gripper_target"
+"""In names: the `named_target` of a step that moves the gripper."""
 
-    def of(self, path: Path) -> Sequence[str]:
-        """Names that may stand at a path."""
-        keys = [key for key in path if key != ITEM]
-        last = keys[-1] if keys else ""
-        bodies = (*self.objects, *self.links)
-        kinds: dict[str, Sequence[str]] = {
-            "move_to": self.states,
-            "ptp": self.states,
-            "named_target": (*self.states, *self.gripper_states),
-            "gripper": self.grippers if "robot" in keys else self.gripper_states,
-            "joints": self.joints,
-            "positions": self.joints,
-            "frame": ("world", *self.objects, *self.links),
-            "link": self.links,
-            "tcp_link": self.links,
-            "object": self.objects,
-            "on": bodies,
-            "support": bodies,
-            "between": ("robot", "gripper", "any", *bodies),
-            "grasped": self.objects,
-            "released": self.objects,
-            "lifted": self.objects,
-            "placed": self.objects,
-            "upright": self.objects,
-            "pick": self.objects,
-            "place": self.objects,
-            "grasp": self.objects,
-            "release": self.objects,
-            "group": self.groups,
-            "world": self.worlds,
-            "robot": self.robots,
-            "model": self.robots,
-        }
-        return kinds.get(last, ())
+
+def named_at(path: Path, names: Names) -> Sequence[str]:
+    """Names that may stand at a path."""
+    keys = [key for key in path if key != ITEM]
+    field = keys[-1] if keys else ""
+    if "robot" in keys:
+        return names.get(field, ())
+    steps = [STEPS[key] for key in keys if key in STEPS]
+    if field in STEPS:  # a bare value stands for one of its fields
+        field = steps[-1].short
+    elif field in EXPECTATIONS and field not in names:
+        field = EXPECTATIONS[field].short
+    if field == "named_target" and steps and steps[-1].moves_gripper:
+        field = GRIPPER_TARGET
+    return names.get(field, ())
 
 
 @cache
@@ -94,79 +72,59 @@ def _schema() -> Schema:
 def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
     """The keys and list items around a place, and whether a value (not a key) stands there.
 
-    Works on text that is not yet YAML: indentation, dashes and brackets decide.
+    Only what stands before the place is read, and of that not the lines with mistakes.
 
     Args:
         text: The text of the scenario.
         line: The line from 0.
         column: The column from 0.
+
+    Raises:
+        ValueError: The line is not YAML, or the place is in a comment.
     """
-    lines = text.split("\n")
-    current = lines[line] if line < len(lines) else ""
-    before = _WORD.sub("", current[:column])
-    head = _KEY.match(before)
-    assert head is not None
-    path = _outer(lines[:line], len(head[1]), is_item=bool(head[2]))
-    path = (*path, *(ITEM for _ in re.findall("- +", head[2])))
-    inner, is_value = _inside_brackets(before[head.end() :])
-    if head[4]:
-        return (*path, head[4], *inner), is_value
-    return (*path, *inner), bool(inner) and is_value
+    lines = text.split("\n")[: line + 1]
+    lines[-1] = _WORD.sub("", lines[-1][:column])
+    broken = -1
+    while broken < line:
+        for end in (":", ""):  # a key, else a value
+            try:
+                return _path_to_mark("\n".join(lines) + MARK + end)
+            except yaml.MarkedYAMLError as error:
+                broken = error.problem_mark.line if error.problem_mark else line
+        if broken < line:
+            lines[broken] = ""
+    raise ValueError("this line is not YAML")
 
 
-def _outer(lines: Sequence[str], limit: int, *, is_item: bool) -> Path:
-    """The path of the block that a line belongs to, by the columns of keys and dashes before it.
-
-    Args:
-        lines: The lines before it.
-        limit: The column where the line begins.
-        is_item: Whether it begins with a dash, which may stand right below its key.
-    """
-    found: list[str] = []
-    for line in reversed(lines):
-        match = _KEY.match(line)
-        if match is None or not line.strip() or line.lstrip().startswith("#"):
-            continue
-        openers = [(each.start(), ITEM) for each in re.finditer("- +", line[: match.end(2)])]
-        if match[4]:
-            openers.append((match.end(2), match[4]))
-        for column, name in reversed(openers):
-            if column < limit or (column == limit and is_item and name != ITEM):
-                found.append(name)
-                limit, is_item = column, name == ITEM
-    return tuple(reversed(found))
-
-
-def _inside_brackets(text: str) -> tuple[Path, bool]:
-    """The path that a line's open brackets add, and whether a value stands at its end."""
-    stack: list[tuple[str, str]] = []
-    key = ""
-    for index, character in enumerate(text):
-        if character in "{[":
-            stack.append((character, key))
-            key = ""
-        elif character in "}]":
-            if stack:
-                stack.pop()
-            key = ""
-        elif character == ",":
-            key = ""
-        elif character == ":":
-            match = _FLOW_KEY.search(text[: index + 1])
-            key = match[1] if match else ""
-    path: list[str] = []
-    for bracket, name in stack:
-        if name:
-            path.append(name)
-        if bracket == "[":
-            path.append(ITEM)
-    is_value = not stack or stack[-1][0] == "[" or bool(key)
-    return (*path, key) if key else tuple(path), is_value
+def _path_to_mark(text: str) -> tuple[Path, bool]:
+    around: list[str] = []  # of each open collection: ITEM, the key whose value follows, or ""
+    for event in yaml.parse(text):
+        match event:
+            case yaml.MappingStartEvent(flow_style=True) if text[event.start_mark.index] == MARK:
+                continue  # an item of a list in brackets
+            case yaml.CollectionStartEvent():
+                around.append("" if isinstance(event, yaml.MappingStartEvent) else ITEM)
+                continue
+            case yaml.ScalarEvent(value=str(word)) if MARK in word:
+                return tuple(filter(None, around)), bool(around and around[-1])
+            case yaml.ScalarEvent(value=str(key)) if around and not around[-1]:
+                around[-1] = key
+                continue
+            case yaml.CollectionEndEvent():
+                around.pop()
+            case _:
+                pass
+        if around and around[-1] != ITEM:
+            around[-1] = ""
+    raise ValueError("the place is in a comment")
 
 
 def complete(text: str, line: int, column: int, names: Names) -> list[Option]:
     """What may be written at a place, keys with their descriptions."""
-    path, is_value = path_at(text, line, column)
+    try:
+        path, is_value = path_at(text, line, column)
+    except ValueError:
+        return []
     options: list[Option] = []
     for node in _nodes(path):
         if not is_value:
@@ -175,28 +133,26 @@ def complete(text: str, line: int, column: int, names: Names) -> list[Option]:
         words = [*node.get("enum", ()), *((node["const"],) if "const" in node else ())]
         words += ("true", "false") if node.get("type") == "boolean" else ()
         options += [Option(str(word), "value", "") for word in words]
-    kind = "value" if is_value else "key"
-    options += [Option(name, kind, "") for name in names.of(path)]
+    if is_value or not options:
+        kind = "value" if is_value else "key"
+        options += [Option(name, kind, "") for name in named_at(path, names)]
     return list({option.text: option for option in options}.values())
 
 
 def hover(text: str, line: int, column: int) -> str:
     """The description of the key under a place; empty where there is none."""
     lines = text.split("\n")
-    if line >= len(lines):
-        return ""
-    current = lines[line]
+    current = lines[line] if line < len(lines) else ""
     start = len(_WORD.sub("", current[:column]))
-    rest = re.match(r"[\w.-]+", current[start:])
-    if rest is None:
+    word = re.match(r"[\w.-]+", current[start:])
+    if word is None:
         return ""
-    path, _ = path_at(text, line, start)
-    word = rest[0]
-    for node in _nodes(path):
-        child = node.get("properties", {}).get(word)
-        if child is not None:
-            return _description(child)
-    return ""
+    try:
+        path, _ = path_at(text, line, start)
+    except ValueError:
+        return ""
+    found = (node.get("properties", {}).get(word[0]) for node in _nodes(path))
+    return next((_description(each) for each in found if each is not None), "")
 
 
 def _nodes(path: Path) -> Iterator[Schema]:

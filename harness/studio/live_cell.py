@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,11 @@ from harness.studio.live_simulator import LiveSimulator, Pace
 
 def _no_step(*_: object) -> None:
     return
+
+
+def _added(prepared: Prepared) -> bytes:
+    """The objects that steps add, which the physics has from its start."""
+    return pickle.dumps(dict(prepared.program.later_objects))
 
 
 class LiveCell:
@@ -68,6 +74,7 @@ class LiveCell:
         """
         prepared = self.prepared_as(document)
         is_same = document.base_key() == self.document.base_key()
+        is_same = is_same and _added(prepared) == _added(self.prepared)
         if not is_same or set(prepared.observed_links) - set(self.prepared.observed_links):
             self._build(document, prepared)
             return True
@@ -236,7 +243,7 @@ class LiveCell:
         """A step as the scenario's next one would be, seed included."""
         document = self.document.with_step(text, self.steps_done)
         prepared = self.prepared_as(document)
-        if document.base_key() != self.document.base_key():
+        if _added(prepared) != _added(self.prepared):
             raise StepFailed("INVALID_OBJECT_NAME", "objects are added to the scenario's `objects`")
         return prepared.program.steps[self.steps_done]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from harness.core.printable import printable
 from harness.language.step import STEPS
 from harness.recording.run import StepRecord
 from harness.reporting.explanation import explanation_lines
-from harness.studio.language_help import Names
+from harness.studio.language_help import GRIPPER_TARGET, Names
 from harness.studio.live_cell import LiveCell
 from harness.studio.object_texts import object_form
 from harness.studio.session import Message
@@ -92,20 +92,27 @@ def names_of(cell: LiveCell | None) -> Names:
     from harness.language.reading.load import bundled_worlds
     from harness.robot.load import gripper_names, robot_names
 
-    bundled = Names(worlds=bundled_worlds(), robots=robot_names(), grippers=gripper_names())
+    robots = robot_names()
+    names = {"world": bundled_worlds(), "robot": robots, "model": robots}
+    names["gripper"] = gripper_names()
     if cell is None:
-        return bundled
-    description = cell.description
+        return names
+    description, objects = cell.description, list(cell.cell.presence)
     gripper = description.gripper
-    return replace(
-        bundled,
-        states=list(description.states_of(description.arm_group)),
-        gripper_states=[] if gripper is None else list(description.states_of(gripper.group)),
-        joints=description.joint_names,
-        links=description.link_names,
-        objects=list(cell.cell.presence),
-        groups=list(description.groups),
-    )
+    states = list(description.states_of(description.arm_group))
+    ends = [] if gripper is None else list(description.states_of(gripper.group))
+    links, joints = description.link_names, description.joint_names
+    bodies = [*objects, *links]
+    named: dict[str, Sequence[str]] = {
+        **{"named_target": states, "state": [*states, *ends], GRIPPER_TARGET: ends},
+        **dict.fromkeys(("joints", "positions"), joints),
+        **dict.fromkeys(("object", "objects"), objects),
+        **dict.fromkeys(("link", "tcp_link", "touch_links"), links),
+        **dict.fromkeys(("on", "support", "container"), bodies),
+        **{"between": ["robot", "gripper", "any", *bodies], "frame": ["world", *bodies]},
+        **{"group": list(description.groups), "camera": list(cell.prepared.program.cameras)},
+    }
+    return names | named
 
 
 def failure_message(record: StepRecord) -> Message:

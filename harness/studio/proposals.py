@@ -2,147 +2,112 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from harness.core.spatial import SE3
+from harness.language.expectation import ExpectationFields
+from harness.language.language import EXPECTATIONS
 from harness.studio.judging import judged
+from harness.studio.language_help import ITEM, named_at
 from harness.studio.live_cell import LiveCell
+from harness.studio.messages import names_of
 from harness.studio.step_texts import step_text
-
-AT_A_STATE = 0.01
-"""Largest difference of a joint from a named state [rad or m]."""
-
-PRESSED = 0.05
-"""Smallest force with which a finger side holds an object [N]."""
 
 MOVED = 0.005
 """Largest distance from its start at which an object counts as not moved [m]."""
 
-UPRIGHT = 0.1
-"""Largest angle from the vertical at which an object stands upright [rad]."""
+TOLERANCE = {"position": "5 mm", "orientation": "3 deg"}
+"""A tolerance of poses that a repetition keeps."""
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """An expectation that holds now.
+    """An expectation that may hold now.
 
     Attributes:
-        text: It, as a scenario has it.
-        why: The observation that it states.
+        text: The expectation, as a scenario has it.
+        why: What the expectation states.
+        field: The field for which its bare value stands; empty where it has none.
     """
 
     text: str
     why: str
+    field: str
 
 
 def proposals(cell: LiveCell) -> list[Proposal]:
-    """Expectations of what is seen, each with a tolerance that a repetition keeps."""
-    return [*_about_robot(cell), *_about_objects(cell)]
+    """The expectations that the judge of a run lets pass on the last step executed.
 
-
-def holding(cell: LiveCell, proposed: list[Proposal]) -> list[Proposal]:
-    """Those of the proposals that the judge of a run lets pass on the last step executed."""
+    Candidates are the classes that are worth proposing, with every name that their bare value may
+    have; of objects only those that have moved, or that the robot touches.
+    """
     step = cell.steps_done - 1
-    if step < 0 or not proposed:
+    candidates = list(_candidates(cell))
+    if step < 0 or not candidates:
         return []
-    document = cell.document.with_expectations([each.text for each in proposed], step)
+    document = cell.document.with_expectations([each.text for each in candidates], step)
     name = cell.execution.program.steps[step].id
     verdicts = [each for each in judged(cell, document).verdicts if each.step == name]
-    passed = [each.status == "passed" for each in verdicts[-len(proposed) :]]
-    return [each for each, is_kept in zip(proposed, passed, strict=True) if is_kept]
+    passed = [each.status == "passed" for each in verdicts[-len(candidates) :]]
+    kept = [each for each, is_kept in zip(candidates, passed, strict=True) if is_kept]
+    fields = {each.field for each in kept}
+    return [each for each in kept if each.field or "state" not in fields]  # a name, not numbers
 
 
-def _about_robot(cell: LiveCell) -> list[Proposal]:
-    description, positions = cell.description, cell.joint_positions()
-    found: list[Proposal] = []
-    state = named_state_at(cell)
-    if state:
-        found.append(Proposal(step_text("named_target", state), f"the arm is at '{state}'"))
-    elif description.arm_group:
-        pose = cell.tcp_pose()
-        keys = {
-            "pose": {
-                "xyz": [round(float(value), 4) for value in pose.translation],
-                "quat_wxyz": [round(float(value), 4) for value in pose.as_vector()[3:]],
-            },
-            "tolerance": {"position": "3 mm", "orientation": "1 deg"},
-        }
-        found.append(Proposal(step_text("tcp_pose", keys), "the TCP stands there"))
-    gripper = description.gripper
-    if gripper is not None:
-        value = float(positions[description.joint_index[gripper.joint]])
-        for name, each in description.states_of(gripper.group).items():
-            if abs(each.positions.get(gripper.joint, np.inf) - value) < 2 * AT_A_STATE:
-                found.append(Proposal(step_text("gripper", name), f"the gripper is '{name}'"))
-                break
-    return found
-
-
-def _about_objects(cell: LiveCell) -> list[Proposal]:
-    found: list[Proposal] = []
+def _candidates(cell: LiveCell) -> Iterator[Proposal]:
     forces = cell.simulator.contact_forces()
-    for name, pose in cell.object_poses().items():
-        obj = cell.cell.presence[name].obj
-        if obj.is_static or not obj.in_simulation:
-            continue
-        start = cell.cell.presence[name].obj.pose
-        if _is_held(cell, name, forces):
-            found.append(Proposal(step_text("grasped", name), f"both finger sides press '{name}'"))
-            continue
-        if start.distance_to(pose)[0] < MOVED:
-            continue
-        below = _support(cell, name, forces)
-        if below:
-            vector = [round(float(value), 4) for value in pose.as_vector()]
-            place = {"xyz": vector[:3], "quat_wxyz": vector[3:]}
-            keys: dict[str, Any] = {"object": name, "on": below, "pose": place}
-            keys["tolerance"] = {"position": "5 mm", "orientation": "3 deg"}
-            found.append(Proposal(step_text("placed", keys), f"'{name}' stands on '{below}'"))
-        tilt = float(np.arccos(np.clip(pose.rotation[2, 2], -1.0, 1.0)))
-        if tilt < UPRIGHT:
-            found.append(Proposal(step_text("upright", name), f"'{name}' is upright"))
-    return found
-
-
-def named_state_at(cell: LiveCell) -> str:
-    """The arm's named state where it stands; empty where there is none."""
-    description, positions = cell.description, cell.joint_positions()
-    for name, state in description.states_of(description.arm_group).items():
-        index = description.joint_index
-        if all(
-            abs(positions[index[joint]] - value) < AT_A_STATE
-            for joint, value in state.positions.items()
-        ):
-            return name
-    return ""
-
-
-def _is_held(cell: LiveCell, name: str, forces: dict[tuple[str, str], float]) -> bool:
-    gripper = cell.description.gripper
-    if gripper is None:
-        return False
-    sides = [
-        sum(forces.get((min(link, name), max(link, name)), 0.0) for link in links)
-        for links in gripper.sides.values()
-    ]
-    return len(sides) > 1 and min(sides) > PRESSED
-
-
-def _support(cell: LiveCell, name: str, forces: dict[tuple[str, str], float]) -> str:
-    """The object that carries another one; the lower body of the strongest contact."""
     poses = cell.object_poses()
+    moved = [name for name in poses if _is_of_interest(cell, name, poses[name], forces)]
+    names = {**names_of(cell), "object": moved}
+    for word in EXPECTATIONS:
+        expectation = EXPECTATIONS[word]
+        if not expectation.is_proposed:
+            continue
+        if not expectation.short and cell.description.arm_group:
+            yield _proposal(expectation, {}, cell.tcp_pose())
+        for value in named_at(("expect", ITEM, word), names):
+            keys: dict[str, Any] = {expectation.short: value}
+            below = _support(value, poses, forces) if value in moved else ""
+            if "on" in expectation.model_fields and below:
+                keys["on"] = below
+            yield _proposal(expectation, keys, poses.get(value))
+
+
+def _proposal(
+    expectation: type[ExpectationFields], keys: dict[str, Any], pose: SE3 | None
+) -> Proposal:
+    if pose is not None and {"pose", "tolerance"} <= set(expectation.model_fields):
+        vector = [round(float(value), 4) for value in pose.as_vector()]
+        place = {"xyz": vector[:3], "quat_wxyz": vector[3:]}
+        keys = {**keys, "pose": place, "tolerance": TOLERANCE}
+    is_short = set(keys) == {expectation.short}
+    text = step_text(expectation.word, keys[expectation.short] if is_short else keys)
+    return Proposal(text, (expectation.__doc__ or "").partition("\n")[0], expectation.short)
+
+
+def _is_of_interest(
+    cell: LiveCell, name: str, pose: SE3, forces: dict[tuple[str, str], float]
+) -> bool:
+    """Whether an object has moved, or the robot touches it."""
+    obj = cell.cell.presence[name].obj
+    if obj.is_static or not obj.in_simulation:
+        return False
+    touching = {other for pair in forces if name in pair for other in pair}
+    return obj.pose.distance_to(pose)[0] >= MOVED or not touching.isdisjoint(
+        cell.description.link_names
+    )
+
+
+def _support(name: str, poses: dict[str, SE3], forces: dict[tuple[str, str], float]) -> str:
+    """The object that carries another one: the lower body of the strongest contact."""
+    height = poses[name].translation[2]
     carriers = {
         other: force
         for pair, force in forces.items()
         if name in pair
         for other in pair
-        if other != name and other in poses
+        if other in poses and poses[other].translation[2] < height
     }
-    below = [other for other in carriers if poses[other].translation[2] < _height(cell, name)]
-    return max(below, key=lambda other: carriers[other], default="")
-
-
-def _height(cell: LiveCell, name: str) -> float:
-    return float(cell.object_poses()[name].translation[2])
+    return max(carriers, key=lambda other: carriers[other], default="")

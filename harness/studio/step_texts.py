@@ -6,12 +6,16 @@ from typing import Any
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.language.goals import GoalFields
+from harness.language.step import STEPS
 from harness.robot.description import RobotDescription
 from harness.studio.document import flow
 from harness.studio.reach import WHOLE_POSE_JOINTS, pitch_of
 
-MOTIONS = ("move_to", "ptp", "lin", "circ")
-FREE_ORIENTATION = "free"
+_TO_A_GOAL = {verb: step for verb, step in STEPS.items() if issubclass(step, GoalFields)}
+
+MOTIONS = sorted(_TO_A_GOAL, key=lambda verb: (-len(_TO_A_GOAL[verb].goal_keys), verb))
+"""The verbs of motions to a goal, those with the most kinds of goals first."""
 
 
 def step_text(verb: str, keys: Any) -> str:

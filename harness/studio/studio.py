@@ -24,7 +24,7 @@ from harness.studio.object_texts import (
     pose_keys_of,
     resized,
 )
-from harness.studio.proposals import holding, proposals
+from harness.studio.proposals import proposals
 from harness.studio.session import Message, RefusedError
 
 
@@ -223,7 +223,7 @@ class Studio(GoalActions):
             raise RefusedError("execute a step first: an expectation is about a step")
         if self.cell.is_by_hand:
             raise RefusedError("the cell was moved by hand since the last step: record that first")
-        found = holding(self.cell, proposals(self.cell))
+        found = proposals(self.cell)
         return {"proposals": [{"text": each.text, "why": each.why} for each in found]}
 
     def do_expect(self, message: Message) -> Message:

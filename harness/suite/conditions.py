@@ -172,9 +172,9 @@ class ConditionWriter:
         overrides = {**as_yaml(case.values), "seed": str(case.result.seed)}
         if case.result.outcome not in ("passed", "failed"):  # its seed is not known from the run
             overrides = planned.case.overrides
-        number = int(planned.name.rpartition("sample")[2])
-        place = place_of(planned.file).as_posix()
-        condition = Condition(place, planned.name, group, number, overrides, case.values)
+        name, place = planned.name, place_of(planned.file).as_posix()
+        number = int(name.rpartition("sample")[2])
+        condition = Condition(place, name, group, number, overrides, case.values)
         self._file.write(f"{compact_json(condition)}\n".encode())
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.assertions.collision import colliding
 from harness.core.geometry import Box
 from harness.expectations.collision import Collision
 from harness.expectations.eventually import Eventually
@@ -20,6 +21,7 @@ from tests.assertions.synthetic_run import (
     force,
     lift_run,
     make_run,
+    pressed,
     step,
     thing,
     verdict,
@@ -449,3 +451,60 @@ def test_two_objects_that_no_hand_holds_never_collide():
     assert not collides(touching("box", "wall", (30, 41)))
     bare = replace(ROBOT, gripper=None)
     assert not collides(touching("box", "wall", (30, 41), robot=bare))
+
+
+def excused(grip, *steps, left=None, **changes):
+    """Samples at which the left finger touches the box without a collision."""
+    run = lift_run(grip=grip, steps=steps, **changes)
+    forces = dict(run.signals.contact_forces)
+    if left is not None:
+        spans = left if isinstance(left[0], tuple) else (left,)
+        forces["left_finger", "box"] = force(200, *spans, value=2.0)
+        presses = dict(run.signals.presses)
+        presses["left_finger", "box"] = pressed(
+            forces["left_finger", "box"], (0, -0.02, 0), (0, 1, 0)
+        )
+        run = changed(run, contact_forces=forces, presses=presses)
+    guilty = colliding(run, ("left_finger", "box"))
+    return np.flatnonzero((forces["left_finger", "box"] > 0) & ~guilty).tolist()
+
+
+def test_a_grip_begins_in_a_step_that_moves_the_gripper_and_in_or_next_to_which_it_holds():
+    go, still = step("go", 0, 40), step("stay", 60, 200, "wait")
+    grip = step("close", 40, 50, "gripper")
+    assert excused((50, 100), go, grip, still, left=(45, 100)) == list(range(45, 100))
+    assert excused((51, 100), go, grip, still, left=(45, 100)) == []
+    assert excused((0, 30), step("close", 0, 5, "gripper")) == list(range(30))
+    # held to sample 59: to one before the step that moves the gripper, or to two before it
+    for start, expected in ((60, range(60, 80)), (61, ())):
+        steps = (step("go", 0, start), step("open", start, 80, "gripper"), step("on", 80, 200))
+        assert excused((50, 59), *steps, left=(50, 100)) == list(expected)
+
+
+def test_a_grip_within_its_limits_is_no_reason_for_another_collision():
+    knocked = touching("left_finger", "box", (20, 25), (50, 200), run=lift_run())
+    assert "explain" not in verdict(knocked, NEVER).reason
+
+
+def test_a_grip_ends_with_its_contact_and_lasts_while_every_side_touches():
+    steps = (step("go", 0, 40), step("close", 40, 60, "gripper"), step("on", 60, 200))
+    record = attachment("box", 60, 200)
+    again = ((50, 100), (120, 130))
+    held = excused((50, 100), *steps, left=again, attachments=(record,))
+    assert held == list(range(50, 100)), "what was let go is struck, and not gripped"
+    faint = lift_run(steps=steps)
+    for value, expected in ((0.001, range(50, 200)), (0.0009, range(50, 121))):
+        forces = dict(faint.signals.contact_forces)
+        forces["right_finger", "box"] = np.where(
+            np.arange(200) < 120, forces["right_finger", "box"], value
+        )
+        guilty = colliding(changed(faint, contact_forces=forces), ("left_finger", "box"))
+        assert np.flatnonzero(~guilty[50:]).tolist() == [each - 50 for each in expected]
+
+
+def test_a_gap_of_a_hold_is_no_moment_at_which_it_was_gripped():
+    """The fingers lose the box for four samples, in which it hits the shelf."""
+    run = carried((92, 100))
+    for side in ("left", "right"):
+        run.signals.contact_forces[f"{side}_finger", "box"][90:95] = 0.0
+    assert collides(run)

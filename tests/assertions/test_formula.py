@@ -208,6 +208,32 @@ def test_a_formula_reports_margin_unit_sample_and_numbers():
     assert (never.status, never.unit, never.margin) == ("passed", "N", pytest.approx(1.0))
 
 
+@pytest.mark.parametrize(
+    ("text", "status", "said", "name", "comparison"),
+    [
+        ("always z(box) < 5 cm", "failed", "does not hold: 120 mm against 50.0", "z(box)", "<="),
+        ("eventually z(box) > 7 cm", "passed", "holds: 120 mm against 70.0", "z(box)", ">="),
+        ("not eventually z(box) > 7 cm", "failed", "holds: 120 mm", "z(box)", "<="),
+        ("not always z(box) > 7 cm", "passed", "does not hold: 20.0 mm", "z(box)", "<="),
+        ("always 10 cm > z(box)", "failed", "does not hold: 100 mm against 120", "10 cm > z(box)",
+         ">="),
+        ("z(box) >= 2 cm", "passed", "holds: 20.0 mm against 20.0", "z(box)", ">="),
+        ("z(box) > 2 cm", "failed", "does not hold: 20.0 mm against 20.0", "z(box)", ">="),
+        ("always (z(box) > 7 cm implies force(Table, box) < 1 N)", "passed",
+         "does not hold: 20.0 mm", "z(box)", "<="),
+    ],
+)  # fmt: skip
+def test_a_verdict_says_which_way_the_deciding_comparison_went(
+    text, status, said, name, comparison
+):
+    answer = verdict(lift_run(), Formula(formula=text))
+    measure = answer.measures[0]
+    assert answer.status == status
+    assert said in answer.reason
+    assert (measure.name, measure.comparison) == (name, comparison)
+    assert abs(measure.value - measure.limit) == pytest.approx(abs(answer.margin))
+
+
 def test_a_formula_of_every_kind_of_signal():
     run = lift_run(
         clearances={("robot", "box"): np.full(200, 0.1)},

@@ -27,12 +27,19 @@ def test_names_that_only_resemble_such_words_are_names(name, tmp_path):
     assert messages(tmp_path, rest=f"objects: [{CUBE % name}]") == []
 
 
-def test_a_world_file_has_no_such_object_either(tmp_path):
-    (tmp_path / "taken.yaml").write_text(f"world: taken\nobjects: [{CUBE % 'any'}]\n")
-    file = tmp_path / "test.scenario.yaml"
+@pytest.mark.parametrize(
+    ("name", "meaning"),
+    [("any", "a word of"), ("world", "a robot link's"), ("link5", "a robot link's"),
+     ("joint1", "a robot joint's")],
+)  # fmt: skip
+def test_no_object_of_a_file_or_a_world_has_a_name_that_means_something_else(
+    name, meaning, tmp_path
+):
+    [said] = messages(tmp_path, rest=f"objects: [{CUBE % name}]")
+    assert said.startswith(f"'{name}' is {meaning}")
+    (tmp_path / "taken.yaml").write_text(f"world: taken\nobjects: [{CUBE % name}]\n")
     [(_, said)] = problems(tmp_path, "- wait: 0.1 s", robot=ARM, world="taken.yaml")
-    assert file.is_file()
-    assert "'any' cannot be an object's name" in said
+    assert f"'{name}' cannot be an object's name: it is {meaning}" in said
 
 
 @pytest.mark.parametrize(

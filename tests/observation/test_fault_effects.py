@@ -158,3 +158,19 @@ def test_steps_without_faults_stay_as_they_are_and_each_fault_has_its_receipt():
     assert [each.receipt for each in faults_of(steps[0])] == ["landed", "no_effect"]
     [found] = findings
     assert found.message == f"push of box had no effect: {faults_of(steps[0])[1].evidence}"
+
+
+def test_a_fault_that_is_set_again_in_the_next_step_ends_there():
+    again = step("again", 40, 50, "inject", result={"faults": [STALL.plain()]})
+    assert receipt(STALL, more=(again,), joint_commands=ramp(0, 0.5, 60, 70)).receipt == "no_effect"
+
+
+def test_a_push_that_took_no_time_moved_nothing():
+    first = step("first", 20, 20, "inject", result={"faults": [PUSH.plain()]})
+    run = make_run(N, object_poses={"box": going(1.0, 20, 60)})
+    steps, _ = with_receipts((first,), run.signals, ROBOT, (TABLE, BOX))
+    [answer] = faults_of(steps[0])
+    assert (answer.receipt, answer.evidence) == (
+        "no_effect",
+        "it did not move: friction or a hand held it",
+    )

@@ -1,18 +1,20 @@
 """What a run reports without a request, from records made by hand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from harness.cell.cell import Belief
-from harness.core.geometry import Box, Cylinder, Plane, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.observation.beliefs import believed_poses
-from harness.observation.findings import findings_of, overlap_findings
+from harness.observation.findings import about_file, findings_of, overlap_findings
+from harness.observation.link_overlaps import link_overlap_findings
 from harness.observation.looks_differ import looks_differ
 from harness.ports.scene import Touch
-from tests.assertions.synthetic_run import BOX, heights, step
+from tests.assertions.synthetic_run import BOX, heights, make_run, step
 
 
 @pytest.mark.parametrize(
@@ -94,3 +96,57 @@ def test_the_axis_that_differs_most_is_named_with_both_lengths():
 
 def test_objects_without_pictures_of_their_own_and_planes_do_not_differ():
     assert looks_differ([BOX, shown(Plane()), replace(shown(Box((1, 1, 1))), shapes=())]) == ()
+
+
+def test_links_inside_each_other_are_reported_where_they_are_deepest():
+    depth = np.array([0.0, 0.0021, 0.0123, 0.001])
+    signals = replace(make_run(4).signals, link_overlaps={("a", "b"): depth, ("a", "c"): depth / 2})
+    found = link_overlap_findings(replace(make_run(4), signals=signals))
+    assert [each.values["pair"] for each in found] == [["a", "b"], ["a", "c"]]
+    assert [each.values["depth"] for each in found] == [0.0123, 0.00615]
+    assert [each.time for each in found] == pytest.approx([0.02, 0.02])
+    assert "were 12.3 mm inside each other" in found[0].message
+
+
+@pytest.mark.parametrize(
+    ("geometry", "static", "said"),
+    [
+        (Box((1.0, 5.0, 2.0)), False, "measures 5 m"),
+        (Box((1.0, 4.99, 2.0)), False, ""),
+        (Box((1.0, 50.0, 2.0)), True, ""),
+        (Sphere(2.5), False, "measures 5 m"),
+        (Sphere(2.49), False, ""),
+        (Cylinder(3.0, 0.1), False, "measures 6 m"),
+        (Capsule(2.49, 0.1), False, ""),
+        (Mesh("a.stl", np.ones(3)), False, ""),
+    ],
+)
+def test_an_object_as_large_as_a_house_was_probably_given_in_millimetres(geometry, static, said):
+    thing = SimpleNamespace(name="thing", is_static=static, shapes=(Shape(geometry),))
+    for world, later in (((thing,), {}), ((), {"thing": thing})):
+        program = SimpleNamespace(
+            world=SimpleNamespace(objects=world),
+            later_objects=later,
+            expectations=("something",),
+            all_steps=lambda: (),
+        )
+        found = about_file(program, ())
+        assert bool(found) == bool(said)
+        assert all(said in each.message for each in found)
+
+
+@pytest.mark.parametrize(
+    ("expectations", "error", "is_note"),
+    [((), None, True), ((), "PLANNING_FAILED", False), ((1,), None, False), ((1,), "X", False)],
+)
+def test_a_file_that_expects_nothing_differs_from_one_that_expects_a_failure(
+    expectations, error, is_note
+):
+    steps = [SimpleNamespace(spec=SimpleNamespace(expect_error=code)) for code in (None, error)]
+    program = SimpleNamespace(
+        world=SimpleNamespace(objects=()),
+        later_objects={},
+        expectations=expectations,
+        all_steps=lambda: steps,
+    )
+    assert [each.kind for each in about_file(program, ())] == ["nothing_expected"] * is_note

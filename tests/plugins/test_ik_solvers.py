@@ -101,9 +101,12 @@ def test_without_the_plug_in_the_solver_is_a_located_error(scenario):
 
 
 def test_ik_test_tests_a_registered_solver_by_its_name(tmp_path):
-    arguments = ("--robot", "ur3e", "--examples", "12", "--no-report")
-    out = harness(tmp_path, "ik-test", "off_by_a_bit", *arguments, *SOLVERS, code=1)
-    assert "off_by_a_bit" in out
+    head, _, _ = WRONG.partition("        return [")
+    zero = f"{head}        return IkResult((np.zeros(6),))\n"
+    (tmp_path / "zero.py").write_text(zero, encoding="utf-8")
+    arguments = ("--robot", "ur3e", "--examples", "2", "--no-report")
+    out = harness(tmp_path, "ik-test", "mine", *arguments, "--plugin", "zero.py", code=1)
+    assert "mine" in out
     assert "mm" in out
     harness(tmp_path, "ik-test", "ur", *arguments)
     out = harness(tmp_path, "ik-test", "ur5", *arguments, code=2)

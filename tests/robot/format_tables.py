@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import trimesh
+
 from tests.robot.arm_files import SRDF, URDF
 from tests.robot.format_rows import (
     END,
@@ -21,6 +23,7 @@ from tests.robot.more_format_rows import CALIBRATION_ROWS, MJCF_ROWS, PARTS, XAC
 from tests.robot.ur_calibration import calibration_text
 from tests.world.sdf_files import ASCII_STL, COLLADA, TETRAHEDRON
 
+SOLID = trimesh.creation.box((0.1, 0.1, 0.1))
 FILES = {
     "arm.urdf": URDF.replace(END, HAND + END),
     "arm.srdf": SRDF,
@@ -34,7 +37,8 @@ NEXT_TO_THEM = {
     "part.stl": ASCII_STL,
     "part.obj": TETRAHEDRON,
     "part.dae": COLLADA,
-    "part.ply": "ply",
+    **{f"part.{kind}": str(SOLID.export(file_type=kind), "latin-1") for kind in ("ply", "glb")},
+    "part.3ds": "3ds",
     "assets/t.obj": TIP,
     **PARTS,
     **{f"parts/{name}": text for name, text in PARTS.items()},

@@ -18,7 +18,8 @@ def load(folder, file, row=None):
             assert row.old in text, "the row changes nothing"
             text = text.replace(row.old, row.new)
         (folder / name).parent.mkdir(exist_ok=True)
-        (folder / name).write_text(text, encoding="utf-8")
+        binary = name.endswith((".ply", ".glb"))
+        (folder / name).write_text(text, encoding="latin-1" if binary else "utf-8", newline="")
     return load_robot(RobotSpec.model_validate(words(file)), folder)
 
 

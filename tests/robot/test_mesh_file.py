@@ -4,11 +4,12 @@ import coal
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape
 from harness.planning.collision.geometry import coal_geometry
-from harness.robot.mesh_file import hull_points, read_triangles
+from harness.robot.mesh_file import exact_surface, hull_points, read_triangles
 from harness.simulation.geoms import add_mesh
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]], dtype=float)
@@ -16,6 +17,12 @@ SHIFT = np.array([10, 0, 0])
 FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
 OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(
     f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES
+)
+PLY = (
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    + "".join(f"{x} {y} {z}\n" for x, y, z in CORNERS)
+    + "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
 )
 STL = (
     "solid tetra\n"
@@ -55,16 +62,43 @@ def sorted_rows(points):
     ("name", "text", "expected"),
     [
         ("a.obj", OBJ, CORNERS),
+        ("a.ply", PLY, CORNERS),
         ("a.stl", STL, CORNERS),
         ("a.dae", DAE.format(unit=1), CORNERS + SHIFT),
         ("b.dae", DAE.format(unit=0.01), 0.01 * (CORNERS + SHIFT)),
     ],
 )
-def test_stl_obj_and_dae_give_the_same_solid_in_metres(tmp_path, name, text, expected):
+def test_stl_obj_ply_and_dae_give_the_same_solid_in_metres(tmp_path, name, text, expected):
     mesh = write(tmp_path, name, text)
     assert sorted_rows(hull_points(mesh)) == pytest.approx(sorted_rows(expected), abs=1e-7)
     triangles = read_triangles(mesh)
     assert triangles.faces.shape == (4, 3)
+
+
+def test_a_glb_file_is_read_in_its_own_axes(tmp_path):
+    scene = trimesh.Scene()
+    part = trimesh.Trimesh(CORNERS, FACES, process=False)
+    scene.add_geometry(part, transform=trimesh.transformations.translation_matrix(SHIFT))
+    (tmp_path / "a.glb").write_bytes(scene.export(file_type="glb"))
+    points = hull_points(Mesh(tmp_path / "a.glb"))
+    assert sorted_rows(points) == pytest.approx(sorted_rows(CORNERS + SHIFT), abs=1e-6)
+
+
+def test_every_material_and_object_of_a_file_is_part_of_its_surface(tmp_path):
+    second = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS + SHIFT)
+    faces = "".join(f"f {a + 5} {b + 5} {c + 5}\n" for a, b, c in FACES)
+    text = f"mtllib none.mtl\nusemtl red\n{OBJ}usemtl blue\n{second}{faces}o third\nf 1 2 8\n"
+    mesh = write(tmp_path, "a.obj", text)
+    triangles = read_triangles(mesh)
+    assert len(triangles.faces) == 9
+    used = triangles.vertices[triangles.faces].reshape(-1, 3)
+    assert used.max(axis=0) == pytest.approx([11, 2, 3])
+    surface = exact_surface(mesh)
+    place = coal.Transform3s(np.eye(3), np.array([10.2, 0.2, 0.0]))
+    result = coal.CollisionResult()
+    ball = coal.Sphere(0.1)
+    coal.collide(surface, coal.Transform3s(), ball, place, coal.CollisionRequest(), result)
+    assert result.isCollision()
 
 
 def test_planner_and_physics_touch_the_same_hull(tmp_path):
@@ -87,7 +121,8 @@ def test_planner_and_physics_touch_the_same_hull(tmp_path):
         ("a.stl", "", "damaged or not in STL format"),
         ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "is flat"),
         ("a.dae", "<!DOCTYPE a>" + DAE.format(unit=1), "declares a document type"),
-        ("a.ply", "ply", "not an STL, OBJ or DAE file"),
+        ("a.ply", "ply", "damaged or not in PLY format"),
+        ("a.3ds", "3ds", "not a STL, OBJ, DAE, PLY or GLB file"),
         ("a.stl", "x" * 64_000_001, "at most 64 MB"),
     ],
 )

@@ -7,15 +7,15 @@ from scipy.interpolate import BPoly
 from harness.core.spatial import SE3
 from harness.robot.description import Joint
 from harness.ros.control.controller import Window
-from harness.ros.control.goals import Code, GoalRefused
+from harness.ros.control.goals import Code, Defaults, GoalRefused
 from harness.ros.control.spline import Spline
-from harness.ros.control.trajectory import Defaults, TrajectoryController
+from harness.ros.control.trajectory import TrajectoryController
 
 JOINTS = [
     Joint(name, "revolute", "a", "b", SE3.identity(), np.array([0, 0, 1.0]), -2.0, 2.0)
     for name in ("first", "second")
 ]
-REST = (np.zeros((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)))
+REST = np.zeros((3, 1, 2))
 HERE = np.zeros(2)
 TIMES = np.arange(1, 201) * 0.01
 
@@ -105,9 +105,9 @@ def test_the_first_sample_beyond_the_path_tolerance_decides():
     arm = controller(path=0.05)
     arm.begin("g", content((2.0, [1, 0], [0, 0])), 0.0, REST, HERE)
     desired = arm.set_points(TIMES)
-    lagging = desired[0].copy()
-    lagging[50:, 0] -= 0.06
-    ended = arm.judge(Window(TIMES, desired, lagging, desired[1], HERE))
+    lagging = desired[:2].copy()
+    lagging[0, 50:, 0] -= 0.06
+    ended = arm.judge(Window(TIMES, desired, lagging, HERE))
     assert (ended.goal, ended.code) == ("g", Code.PATH_TOLERANCE_VIOLATED)
     assert "'first' is off by 0.06 rad (tolerance 0.05 rad) at t=0.510 s" in ended.message
     assert not arm.is_active
@@ -121,10 +121,10 @@ def test_a_goal_s_own_tolerance_replaces_the_default(bound, code):
     own = [{"name": "first", "position": bound, "velocity": 0.0}]
     arm.begin("g", content((2.0, [1, 0], [0, 0]), goal_tolerance=own), 0.0, REST, HERE)
     desired = arm.set_points(TIMES)
-    off = desired[0] + [0.1, 0.0]
-    ended = arm.judge(Window(TIMES, desired, off, desired[1], HERE))
+    off = desired[:2] + np.array([[[0.1, 0.0]], [[0.0, 0.0]]])
+    ended = arm.judge(Window(TIMES, desired, off, HERE))
     assert (ended and ended.code) == code
     if code is None:
         later = TIMES + 0.5
-        ended = arm.judge(Window(later, arm.set_points(later), off, desired[1], HERE))
+        ended = arm.judge(Window(later, arm.set_points(later), off, HERE))
         assert ended.code is Code.GOAL_TOLERANCE_VIOLATED

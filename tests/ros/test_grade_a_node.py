@@ -28,7 +28,8 @@ def json_of(capsys, *arguments):
 
 
 def test_a_node_earns_the_points_of_the_lesson_and_its_commands_replay(tmp_path, capsys):
-    code, grade = json_of(capsys, "grade", BOX, "--node", LIFT, "--report-dir", str(tmp_path))
+    options = ["--pace", "3", "--no-page", "--report-dir", str(tmp_path)]
+    code, grade = json_of(capsys, "grade", BOX, "--node", LIFT, *options)
     assert [(row["verdict"]["status"], row["earned"]) for row in grade["rows"]] == [
         ("passed", points) for points in (1, 2, 2, 3, 1, 1)
     ]
@@ -41,8 +42,8 @@ def test_a_node_earns_the_points_of_the_lesson_and_its_commands_replay(tmp_path,
     assert kinds == ["gripper", "trajectory", "gripper", "trajectory"]
 
 
-def test_a_node_that_crashes_ends_the_step_and_shows_what_it_printed(tmp_path, capsys):
-    code = main(["grade", BOX, "--node", f"{LIFT} --crash", "--report-dir", str(tmp_path)])
+def test_a_node_that_crashes_ends_the_step_and_shows_what_it_printed(capsys):
+    code = main(["grade", BOX, "--node", f"{LIFT} --crash", "--no-report"])
     said = capsys.readouterr()
     assert code == 1
     assert "TIMED_OUT: `until` did not become true: the node ended" in said.out
@@ -77,14 +78,14 @@ def test_a_node_that_crashes_after_its_work_is_mentioned(tmp_path, capsys):
 
 def test_points_do_not_hide_a_step_that_failed(tmp_path, capsys):
     file = scenario(tmp_path)
-    command = ["--node", "true", "--report-dir", str(tmp_path / "r")]
+    command = ["--node", "true", "--no-page", "--report-dir", str(tmp_path / "r")]
     assert main(["grade", str(file), *command]) == 1
     said = capsys.readouterr().out
     assert "1 of 1 points\nnot passed: every point is earned, but a step failed" in said
 
 
-def test_a_command_that_cannot_be_started_is_named(tmp_path, capsys):
-    main(["grade", BOX, "--node", "/no/such/program", "--report-dir", str(tmp_path)])
+def test_a_command_that_cannot_be_started_is_named(capsys):
+    main(["grade", BOX, "--node", "/no/such/program", "--no-report"])
     assert "`/no/such/program` cannot be started: No such file" in capsys.readouterr().out
 
 

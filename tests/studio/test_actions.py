@@ -259,6 +259,24 @@ def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
     assert np.array_equal(studio.cell.joint_positions(), start)
 
 
+def test_what_is_seen_is_proposed_with_names_and_poses(studio):
+    def seen():
+        found = reply(studio, "expect_seen")["proposals"]
+        return [each["text"].partition(", pose")[0] for each in found]
+
+    reply(
+        studio, "add_object", name="box", kind="box", size=[0.03, 0.03, 0.03], xyz=[0.2, 0, 0.015]
+    )
+    reply(studio, "execute", step="move_to: home")
+    assert seen() == ["named_target: home"], "what has not moved is of no interest"
+    for step in ("gripper: open", "pick: box"):
+        assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert "grasped: box" in seen()
+    place = "place: {object: box, pose: {xyz: [0.2, 0.05, 0.015]}}"
+    assert reply(studio, "execute", step=place)["status"] == "passed"
+    assert {"placed: {object: box, on: ground_plane", "upright: box"} <= set(seen())
+
+
 def test_a_camera_shows_the_cell_as_it_is(tmp_path):
     file = data_folder("scenarios") / "cameras/01_gripper_camera.scenario.yaml"
     studio = opened(tmp_path, file.read_text())

@@ -2,9 +2,16 @@
 
 import pytest
 
-from harness.studio.language_help import Names, complete, hover, path_at
+from harness.studio.language_help import complete, hover, path_at
 
-NAMES = Names(states=["home", "up"], objects=["box"], joints=["elbow_joint"], links=["tool0"])
+NAMES = {
+    "named_target": ["home", "up"],
+    "gripper_target": ["open"],
+    "object": ["box"],
+    "joints": ["elbow_joint"],
+    "link": ["tool0"],
+    "gripper": ["hand_e"],
+}
 TEXT = """\
 scenario: x
 robot: {model: ur3e, }
@@ -65,3 +72,24 @@ def test_the_path_inside_brackets_on_one_line():
     path, is_value = path_at(text, 1, len(text.split("\n")[1]))
     assert path == ("steps", "-", "move_to", "pose", "xyz", "-")
     assert is_value
+
+
+@pytest.mark.parametrize(
+    ("text", "offered"),
+    [
+        ("steps:\n- gripper: |", {"open"}),
+        ("robot: {gripper: |", {"hand_e"}),
+        ("steps:\n- pick: {\n    object: |", {"box"}),
+        ("steps: [\n  {pick: |", {"box"}),
+        ("steps: []\nexpect:\n- always: {grasped: |", {"box"}),
+        ("# a comment |", set()),
+        ("scenario: {x: }}\nsteps:\n- pick: |", {"box"}),
+        ("steps:\n- pick: }|", set()),
+    ],
+)
+def test_names_are_offered_in_any_style_of_yaml(text, offered):
+    line = text.count("\n")
+    column = text.split("\n")[-1].index("|")
+    found = {option.text for option in complete(text.replace("|", ""), line, column, NAMES)}
+    assert offered <= found
+    assert bool(offered) == bool(found)

@@ -45,7 +45,8 @@ def explained(
         try:
             return method(self, request)
         except PlanningFailed as failure:
-            if failure.code not in _NO_STAGE and failure.details.find(Explanation) is None:
+            has_stage = failure.code not in _NO_STAGE and request.options.is_explained
+            if has_stage and failure.details.find(Explanation) is None:
                 failure.details += Details.of(explanation_of(_request(failure, self, request)))
             raise
 

@@ -13,7 +13,7 @@ from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, 
 from harness.core.solids import TRIANGLE_SLACK
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Inertial, Link
-from harness.robot.mesh_file import SUFFIXES, decomposition_of
+from harness.robot.mesh_file import KINDS, SUFFIXES, decomposition_of
 from harness.robot.packages import NotFoundError, OutsideError, PackagePath
 from harness.robot.urdf.values import number, pose, positive, rgba, three
 
@@ -159,10 +159,10 @@ class LinkReader:
         if Path(name).suffix.lower() not in SUFFIXES:
             if is_visual:
                 self.notes.append(
-                    f"link '{link}': the visual '{name}' is not drawn (no STL, OBJ, DAE)"
+                    f"link '{link}': the visual '{name}' is not drawn (not a {KINDS} file)"
                 )
                 return None
-            item.refuse(f"link '{link}': '{name}' is not an STL, OBJ or DAE file", at="filename")
+            item.refuse(f"link '{link}': '{name}' is not a {KINDS} file", at="filename")
         try:
             path = self.packages.file(name, self.folder)
         except NotFoundError as error:

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import RobotDescription
 from harness.ros.control.controller import Outcome, Window
-from harness.ros.control.goals import Code, GoalRefused
+from harness.ros.control.goals import Code, Defaults, GoalRefused
 from harness.ros.control.gripper import GripperController
 from harness.ros.control.spline import Rows
-from harness.ros.control.trajectory import (
-    Defaults,
-    Finished,
-    Tracking,
-    TrajectoryController,
-)
+from harness.ros.control.trajectory import Finished, Tracking, TrajectoryController
 
 TICK = 0.01
 """Simulated time from one update of the controllers to the next [s]: 100 Hz, as in the course."""
@@ -49,14 +44,6 @@ class Servos(Protocol):
     def measured(self, first: int) -> tuple[FloatArray, FloatArray]: ...
     def efforts(self) -> FloatArray: ...
     def limit_gripper(self, effort: float) -> None: ...
-
-
-@dataclass(frozen=True, eq=False)
-class _Seat:
-    """Where a controller's joints are: among the actuated ones, and in the description."""
-
-    columns: IntArray
-    places: IntArray
 
 
 @dataclass(frozen=True)
@@ -115,13 +102,9 @@ class ExternalCell:
         self._controllers = tuple(each for each in controllers if each is not None)
         place, actuated = description.joint_index, servos.actuated_joints
         self._actuated = np.array([place[name] for name in actuated], dtype=np.int64)
-        self._seats = {
-            each: _Seat(
-                np.array([actuated.index(name) for name in each.joint_names], dtype=np.int64),
-                np.array([place[name] for name in each.joint_names], dtype=np.int64),
-            )
-            for each in self._controllers
-        }
+        for each in self._controllers:
+            each.columns = np.array([actuated.index(name) for name in each.joint_names])
+            each.places = np.array([place[name] for name in each.joint_names])
         self.hold_commanded(
             description.start_positions() if servos.sample_count == 1 else servos.joint_positions()
         )
@@ -139,7 +122,7 @@ class ExternalCell:
     def hold_commanded(self, positions: FloatArray) -> None:
         """Start from set points in description order, such as a planned motion left them."""
         held = positions[self._actuated][None]
-        self._last: Rows = held, np.zeros_like(held), np.zeros_like(held)
+        self._last: Rows = np.array([held, np.zeros_like(held), np.zeros_like(held)])
 
     # -- commands -----------------------------------------------------------------------------
 
@@ -176,9 +159,9 @@ class ExternalCell:
         """Let a controller follow a goal; what its joints followed before ends."""
         if controller is None:
             raise GoalRefused(Code.INVALID_GOAL, "the robot has no gripper")
-        seat, previous = self._seats[controller], controller.goal
-        start = _chosen(self._last, seat.columns)
-        measured = self._servos.joint_positions()[seat.places]
+        previous = controller.goal
+        start = self._last[:, :, controller.columns]
+        measured = self._servos.joint_positions()[controller.places]
         controller.begin(goal, content, self.time, start, measured)
         self._interrupt(controller, previous, Code.INVALID_GOAL, PREEMPTED)
         for other in self._controllers:
@@ -200,8 +183,7 @@ class ExternalCell:
         for controller in self._controllers:
             if controller.goal == goal:
                 controller.stop()
-                seat = self._seats[controller]
-                self._hold(controller, self._servos.joint_positions()[seat.places])
+                self._hold(controller, self._servos.joint_positions()[controller.places])
                 self._interrupt(controller, goal, Code.SUCCESSFUL, "canceled")
                 return
         raise GoalRefused(Code.INVALID_GOAL, "no such goal is active")
@@ -214,8 +196,8 @@ class ExternalCell:
         first = servos.sample_count
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * servos.timestep
         rows = self._set_points(times)
-        servos.stream(_joined(self._last, rows))
-        self._last = (rows[0][-1:], rows[1][-1:], rows[2][-1:])
+        servos.stream(np.concatenate([self._last, rows], axis=1))
+        self._last = rows[:, -1:]
         for controller in self._controllers:
             if not controller.is_active:
                 continue
@@ -231,56 +213,35 @@ class ExternalCell:
         for controller in dict.fromkeys(self.trajectories.values()):
             if controller.goal:
                 now = self._window(controller, np.array([self.time]), self._last)
-                desired = now.desired[0][-1], now.desired[1][-1]
-                actual = now.positions[-1], now.velocities[-1]
-                found.append(Tracking(controller.goal, self.time, *desired, *actual))
+                desired, actual = now.desired[:2, -1], now.measured[:, -1]
+                found.append(Tracking(controller.goal, self.time, desired, actual))
         return found
 
     def finish(self) -> None:
         """End what is still active; the arm holds its last set point."""
         for controller in self._controllers:
             self._interrupt(controller, controller.stop(), Code.INVALID_GOAL, STOPPED)
-        self._servos.command(self._last[0][-1])
+        self._servos.command(self._last[0, -1])
 
     def _window(self, controller: AnyController, times: FloatArray, rows: Rows) -> Window:
         """Desired and measured motion of a controller's joints at the last samples."""
-        seat = self._seats[controller]
-        positions, velocities = self._servos.measured(self._servos.sample_count - len(times))
-        return Window(
-            times,
-            _chosen(rows, seat.columns),
-            positions[:, seat.places],
-            velocities[:, seat.places],
-            self._servos.efforts()[seat.columns],
-        )
+        measured = np.array(self._servos.measured(self._servos.sample_count - len(times)))
+        columns, places = controller.columns, controller.places
+        efforts = self._servos.efforts()[columns]
+        return Window(times, rows[:, :, columns], measured[:, :, places], efforts)
 
     def _hold(self, controller: AnyController, positions: FloatArray) -> None:
         """Command the joints of a controller to rest at some positions."""
-        columns = self._seats[controller].columns
-        last = tuple(part.copy() for part in self._last)
-        last[0][-1, columns] = positions
-        last[1][-1, columns] = last[2][-1, columns] = 0.0
-        self._last = (last[0], last[1], last[2])
+        self._last = self._last.copy()
+        self._last[:, -1, controller.columns] = 0.0
+        self._last[0, -1, controller.columns] = positions
 
     def _set_points(self, times: FloatArray) -> Rows:
         """Set points of all actuated joints at some times."""
-        shape = (len(times), self._last[0].shape[1])
-        positions = np.broadcast_to(self._last[0][-1], shape).copy()
-        velocities, accelerations = np.zeros(shape), np.zeros(shape)
+        whole = np.zeros((3, len(times), self._last.shape[2]))
+        whole[0] = self._last[0, -1]
         for controller in self._controllers:
             rows = controller.set_points(times)
             if rows is not None:
-                columns = self._seats[controller].columns
-                for whole, part in zip((positions, velocities, accelerations), rows, strict=True):
-                    whole[:, columns] = part
-        return positions, velocities, accelerations
-
-
-def _chosen(rows: Rows, columns: IntArray) -> Rows:
-    """Some columns of set points."""
-    return rows[0][:, columns], rows[1][:, columns], rows[2][:, columns]
-
-
-def _joined(first: Rows, rest: Rows) -> Rows:
-    parts: Sequence[FloatArray] = [np.vstack([a, b]) for a, b in zip(first, rest, strict=True)]
-    return parts[0], parts[1], parts[2]
+                whole[:, :, controller.columns] = rows
+        return whole

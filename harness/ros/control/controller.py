@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.robot.description import Joint
 from harness.ros.control.goals import Code
 from harness.ros.control.spline import Rows
@@ -28,20 +28,18 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """Motion of a controller's joints since the last update; shape (N,) or (N, dof).
+    """Motion of a controller's joints since the last update.
 
     Attributes:
-        times: Simulated times of the samples [s].
-        desired: The set points at these times.
-        positions: The measured positions of the joints.
-        velocities: The measured velocities of the joints.
+        times: Simulated times of the samples [s], shape (N,).
+        desired: The set points at these times, shape (3, N, dof).
+        measured: The measured positions and velocities of the joints, shape (2, N, dof).
         efforts: The efforts at the last sample, shape (dof,).
     """
 
     times: FloatArray
     desired: Rows
-    positions: FloatArray
-    velocities: FloatArray
+    measured: FloatArray
     efforts: FloatArray
 
 
@@ -56,7 +54,15 @@ F = TypeVar("F", bound=Followed)
 
 
 class Controller(ABC, Generic[F]):
-    """Moves some joints towards one goal at a time; a new goal replaces the old one."""
+    """Moves some joints towards one goal at a time; a new goal replaces the old one.
+
+    Attributes:
+        columns: Where its joints are among the actuated ones.
+        places: Where they are in the description.
+    """
+
+    columns: IntArray
+    places: IntArray
 
     def __init__(self, name: str, joints: Sequence[Joint]) -> None:
         self._active: F | None = None
@@ -88,7 +94,7 @@ class Controller(ABC, Generic[F]):
             goal: Its identifier; empty for one from a topic.
             content: The values of its message.
             now: The present simulated time [s].
-            start: The last set point, shape (1, dof) each.
+            start: The last set point, shape (3, 1, dof).
             measured: The measured positions, shape (dof,).
 
         Raises:

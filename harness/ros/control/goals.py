@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
@@ -46,11 +46,12 @@ class GoalRefused(Exception):
 
 
 @dataclass(frozen=True)
-class Tolerance:
-    """Largest deviations of a joint; inf where there is none."""
+class Defaults:
+    """Tolerances that goals have which name none [rad, m, s]."""
 
-    position: float = np.inf
-    velocity: float = np.inf
+    path: float = np.inf
+    goal: float = np.inf
+    goal_time: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,26 +60,25 @@ class TrajectoryGoal:
 
     Attributes:
         times: Time from start of each point [s], shape (N,).
-        positions: The positions at the points, shape (N, dof).
-        velocities: The velocities, shape (N, dof); None where the points have none.
-        accelerations: The accelerations, shape (N, dof); None where the points have none.
+        motion: The positions, velocities and accelerations at the points, shape (N, dof) each; None
+            for what the points do not have.
         stamp: Simulated time at which it starts [s]; 0 for at once.
-        path: Tolerances on the way, by joint, where the goal has its own.
-        goal: Tolerances at the end, by joint, where the goal has its own.
-        goal_time: Time after the end in which the goal must be reached [s]; 0 for the default.
+        path: Largest errors of position and velocity on the way, shape (2, dof).
+        goal: Largest errors at the end, shape (2, dof).
+        goal_time: Time after the end in which the goal must be reached [s].
     """
 
     times: FloatArray
-    positions: FloatArray
-    velocities: FloatArray | None
-    accelerations: FloatArray | None
-    stamp: float = 0.0
-    path: Mapping[str, Tolerance] = field(default_factory=dict[str, Tolerance])
-    goal: Mapping[str, Tolerance] = field(default_factory=dict[str, Tolerance])
-    goal_time: float = 0.0
+    motion: tuple[FloatArray, FloatArray | None, FloatArray | None]
+    stamp: float
+    path: FloatArray
+    goal: FloatArray
+    goal_time: float
 
 
-def checked_goal(content: Mapping[str, Any], joints: Sequence[Joint], now: float) -> TrajectoryGoal:
+def checked_goal(
+    content: Mapping[str, Any], joints: Sequence[Joint], now: float, defaults: Defaults
+) -> TrajectoryGoal:
     """The goal that a recorded message holds.
 
     Args:
@@ -86,6 +86,7 @@ def checked_goal(content: Mapping[str, Any], joints: Sequence[Joint], now: float
             `stamp`, and the tolerances of an action.
         joints: The joints of the controller.
         now: The present simulated time [s].
+        defaults: Tolerances where the goal has none of its own.
 
     Raises:
         GoalRefused: With the error code that the message's own result has for it.
@@ -114,16 +115,14 @@ def checked_goal(content: Mapping[str, Any], joints: Sequence[Joint], now: float
             Code.OLD_HEADER_TIMESTAMP,
             f"the trajectory ends at t={stamp + times[-1]:.3f} s, and it is t={now:.3f} s",
         )
-    names = [joint.name for joint in joints]
+    limit = float(content.get("goal_time", 0.0)) or defaults.goal_time
     return TrajectoryGoal(
         times,
-        positions,
-        velocities,
-        accelerations,
+        (positions, velocities, accelerations),
         stamp,
-        _tolerances(content.get("path_tolerance", ()), names),
-        _tolerances(content.get("goal_tolerance", ()), names),
-        float(content.get("goal_time", 0.0)),
+        _bounds(content.get("path_tolerance", ()), joints, defaults.path),
+        _bounds(content.get("goal_tolerance", ()), joints, defaults.goal),
+        np.inf if limit < 0 else limit,
     )
 
 
@@ -196,18 +195,21 @@ def _check_limits(positions: FloatArray, joints: Sequence[Joint]) -> None:
         )
 
 
-def _tolerances(given: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[str, Tolerance]:
-    """Own tolerances of a goal: 0 is the controller's default, a negative number none."""
-    found: dict[str, Tolerance] = {}
+def _bounds(
+    given: Sequence[Mapping[str, Any]], joints: Sequence[Joint], default: float
+) -> FloatArray:
+    """Bounds of errors, shape (2, dof), where 0 is the default and a negative number is none."""
+    bounds = np.array([[default] * len(joints), [np.inf] * len(joints)])
+    places = {joint.name: place for place, joint in enumerate(joints)}
     for each in given:
-        if each["name"] not in names:
+        name = each["name"]
+        if name not in places:
             raise GoalRefused(
-                Code.INVALID_JOINTS,
-                f"a tolerance is for {_quoted(each['name'])}, which is no joint here",
+                Code.INVALID_JOINTS, f"a tolerance is for {_quoted(name)}, which is no joint here"
             )
-        values = [float(each[key]) for key in ("position", "velocity")]
-        if not np.isfinite(values).all():
-            raise GoalRefused(Code.INVALID_GOAL, f"the tolerance of '{each['name']}' is no number")
-        bounds = [np.inf if value < 0 else value or np.nan for value in values]
-        found[each["name"]] = Tolerance(*bounds)
-    return found
+        for row, value in enumerate((float(each["position"]), float(each["velocity"]))):
+            if not np.isfinite(value):
+                raise GoalRefused(Code.INVALID_GOAL, f"the tolerance of '{name}' is no number")
+            if value:
+                bounds[row, places[name]] = np.inf if value < 0 else value
+    return bounds

@@ -59,7 +59,7 @@ class GripperController(Controller[_Active]):
         target, effort = float(content["position"]), float(content["max_effort"])
         if not np.isfinite([target, effort]).all() or effort < 0:
             raise GoalRefused(Code.INVALID_GOAL, "position and max_effort must be finite numbers")
-        [joint], commanded = self.joints, float(start[0][-1, 0])
+        [joint], commanded = self.joints, float(start[0, -1, 0])
         if not joint.lower - LIMIT_SLACK <= target <= joint.upper + LIMIT_SLACK:
             raise GoalRefused(
                 Code.INVALID_GOAL,
@@ -79,7 +79,7 @@ class GripperController(Controller[_Active]):
         points = self._active.points
         rows = np.rint((times - self._active.begin) / self._timestep).astype(int)
         rows = np.clip(rows, 0, len(points) - 1)
-        return points.positions[rows], points.velocities[rows], points.accelerations[rows]
+        return np.array([part[rows] for part in vars(points).values()])
 
     def judge(self, window: Window) -> Gripped | None:
         """Whether the joint reached its goal, or stands still before it and keeps squeezing."""
@@ -87,7 +87,7 @@ class GripperController(Controller[_Active]):
         if active is None:
             return None
         count = round(STALL_TIME / self._timestep)
-        self._recent = [*self._recent, *window.positions[:, 0].tolist()][-count:]
+        self._recent = [*self._recent, *window.measured[0, :, 0].tolist()][-count:]
         is_over = (
             window.times[-1] >= active.begin + (len(active.points) - 1) * self._timestep - 1e-9
         )
@@ -103,4 +103,4 @@ class GripperController(Controller[_Active]):
 
     def interrupted(self, goal: str, code: Code, reason: str, window: Window) -> Gripped:
         del code, reason  # its result has no fields for them
-        return Gripped(goal, None, float(window.positions[-1, 0]), float(window.efforts[0]))
+        return Gripped(goal, None, float(window.measured[0, -1, 0]), float(window.efforts[0]))

@@ -6,8 +6,8 @@ import numpy as np
 
 from harness.core.types import FloatArray
 
-Rows = tuple[FloatArray, FloatArray, FloatArray]
-"""Positions, velocities and accelerations, shape (N, dof) each."""
+Rows = FloatArray
+"""Positions, velocities and accelerations, shape (3, N, dof)."""
 
 
 class Spline:
@@ -65,12 +65,15 @@ class Spline:
         elapsed = np.maximum(times, self._knots[0])
         segment = np.searchsorted(self._knots, elapsed, side="right") - 1
         elapsed = (elapsed - self._knots[segment])[:, None]
-        position, velocity, acceleration = np.zeros((3, len(times), len(self._target)))
+        rows = np.zeros((3, len(times), len(self._target)))
+        position, velocity, acceleration = rows
         for factor in self._factors[::-1, segment]:  # Horner's scheme and its derivatives
-            acceleration = acceleration * elapsed + 2.0 * velocity
-            velocity = velocity * elapsed + position
-            position = position * elapsed + factor
+            acceleration *= elapsed
+            acceleration += 2.0 * velocity
+            velocity *= elapsed
+            velocity += position
+            position *= elapsed
+            position += factor
         position[over] = self._target
-        velocity[over | (times < self._knots[0])] = 0.0
-        acceleration[over | (times < self._knots[0])] = 0.0
-        return position, velocity, acceleration
+        rows[1:, over | (times < self._knots[0])] = 0.0
+        return rows

@@ -8,22 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import FloatArray
 from harness.robot.description import Joint
 from harness.ros.control.controller import Controller, Outcome, Window
-from harness.ros.control.goals import Code, Tolerance, TrajectoryGoal, checked_goal
+from harness.ros.control.goals import Code, Defaults, TrajectoryGoal, checked_goal
 from harness.ros.control.spline import Rows, Spline
 
 TIME_SLACK = 1e-9
-
-
-@dataclass(frozen=True)
-class Defaults:
-    """Tolerances that goals have which name none [rad, m, s]."""
-
-    path: float = np.inf
-    goal: float = np.inf
-    goal_time: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,22 +32,27 @@ class Finished(Outcome):
 
 @dataclass(frozen=True, eq=False)
 class Tracking:
-    """Desired and actual motion at one moment, for feedback; shape (dof,) each."""
+    """Desired and actual motion at one moment, for feedback.
+
+    Attributes:
+        goal: The identifier of the goal.
+        time: The simulated time [s].
+        desired: The desired positions and velocities, shape (2, dof).
+        actual: The measured ones, shape (2, dof).
+    """
 
     goal: str
     time: float
     desired: FloatArray
-    desired_velocities: FloatArray
     actual: FloatArray
-    actual_velocities: FloatArray
 
 
 @dataclass(eq=False)
 class _Active:
     goal: str
     spline: Spline
-    path: tuple[FloatArray, FloatArray]
-    target: tuple[FloatArray, FloatArray]
+    path: FloatArray
+    target: FloatArray
     deadline: float
 
 
@@ -71,16 +67,10 @@ class TrajectoryController(Controller[_Active]):
         self, goal: str, content: Mapping[str, Any], now: float, start: Rows, measured: FloatArray
     ) -> None:
         del measured  # it starts from the last set point
-        checked = checked_goal(content, self.joints, now)
+        checked = checked_goal(content, self.joints, now, self._defaults)
         spline = _spline(checked, now, start)
-        limit = checked.goal_time or self._defaults.goal_time
-        self._active = _Active(
-            goal,
-            spline,
-            self._bounds(checked.path, self._defaults.path),
-            self._bounds(checked.goal, self._defaults.goal),
-            np.inf if limit < 0 else spline.end + limit,
-        )
+        deadline = spline.end + checked.goal_time
+        self._active = _Active(goal, spline, checked.path, checked.goal, deadline)
 
     def set_points(self, times: FloatArray) -> Rows | None:
         return None if self._active is None else self._active.spline.at(times)
@@ -90,64 +80,43 @@ class TrajectoryController(Controller[_Active]):
         active, times = self._active, window.times
         if active is None:
             return None
-        desired, last = window.desired, window.positions[-1]
-        errors = np.abs(desired[0] - window.positions), np.abs(desired[1] - window.velocities)
-        moving = times < active.spline.end - TIME_SLACK
-        beyond = self._first_beyond(errors, active.path, moving)
+        errors = np.abs(window.desired[:2] - window.measured)
+        last, now, end = window.measured[0, -1], float(times[-1]), active.spline.end
+        moving = times < end - TIME_SLACK
+        beyond = self._first_beyond(errors[:, moving], active.path)
         if beyond:
             row, text = beyond
             said = f"path tolerance: {text} at t={times[row]:.3f} s"
             return Finished(self.stop(), last, Code.PATH_TOLERANCE_VIOLATED, said)
-        now = float(times[-1])
-        if now < active.spline.end - TIME_SLACK:
+        if now < end - TIME_SLACK:
             return None
-        final = errors[0][-1:], errors[1][-1:]
-        missed = self._first_beyond(final, active.target, np.array([True]))
+        missed = self._first_beyond(errors[:, -1:], active.target)
         if missed is None:
             return Finished(self.stop())
         if now < active.deadline:
             return None
-        said = f"goal tolerance: {missed[1]} {now - active.spline.end:.3f} s after the end"
+        said = f"goal tolerance: {missed[1]} {now - end:.3f} s after the end"
         return Finished(self.stop(), last, Code.GOAL_TOLERANCE_VIOLATED, said)
 
     def interrupted(self, goal: str, code: Code, reason: str, window: Window) -> Finished:
         del window
         return Finished(goal, None, code, reason)
 
-    def _bounds(
-        self, own: Mapping[str, Tolerance], default: float
-    ) -> tuple[FloatArray, FloatArray]:
-        """Bounds of position and velocity errors; a goal's 0 is the default."""
-        given = [own.get(name, Tolerance(np.nan, np.nan)) for name in self.joint_names]
-        position = np.array([each.position for each in given])
-        velocity = np.array([each.velocity for each in given])
-        return (
-            np.where(np.isnan(position), default, position),
-            np.where(np.isnan(velocity), np.inf, velocity),
-        )
-
-    def _first_beyond(
-        self,
-        errors: tuple[FloatArray, FloatArray],
-        bounds: tuple[FloatArray, FloatArray],
-        rows: BoolArray,
-    ) -> tuple[int, str] | None:
-        """The first sample beyond a bound, and what is said of its worst joint."""
-        beyond = ((errors[0] > bounds[0]) | (errors[1] > bounds[1])) & rows[:, None]
+    def _first_beyond(self, errors: FloatArray, bounds: FloatArray) -> tuple[int, str] | None:
+        """The first sample with an error beyond a bound, and what is said of its worst joint."""
+        excess = errors - bounds[:, None]
+        beyond = (excess > 0).any(axis=(0, 2))
         if not beyond.any():
             return None
-        row = int(np.flatnonzero(beyond.any(axis=1))[0])
-        for which, noun in enumerate(("", "/s")):
-            excess = errors[which][row] - bounds[which]
-            if (excess > 0).any():
-                column = int(np.argmax(excess))
-                joint = self.joints[column]
-                unit = ("m" if joint.kind == "prismatic" else "rad") + noun
-                return row, (
-                    f"'{joint.name}' is off by {errors[which][row, column]:.4g} {unit}"
-                    f" (tolerance {bounds[which][column]:.4g} {unit})"
-                )
-        raise AssertionError
+        row = int(np.argmax(beyond))
+        which = 0 if (excess[0, row] > 0).any() else 1
+        column = int(np.argmax(excess[which, row]))
+        joint = self.joints[column]
+        unit = ("m" if joint.kind == "prismatic" else "rad") + ("", "/s")[which]
+        return row, (
+            f"'{joint.name}' is off by {errors[which, row, column]:.4g} {unit}"
+            f" (tolerance {bounds[which, column]:.4g} {unit})"
+        )
 
 
 def _spline(goal: TrajectoryGoal, now: float, start: Rows) -> Spline:
@@ -157,13 +126,12 @@ def _spline(goal: TrajectoryGoal, now: float, start: Rows) -> Spline:
     left[-1] = True
     if not goal.stamp and goal.times[0] == 0:
         left[0] = True  # a point at time 0 is where the trajectory starts
-    parts = [each if each is None else each[left]
-             for each in (goal.positions, goal.velocities, goal.accelerations)]  # fmt: skip
     times = times[left]
+    parts = [None if part is None else part[left] for part in goal.motion]
     if times[0] > now + TIME_SLACK:
         times = np.concatenate([[now], times])
         parts = [None if part is None else np.vstack([at, part])
                  for part, at in zip(parts, start, strict=True)]  # fmt: skip
-    positions = parts[0]
+    positions, velocities, accelerations = parts
     assert positions is not None
-    return Spline(times, positions, parts[1], parts[2])
+    return Spline(times, positions, velocities, accelerations)

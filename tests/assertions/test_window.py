@@ -1,0 +1,148 @@
+"""Which samples an expectation is judged over, joints and their targets, and numbers in words."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.assertions.joints import gripper_joints, is_measured, near, resting_joints
+from harness.assertions.text import amount, amounts, percentages
+from harness.assertions.window import NotObservable, NotReached, refuse_unrecorded_steps, window_of
+from tests.assertions.synthetic_run import ROBOT, changed, make_run, step
+
+STEPS = (
+    step("go", 10, 20, path="steps[0]"),
+    step("fail", 19, 40, path="steps[1]", status="failed", error_code="CONTROL_FAILED"),
+    step("late", 40, 40, path="steps[2]", status="not reached"),
+    step("moment", 40, 41, path="steps[3]"),
+)
+
+
+def test_a_window_is_that_of_a_step_by_name_or_path_or_the_whole_run():
+    run = make_run(60, steps=STEPS)
+    for name in ("go", "steps[0]"):
+        window = window_of(run, name)
+        assert (window.start, window.stop, window.step) == (10, 20, STEPS[0])
+    assert window.times.tolist() == run.signals.times[10:20].tolist()
+    assert window.time(3) == pytest.approx(0.13)
+    assert window.tcp_position.shape == (10, 3)
+    whole = window_of(run, "")
+    assert (whole.start, whole.stop, whole.step) == (0, 60, None)
+    assert window_of(run, "moment").stop == 41
+    for name, reason in (
+        ("late", "the run ended before step 'late'"),
+        ("other", "there is no step 'other'"),
+    ):
+        with pytest.raises(NotReached, match=reason):
+            window_of(run, name)
+    with pytest.raises(NotReached, match="nothing was recorded"):
+        window_of(make_run(60, steps=(step("go", 20, 20),)), "go")
+    unknown = replace(run, unrecorded=("steps",))
+    assert window_of(unknown, "go").stop == 20
+    with pytest.raises(NotObservable, match="when step 'other' ran"):
+        window_of(unknown, "other")
+    refuse_unrecorded_steps(run)
+    with pytest.raises(NotObservable):
+        refuse_unrecorded_steps(unknown)
+
+
+def test_a_window_is_cut_short_by_a_step_that_failed_and_not_by_one_that_timed_out():
+    run = make_run(60, steps=STEPS)
+    said = "step 'fail' failed before then: CONTROL_FAILED"
+    assert window_of(run, "").cut_short == ""
+    assert window_of(run, "go").cut_short == ""
+    assert window_of(run, "fail").cut_short == said
+    ended = replace(run, ended_early="it stopped")
+    assert window_of(ended, "").cut_short == said
+    assert window_of(replace(ended, steps=STEPS[:1]), "").cut_short.endswith("then: it stopped")
+    for change in ({"error_code": "TIMED_OUT"}, {"error_code": ""}, {"status": "passed"}):
+        other = replace(STEPS[1], **change)
+        assert window_of(replace(run, steps=(other,)), "fail").cut_short == ""
+    inner = replace(STEPS[1], id="inner", path="steps[1][0]")
+    nested = replace(run, steps=(*STEPS, inner))
+    assert window_of(nested, "fail").cut_short.startswith("step 'inner' failed")
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.9994, "m", "999 mm"),
+        (1.0, "m", "1.0 m"),
+        (-0.5, "m", "-500 mm"),
+        (0.0999, "m", "99.9 mm"),
+        (0.1, "m", "100 mm"),
+        (0.00004, "m", "0.04 mm"),
+        (0.00005, "m", "0.1 mm"),
+        (1e-6, "m", "0.001 mm"),
+        (0.9e-6, "m", "0.0 mm"),
+        (np.pi, "rad", "180 deg"),
+        (np.pi / 4, "rad/s", "45.0 deg/s"),
+        (0.5, "m/s", "500 mm/s"),
+        (-1.5, "m/s", "-1.5 m/s"),
+        (0.25, "1", "0.2"),
+        (3.0, "N", "3.0 N"),
+        (np.inf, "N", "inf N"),
+        (-np.nan, "m", "nan m"),
+    ],
+)
+def test_numbers_are_written_as_people_read_them(value, unit, text):
+    assert amount(value, unit) == text
+
+
+def test_numbers_that_differ_are_written_with_digits_that_differ():
+    assert amounts(0.1, 0.2, "m") == ("100 mm", "200 mm")
+    assert amounts(0.10001, 0.10002, "m") == ("100.01 mm", "100.02 mm")
+    assert percentages(0.5, 0.25) == ("50.0 %", "25.0 %")
+    assert percentages(0.50001, 0.50002) == ("50.001 %", "50.002 %")
+
+
+def test_joints_that_may_rest_are_the_grippers_its_followers_and_idle_ones():
+    shoulder, finger = ROBOT.joints
+    idle, driven = replace(shoulder, name="idle"), replace(shoulder, name="driven")
+    mimic = replace(finger, name="mimic", is_mimic=True)
+    robot = replace(ROBOT, joints=(*ROBOT.joints, idle, driven, mimic))
+    run = make_run(20, robot=robot)
+    commands = run.signals.joint_commands.copy()
+    commands[:, 3] = np.arange(20)
+    run = changed(run, joint_commands=commands)
+    assert gripper_joints(run) == {"finger", "mimic"}
+    assert resting_joints(run) == {"finger", "mimic", "idle"}
+    assert resting_joints(replace(run, unrecorded=("joint_commands",))) == {"finger", "mimic"}
+    bare = replace(run, robot=replace(robot, gripper=None))
+    assert gripper_joints(bare) == frozenset()
+    assert resting_joints(bare) == {"finger", "mimic", "idle"} - (
+        {"finger"} if (commands[:, 1] != commands[0, 1]).any() else set()
+    )
+    missing = np.full(20, np.nan)
+    assert not is_measured(missing, mimic, "position")
+    with pytest.raises(NotObservable, match="the effort of idle was not recorded"):
+        is_measured(missing, idle, "effort")
+    missing[3] = 0.0
+    assert is_measured(missing, idle, "effort")
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "limit"),
+    [("prismatic", False, 0.002), ("prismatic", True, 0.01), ("revolute", False, 0.01)],
+)
+def test_a_tolerance_that_is_not_given_is_smaller_for_joints_that_slide(kind, given, limit):
+    joint = replace(ROBOT.joints[0], kind=kind)
+    run = make_run(5, robot=replace(ROBOT, joints=(joint, ROBOT.joints[1])))
+    for target, sign in ((limit * 0.99, 1), (limit * 1.01, -1), (-limit * 1.01, -1)):
+        margins = near(window_of(run, ""), {"shoulder": target}, 0.01, given)
+        assert (margins.values * sign > 0).all()
+        assert margins.unit == ("m" if kind == "prismatic" else "rad")
+    tight = near(window_of(run, ""), {"shoulder": 0.0015}, 0.001, given)
+    assert (tight.values < 0).all()
+
+
+def test_a_continuous_joint_is_off_by_the_shorter_way_and_the_worst_joint_counts():
+    endless = replace(ROBOT.joints[0], kind="continuous")
+    run = make_run(5, robot=replace(ROBOT, joints=(endless, ROBOT.joints[1])))
+    margins = near(window_of(run, ""), {"shoulder": 2 * np.pi - 0.1}, 0.2, is_given=True)
+    assert margins.values == pytest.approx(0.1)
+    both = near(window_of(run, ""), {"shoulder": 0.1, "finger": 0.0}, 0.2, is_given=True)
+    assert both.values == pytest.approx(0.5)
+    assert both.evidence(0).text == "shoulder is off its target by 5.7 deg of 11.5 deg"
+    with pytest.raises(NotObservable, match="no joint 'thumb'"):
+        near(window_of(run, ""), {"thumb": 0.1}, 0.2, is_given=True)

@@ -1,0 +1,191 @@
+"""Where bodies stand along a run, and how far their points move, against scipy and sampling."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from harness.core.geometry import Box, Cylinder, Shape, Sphere
+from harness.core.spatial import SE3
+from harness.observation.body_tracks import (
+    BodyTrack,
+    carried_track,
+    centers_of,
+    links_with_shapes,
+    object_track,
+    relative_track,
+    track_of_poses,
+    tracked_shapes,
+    travels,
+)
+from harness.observation.nearest import (
+    largest_travel,
+    pairs_between,
+    smallest_distances,
+)
+from tests.assertions.synthetic_run import BOX, attachment
+
+N = 50
+
+
+def random_poses(seed, count=N, step=0.02):
+    """A body that wanders and turns, shape (count, 7)."""
+    rng = np.random.default_rng(seed)
+    places = np.cumsum(rng.normal(scale=step, size=(count, 3)), axis=0)
+    turns = Rotation.from_rotvec(np.cumsum(rng.normal(scale=2 * step, size=(count, 3)), axis=0))
+    return np.hstack([places, turns.as_quat()[:, [3, 0, 1, 2]]])
+
+
+def applied(track, point):
+    """A point of a body in the world, shape (N, 3)."""
+    return track.translations + track.rotations @ np.asarray(point, dtype=float)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_tracks_are_those_of_the_poses(seed):
+    poses = random_poses(seed)
+    track = track_of_poses(poses)
+    turns = Rotation.from_quat(poses[:, [4, 5, 6, 3]])
+    assert track.rotations == pytest.approx(turns.as_matrix())
+    assert track.translations.tolist() == poses[:, :3].tolist()
+    between = (turns[:-1].inv() * turns[1:]).magnitude()
+    assert track.turns == pytest.approx(between, abs=1e-7)
+    assert track.present.all()
+    missing = poses.copy()
+    missing[3] = np.nan
+    assert np.flatnonzero(~track_of_poses(missing).present).tolist() == [3]
+    part = track.part(np.arange(N) >= 40)
+    assert part.translations.tolist() == poses[40:, :3].tolist()
+    assert part.rotations.tolist() == track.rotations[40:].tolist()
+    half = np.array([[0, 0, 0, 1.0, 0, 0, 0], [0, 0, 0, 0, 0, 1.0, 0]])
+    assert track_of_poses(half).turns == pytest.approx([np.pi])
+
+
+def test_relative_and_carried_tracks_move_points_as_their_bodies_do():
+    first, second = track_of_poses(random_poses(1)), track_of_poses(random_poses(2))
+    point = (0.1, -0.2, 0.3)
+    assert applied(relative_track(first, second), point) == pytest.approx(
+        np.einsum("nji,nj->ni", second.rotations, applied(first, point) - second.translations)
+    )
+    pose = SE3.from_xyz_rpy((0.3, 0.1, -0.2), (0.4, 0.5, 0.6))
+    carried = carried_track(first, pose.as_vector())
+    assert applied(carried, point) == pytest.approx(
+        applied(first, pose.apply(np.array([point]))[0])
+    )
+
+
+def test_what_the_planner_alone_knows_stays_where_it_is_put_and_moves_with_its_link():
+    link = track_of_poses(random_poses(3))
+    other = track_of_poses(random_poses(4))
+    links = SimpleNamespace(
+        rotations={"palm": link.rotations, "arm": other.rotations},
+        translations={"palm": link.translations, "arm": other.translations},
+    )
+    start = SE3.from_xyz_rpy((1, 2, 3), (0.1, 0.2, 0.3))
+    in_link = SE3.from_xyz_rpy((0.1, 0, 0))
+    record = replace(BOX, name="belief", pose=tuple(start.as_vector()), present=((0.05, 0.4),))
+    motion = SimpleNamespace(times=np.arange(N) * 0.01, object_poses={})
+    held = (
+        attachment("belief", 30, 35, pose=in_link, link="arm"),
+        attachment("other", 0, 49, pose=in_link),
+        attachment("belief", 10, 20, pose=in_link),
+    )
+    track = object_track(record, held, motion, links)
+    assert np.flatnonzero(track.present).tolist() == list(range(5, 41))
+    assert track.translations[5:10].tolist() == [[1, 2, 3]] * 5
+    assert track.rotations[7] == pytest.approx(start.rotation)
+    grip, second = (carried_track(each, in_link.as_vector()) for each in (link, other))
+    assert track.translations[10:21] == pytest.approx(grip.translations[10:21])
+    assert track.translations[21:30] == pytest.approx(np.tile(grip.translations[20], (9, 1)))
+    assert track.rotations[25] == pytest.approx(grip.rotations[20])
+    assert track.translations[30:36] == pytest.approx(second.translations[30:36])
+    assert track.translations[40] == pytest.approx(second.translations[35])
+    assert track.rotations[36:] == pytest.approx(np.tile(second.rotations[35], (14, 1, 1)))
+    nowhere = object_track(replace(record, pose=()), held[:2], motion, links)
+    assert np.flatnonzero(nowhere.present).tolist() == list(range(30, 41))
+    late = object_track(record, (attachment("belief", 60, 70),), motion, links)
+    assert late.translations[39].tolist() == [1, 2, 3]
+    poses = random_poses(5)
+    physical = SimpleNamespace(times=motion.times, object_poses={"belief": poses})
+    seen = object_track(record, held, physical, links)
+    assert seen.translations[5:41].tolist() == poses[5:41, :3].tolist()
+    assert np.flatnonzero(seen.present).tolist() == list(range(5, 41))
+
+
+SHAPES = (
+    Shape(Box((0.1, 0.2, 0.3)), SE3.from_xyz_rpy((0.2, 0, 0.1), (0.3, 0.4, 0.5))),
+    Shape(Sphere(0.05), SE3.from_xyz_rpy((-0.1, 0.3, 0))),
+    Shape(Cylinder(0.04, 0.3), SE3.from_xyz_rpy((0, 0.1, -0.2), (1.0, 0, 0))),
+)
+
+
+def test_no_point_of_a_shape_moves_further_than_its_bound():
+    seen = track_of_poses(random_poses(6))
+    tracked = tracked_shapes("body", SHAPES)
+    centers = centers_of(seen, tracked)
+    radii = np.array([shape.radius for shape in tracked])
+    bound = travels(seen, centers, radii)
+    assert bound.shape == (N, 3)
+    assert not bound[0].any()
+    for column, shape in enumerate(tracked):
+        assert centers[:, :, column] == pytest.approx(applied(seen, shape.center))
+        middle = np.linalg.norm(np.diff(centers[:, :, column], axis=0), axis=1)
+        expected = np.concatenate([[0], np.cumsum(middle + radii[column] * seen.turns)])
+        assert bound[:, column] == pytest.approx(expected)
+        for side in np.vstack([np.eye(3), -np.eye(3)]) * radii[column]:
+            path = np.linalg.norm(np.diff(applied(seen, shape.center + side), axis=0), axis=1)
+            assert (np.diff(bound[:, column]) >= path - 1e-9).all()
+
+
+def test_the_gap_is_that_to_the_box_about_a_shape():
+    (box, ball, _) = tracked_shapes("body", SHAPES)
+    for shape, half, place in (
+        (box, np.array([0.05, 0.1, 0.15]), SHAPES[0].pose),
+        (ball, np.full(3, 0.05), SHAPES[1].pose),
+    ):
+        rng = np.random.default_rng(8)
+        own = rng.uniform(-0.4, 0.4, (30, 3))
+        expected = np.linalg.norm(own - np.clip(own, -half, half), axis=1)
+        assert shape.gap(place.apply(own)) == pytest.approx(expected)
+        assert np.linalg.norm(shape.center - place.translation) == pytest.approx(0, abs=1e-9)
+    assert box.radius == pytest.approx(np.linalg.norm([0.05, 0.1, 0.15]))
+    assert list(links_with_shapes({"a": SHAPES, "b": ()})) == ["a"]
+
+
+def pairs(seed, step, apart=0.5):
+    poses = random_poses(seed, 120, step)
+    poses[:, 0] += apart
+    seen = track_of_poses(poses)
+    return pairs_between(tracked_shapes("a", SHAPES), tracked_shapes("b", SHAPES[::-1]), seen)
+
+
+@pytest.mark.parametrize(("seed", "step"), [(1, 0.02), (2, 0.002), (3, 0.05), (4, 0.0)])
+@pytest.mark.parametrize("cutoff", [0.05, 0.3, 3.0])
+def test_the_smallest_of_all_distances_is_found_up_to_the_cutoff(seed, step, cutoff):
+    found = pairs(seed, step)
+    every = np.array([[pair.distance(k) for pair in found] for k in range(120)])
+    distances, which = smallest_distances(found, cutoff)
+    assert distances == pytest.approx(np.minimum(every.min(axis=1), cutoff), abs=2e-6)
+    assert (which >= 0).tolist() == (distances < cutoff).tolist()
+    rows = np.flatnonzero(which >= 0)
+    assert every[rows, which[rows]] == pytest.approx(distances[rows], abs=2e-6)
+    for index, pair in enumerate(found):
+        assert (pair.least <= every[:, index] + 1e-9).all()
+        assert pair.least.max() > every[:, index].min() - 1.0
+
+
+def test_the_largest_travel_is_that_of_the_pairs_that_may_come_near():
+    found = pairs(1, 0.02)
+    steps = np.array([np.diff(pair.travel) for pair in found])
+    every = largest_travel(found, np.inf)
+    assert every.tolist() == [0.0, *steps.max(axis=0).tolist()]
+    assert not largest_travel(found, -10.0).any()
+    near = [
+        pair.least[1:] + pair.least[:-1] - moved < 2 * 0.2
+        for pair, moved in zip(found, steps, strict=True)
+    ]
+    assert largest_travel(found, 0.2)[1:] == pytest.approx(np.where(near, steps, 0.0).max(axis=0))
+    still = BodyTrack(np.tile(np.eye(3), (2, 1, 1)), np.ones((2, 3)))
+    assert pairs_between((), tracked_shapes("b", SHAPES), still) == []
