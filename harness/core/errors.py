@@ -15,7 +15,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from harness.core.details import Detail, Details
 from harness.core.printable import columns_of, printable
@@ -52,8 +52,6 @@ ErrorCode = Literal[
     "FAILURE",
 ]
 """Names of moveit_msgs/MoveItErrorCodes, spelled as there (UNABLE_TO_AQUIRE_SENSOR_DATA too)."""
-
-ERROR_CODES: tuple[str, ...] = get_args(ErrorCode)
 
 
 EXCERPT_WIDTH = 70  # characters of a source line, and of a hint: with margins, 80 columns

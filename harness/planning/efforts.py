@@ -62,8 +62,7 @@ class InverseDynamics:
         for row, position in enumerate(positions):
             velocity[columns] = space.matrix @ velocities[row]
             acceleration[columns] = space.matrix @ accelerations[row]
-            configuration = space.robot.configuration(space.whole(position))
-            efforts = pin.rnea(model, data, configuration, velocity, acceleration)
+            efforts = pin.rnea(model, data, space.configuration(position), velocity, acceleration)
             found[row] = space.matrix.T @ efforts[columns]
         return found
 

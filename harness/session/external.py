@@ -36,6 +36,8 @@ class NoPrograms:
 
     commands: tuple[CommandRecord, ...] = ()
 
+    def __init__(self, *_start: object) -> None: ...
+
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Refuse.
 
@@ -53,9 +55,3 @@ class NoPrograms:
     def refusal(self) -> str:
         """Nothing."""
         return ""
-
-
-def no_programs(prepared: Prepared, simulator: TimedSimulator) -> ExternalSession:
-    """A session without external programs."""
-    del prepared, simulator
-    return NoPrograms()

@@ -15,18 +15,19 @@ from harness.core.errors import HarnessError, SpecError
 from harness.engine.execute import ProgramExecution, StepEvent
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
+from harness.recording.files import write_files
 from harness.recording.run import Run, StepRecord
-from harness.recording.store import PAGE, StoredRun
+from harness.recording.store import PAGE, StoredRun, write_run
+from harness.reporting.reporter import write_with
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
 from harness.session.distances_ahead import DistancesAhead
-from harness.session.external import ExternalSession, MakeSession, no_programs
+from harness.session.external import ExternalSession, MakeSession, NoPrograms
 from harness.session.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
 from harness.session.record import executed_run
-from harness.session.report import write_report
 from harness.session.run_request import RunRequest
 from harness.session.start import Start, overlap_note, start_case
 from harness.session.timing import Clock
@@ -35,7 +36,7 @@ from harness.session.timing import Clock
 def run_case(
     request: RunRequest,
     notify: Notify = lambda _: None,
-    make_session: MakeSession = no_programs,
+    make_session: MakeSession = NoPrograms,
     start: Callable[[RunRequest, Clock], Start] = start_case,
 ) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
@@ -192,7 +193,13 @@ def _reported(
         run, drawings = pictures.drawn(judged.run, progress.activity)
     with clock.part("write"):
         judged = replace(judged, run=run)
-        write_report(request, folder, judged, drawings.images, progress.activity)
+
+        def add(target: Path) -> None:
+            write_files(target, drawings.images)
+            reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
+            write_with(reporters, target, judged, progress.activity)
+
+        write_run(folder, judged, extra=add)
     progress.written(judged, str(folder))
     return replace(
         result,

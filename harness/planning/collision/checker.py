@@ -111,7 +111,7 @@ class MotionChecker:
         """Pairs nearer than margin plus slack, nearest first; only those are measured."""
         geometry, found = self._geometry, self._geometry_data
         self._set_margins(slack + _MEASURED)
-        configuration = self.space.robot.configuration(self.space.whole(positions))
+        configuration = self.space.configuration(positions)
         if not pin.computeCollisions(
             self._robot, self._data, geometry, found, configuration, False
         ):
@@ -193,7 +193,7 @@ class MotionChecker:
         manager = self._manager
         if self._scene_model.shared.holder is not self._key:
             self._set_margins(0.0)
-        configuration = self.space.robot.configuration(self.space.whole(positions))
+        configuration = self.space.configuration(positions)
         return not pin.computeCollisions(self._robot, self._data, manager, configuration, True)
 
     def path_free(self, waypoints: FloatArray, resolution: float) -> bool:
