@@ -138,10 +138,6 @@ def _samples_of(
     return mask
 
 
-def _moves_gripper(step: type[Step]) -> bool:
-    return step.moves_gripper
-
-
 def _gripping(run: Run, link: str, name: str) -> BoolArray:
     """Samples at which a gripper link touches an object because it grips it, shape (N,).
 
@@ -156,7 +152,7 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)
-    begins = _samples_of(run, _moves_gripper, held)
+    begins = _samples_of(run, lambda step: step.moves_gripper, held)
     touched = np.min(list(side_forces(run, name).values()), axis=0) >= TOUCH_FORCE
     lasts = attached(run, name) | touched | _samples_of(run, lambda step: step.keeps_arm_still)
     contact = debounced(run, force_between(run, hand, {name})) > 0
@@ -177,7 +173,7 @@ def _holds(run: Run, name: str) -> BoolArray:
 
 
 def _held_limit(run: Run, name: str) -> FloatArray:
-    return held_limit(run, name, _samples_of(run, _moves_gripper))
+    return held_limit(run, name, _samples_of(run, lambda step: step.moves_gripper))
 
 
 def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:

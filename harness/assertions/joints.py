@@ -13,6 +13,7 @@ import numpy as np
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
 from harness.assertions.window import NotObservable, Window
+from harness.cell.scope import At
 from harness.core.types import FloatArray
 from harness.language.expectation import Quantity
 from harness.recording.run import JointRecord, Measure, Run
@@ -25,6 +26,24 @@ ROUNDING = 1e-9
 POSITION_ERROR = Quantity(
     "joint position error", "rad or m", "at most `tolerance`, for each joint", "position"
 )
+
+
+def check_tolerance(at: At, targets: Mapping[str, float], tolerance: float, is_given: bool) -> None:
+    """Report a tolerance that no position which the joints can have is beyond; as for `near`."""
+    joints = at.scope.description.joint_by_name
+    reaches = [
+        np.pi
+        if joint.kind == "continuous"
+        else max(joint.upper - targets[name], targets[name] - joint.lower)
+        for name, joint in joints.items()
+        if name in targets
+    ]
+    if is_given and reaches and max(reaches) <= tolerance:
+        at.scope.problems.add(
+            at.key("tolerance"),
+            f"no position of {' or '.join(sorted(targets))} is beyond this tolerance",
+            "angles without a unit are in radians, lengths in metres",
+        )
 
 
 def joint_column(run: Run, name: str) -> tuple[int, JointRecord]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import csv
-import os
 import sqlite3
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator
+from io import TextIOWrapper
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from harness.campaigns.filters import Query, parameter_paths, sql_of
-from harness.core.errors import HarnessError
+from harness.reporting.suite.write import replaced, writing
 from harness.suite.discovery import UsageError
 
 COLUMNS = (
@@ -75,14 +75,13 @@ def write_csv(connection: sqlite3.Connection, query: Query, file: Path) -> int:
     Raises:
         HarnessError: The file cannot be written.
     """
-    written = 0
-    with _replaced(file) as part, part.open("w", encoding="utf-8", newline="") as stream:
+    with writing(file.parent), replaced(file) as part:
+        stream = TextIOWrapper(part, encoding="utf-8", newline="", write_through=True)
         writer = csv.writer(stream)
         writer.writerow(columns(connection))
-        for row in rows(connection, query):
-            writer.writerow(row)
-            written += 1
-    return written
+        writer.writerows(rows(connection, query))
+        stream.detach()
+    return count(connection, query)
 
 
 def write_parquet(connection: sqlite3.Connection, query: Query, file: Path) -> int:
@@ -102,16 +101,19 @@ def write_parquet(connection: sqlite3.Connection, query: Query, file: Path) -> i
         raise UsageError("--parquet needs pyarrow: pip install 'armharness[parquet]'") from None
     names, numbers = columns(connection), _numeric_columns(connection)
     schema = pa.schema([(name, pa.float64() if name in numbers else pa.string()) for name in names])
-    written = 0
-    with _replaced(file) as part, pq.ParquetWriter(part, schema) as writer:
-        for batch in _batches(rows(connection, query)):
+    found = rows(connection, query)
+    with (
+        writing(file.parent),
+        replaced(file) as part,
+        pq.ParquetWriter(part, schema) as writer,
+    ):
+        while batch := list(islice(found, ROWS_TOGETHER)):
             arrays = [
                 pa.array([_cell(row[i], name in numbers) for row in batch], schema.field(i).type)
                 for i, name in enumerate(names)
             ]
             writer.write_table(pa.table(arrays, schema=schema))
-            written += len(batch)
-    return written
+    return count(connection, query)
 
 
 def _numeric_columns(connection: sqlite3.Connection) -> set[str]:
@@ -125,27 +127,3 @@ def _cell(value: Any, is_number: bool) -> Any:
     if value is None:
         return None
     return float(value) if is_number else str(value)
-
-
-def _batches(found: Iterator[tuple[Any, ...]]) -> Iterator[Sequence[tuple[Any, ...]]]:
-    batch: list[tuple[Any, ...]] = []
-    for row in found:
-        batch.append(row)
-        if len(batch) == ROWS_TOGETHER:
-            yield batch
-            batch = []
-    if batch:
-        yield batch
-
-
-@contextmanager
-def _replaced(file: Path) -> Iterator[Path]:
-    """A temporary name next to a file, which is renamed when everything is written."""
-    part = file.with_name(f".{file.name}.{os.getpid()}")
-    try:
-        yield part
-        part.replace(file)
-    except OSError as error:
-        raise HarnessError(f"'{file}' cannot be written: {error.strerror or error}") from error
-    finally:
-        part.unlink(missing_ok=True)

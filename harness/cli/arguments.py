@@ -8,13 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from harness.core.printable import printable
-from harness.core.suggestion import nearest
+from harness.core.suggestion import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from _typeshed import SupportsWrite
 
+
+LONGEST_USAGE = 4
+"""Lines of a usage that is printed with an error; a longer one hides the error."""
 
 SYNONYMS = {
     "--report-dir": ("-o", "--out", "--output", "--output-dir", "--reports"),
@@ -29,7 +32,18 @@ class Parser(argparse.ArgumentParser):
     """Reads arguments; what it says of wrong ones is printable and names the nearest valid one."""
 
     def error(self, message: str) -> NoReturn:
-        super().error(printable(message))
+        """End with the message; the usage precedes it where it is short."""
+        usage = self.format_usage()
+        shown = usage if usage.count("\n") <= LONGEST_USAGE else ""
+        hint = "" if shown or "--help`" in message else f"; `{self.prog} --help` explains its use"
+        self.exit(2, f"{shown}{self.prog}: error: {printable(message)}{hint}\n")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a word that is not among an argument's choices, and name the nearest one."""
+        if action.choices is not None and value not in action.choices:
+            words = [str(each) for each in action.choices]
+            hint = did_you_mean(str(value), words, "valid words")
+            raise argparse.ArgumentError(action, f"'{value}' is not valid; {hint}")
 
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
         self, args: Sequence[str] | None = None, namespace: Any = None

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from harness.cli.arguments import whole_number
-from harness.cli.output import complain, only_json_on_stdout, say, say_text
+from harness.cli.output import complain, say, say_json, say_text
 from harness.cli.shared_options import add_json, add_paths, add_report_dir
 from harness.core.errors import SpecError
 from harness.suite.discovery import UsageError, discover
@@ -45,12 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
         except ValueError as error:
             raise UsageError(f"--planners: {error}") from error
     files = discover(arguments.paths)
+    code, found = _bench(arguments, files, planners)
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            code, found = _bench(arguments, files, planners)
-            write_json(found)
-        return code
-    return _bench(arguments, files, planners)[0]
+        say_json(found)
+    return code
 
 
 def _bench(

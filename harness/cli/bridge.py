@@ -93,23 +93,14 @@ def run(arguments: argparse.Namespace) -> int:
     complain(f"serving {request.run.file} in ROS domain {domain} on {where}; Ctrl-C ends it")
     result = run_bridge(replace(request, is_interactive=True))
     show_case(result.case, request.run)
-    show_wall(result)
+    show_remarks(result)
     return EXIT_CODES[result.case.outcome]
 
 
-def show_wall(result: BridgeResult) -> None:
-    """What is said of wall time and of the launched program; nothing of it is judged."""
-    if result.pace:
-        complain(f"{result.commands} commands; {result.pace}")
-    for sentence in result.names:
-        complain(f"note: {sentence}")
-    has_passed = result.case.outcome == "passed"
-    if result.exit_code and has_passed:
-        complain(f"note: the launched program ended with exit code {result.exit_code}")
-    if result.output and (result.exit_code or not has_passed):
-        complain("the launched program printed:")
-        for line in result.output.splitlines():
-            complain(f"  {line}")
+def show_remarks(result: BridgeResult) -> None:
+    """What is said of wall time, names and the launched program."""
+    for remark in result.remarks():
+        complain(f"note: {remark}")
 
 
 def show_case(case: CaseResult, request: RunRequest) -> None:

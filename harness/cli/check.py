@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-from harness.cli.output import only_json_on_stdout, output, say, say_text
+from harness.cli.output import output, say, say_json, say_text
 from harness.cli.shared_options import add_format, add_paths, add_seed
 from harness.suite.discovery import discover
 from harness.suite.header import read_header
@@ -66,8 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         name = f"{file} [{case}]" if case else str(file)
         say(f"{name}: {style.outcome(outcome, summaries[outcome])}")
     if arguments.format == "json":
-        with only_json_on_stdout() as write_json:
-            write_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
+        say_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
         return code
     write = output().command if arguments.format == "github" else say
     for line in dict.fromkeys(lines):

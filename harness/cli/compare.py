@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from harness.cli.files import run_folder
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json
 from harness.suite.outcome import EXIT_CODES
 
@@ -33,10 +33,8 @@ def run(arguments: argparse.Namespace) -> int:
     is_good = comparison.is_same and not comparison.warnings
     code = 0 if is_good else EXIT_CODES["failed"]
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            write_json(
-                {"format": "armharness-comparison/1", "exit_code": code, "comparison": comparison}
-            )
+        facts = {"exit_code": code, "comparison": comparison}
+        say_json({"format": "armharness-comparison/1", **facts})
         return code
     for line in lines:
         say(line)

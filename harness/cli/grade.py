@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from harness.cli.arguments import pair, seconds
 from harness.cli.files import one_scenario
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.shared_options import (
     add_json,
     add_overrides,
@@ -90,30 +90,26 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.joint_states, tuple(arguments.objects), dict(arguments.object_poses)
     )
     options = dict(arguments.overrides), arguments.allowed
-    if arguments.json:
-        with only_json_on_stdout() as write_json:
-            grade = grade_bag(scenario, Path(arguments.bag), topics, *options)
-            write_json(_document(grade))
-        return _code(grade)
     grade = grade_bag(scenario, Path(arguments.bag), topics, *options)
-    _print_grade(grade)
+    if arguments.json:
+        say_json(_document(grade))
+    else:
+        _print_grade(grade)
     return _code(grade)
 
 
 def _run_node(arguments: argparse.Namespace) -> int:
     """Grade what a student's node does with the simulated robot."""
+    code, document = _graded_node(arguments)
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            code, document = _graded_node(arguments)
-            write_json(document)
-        return code
-    return _graded_node(arguments)[0]
+        say_json(document)
+    return code
 
 
 def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     from contextlib import nullcontext
 
-    from harness.cli.bridge import bridge_request, show_case, show_wall
+    from harness.cli.bridge import bridge_request, show_case, show_remarks
     from harness.grading.grade import Grade, graded
     from harness.recording.store import read_run
     from harness.ros.bridge import run_bridge
@@ -127,7 +123,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     if case.outcome in ("invalid", "error"):
         if not arguments.json:
             show_case(case, request.run)
-        show_wall(result)
+        show_remarks(result)
         problems = [str(problem) for problem in case.problems]
         code = EXIT_CODES[case.outcome]
         said = {"outcome": case.outcome, "message": case.message, "problems": problems}
@@ -144,7 +140,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
             say("not passed: every point is earned, but a step failed")
         if case.report_dir:
             say(f"report: {case.report_dir}")
-    show_wall(result)
+    show_remarks(result)
     return code, {**_document(grade), "exit_code": code}
 
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from harness.cli.arguments import positive_number, seconds, whole_number
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json, add_plugin, add_report_dir
 from harness.suite.outcome import EXIT_CODES
@@ -27,7 +27,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     add_robot_options(command)
     text = "place this link at the targets (default: the TCP)"
     add("--link", metavar="LINK", default="", help=text)
-    text = "the function claims to return every solution for a target"
+    text = "test that the function returns every solution for a target"
     add("--branches", action="store_true", help=text)
     text = "try N cases of each property (default: 100)"
     add("--examples", metavar="N", type=whole_number, default=100, help=text)
@@ -66,12 +66,10 @@ def run(arguments: argparse.Namespace) -> int:
         patience=arguments.call_limit,
         report_dir=folder,
     )
+    report = run_ik_test(test)
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            report = run_ik_test(test)
-            write_json(report.facts())
+        say_json(report.facts())
     else:
-        report = run_ik_test(test)
         for line in report_lines(report, folder or Path()):
             say(line)
         if folder is not None:

@@ -56,7 +56,9 @@ def run(arguments: argparse.Namespace) -> int:
 def _moveit(arguments: argparse.Namespace) -> int:
     """Write a world for each scene, and a scenario for each request."""
     if not arguments.robot:
-        raise UsageError("MoveIt's files are about a robot: --robot FILE or NAME")
+        raise UsageError(
+            "MoveIt's files do not say which robot they are for: add --robot FILE or --robot NAME"
+        )
     files = [Path(name) for name in arguments.files]
     folder = Path(arguments.output) if arguments.output else files[0].parent / "scenarios"
     if folder.suffix:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from harness.cli.files import run_folder
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.shared_options import STRICT, add_json, add_plugin
 from harness.recording.run import ContactRecord
 from harness.reporting.terminal import PLAIN, Style
@@ -53,16 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
         has_passed = has_passed and not any(verdict.warnings for verdict in verdicts)
     code = 0 if has_passed else EXIT_CODES["failed"]
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            write_json(
-                {
-                    "format": "armharness-verdicts/1",
-                    "exit_code": code,
-                    "verdicts": verdicts,
-                    "contacts": contacts,
-                    "changes": changes,
-                }
-            )
+        found = {"verdicts": verdicts, "contacts": contacts, "changes": changes}
+        say_json({"format": "armharness-verdicts/1", "exit_code": code, **found})
         return code
     style = Style.of(sys.stdout)
     for verdict in verdicts:

@@ -13,7 +13,7 @@ Rows = Iterable[tuple[str, ...]]
 
 def add_options(command: argparse.ArgumentParser) -> None:
     """Add the options of `harness list`."""
-    command.add_argument("kind", choices=tuple(LISTINGS))
+    command.add_argument("kind", choices=tuple(LISTINGS), help="what to list")
     add_plugin(command)
 
 

@@ -21,7 +21,7 @@ COMMANDS = {
     "search": "search for conditions under which a scenario fails",
     "check": "validate scenarios and the reach of their goals",
     "explain": "print the program that a scenario becomes",
-    "list": "list what a scenario may name",
+    "list": "list robots, worlds, steps and all else that a scenario may name",
     "view": "open the page of a run",
     "studio": "open a robot cell in the browser, and make a scenario",
     "judge": "judge a saved run again",
@@ -37,6 +37,8 @@ COMMANDS = {
     "bench": "compare planners on the motions of scenarios",
     "schema": "print the JSON Schema of scenario files",
 }
+JSON_IN_PARTS = ("run", "merge")
+"""Commands that write their JSON case by case, and themselves keep everything else from stdout."""
 MODULES = {"list": "listing", "import": "importing", "ik-test": "ik_test"}
 """Commands whose module in `harness.cli` has another name."""
 
@@ -84,18 +86,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code of the command.
     """
     import gc
+    from contextlib import nullcontext
 
     parsed = _parser().parse_args(arguments)
-    from harness.cli.output import OutputError, complain, guarded
+    from harness.cli.output import OutputError, complain, guarded, only_json_on_stdout
 
     if parsed.command in ("run", "search", "studio"):
         gc.enable()
+    given = getattr(parsed, "json", False) or getattr(parsed, "format", "") == "json"
+    is_json = given and parsed.command not in JSON_IN_PARTS
     ticks = getattr(parsed, "ticks", True) and not getattr(parsed, "in_process", False)
     try:
         if not _load_plugins(getattr(parsed, "plugins", ())):
             return USAGE_EXIT_CODE
         run = _module(parsed.command).run
-        with _package_path(getattr(parsed, "package_folders", ())):
+        json_only = only_json_on_stdout() if is_json else nullcontext()
+        with _package_path(getattr(parsed, "package_folders", ())), json_only:
             code = guarded(lambda: run(parsed), ticks=ticks)
         sys.stdout.flush()
     except BrokenPipeError:

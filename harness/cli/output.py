@@ -216,30 +216,37 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
         return EXIT_CODES["error"]
 
 
-@contextmanager
-def only_json_on_stdout() -> Iterator[Callable[[object], None]]:
-    """Send to stderr whatever prints to stdout meanwhile, native libraries too.
+_documents: list[object] = []
 
-    Yields:
-        A function that writes a document to the true stdout, as JSON.
+
+def say_json(document: object) -> None:
+    """Write a document to stdout as JSON when the command has ended."""
+    _documents.append(document)
+
+
+@contextmanager
+def only_json_on_stdout() -> Iterator[None]:
+    """Send to stderr whatever prints to stdout meanwhile, native libraries too; then the documents.
+
+    A text buffer of the caller's in place of stdout receives everything.
     """
     from harness.reporting.json_text import json_text
 
     sys.stdout.flush()
+    _documents.clear()
     try:
         descriptor = sys.stdout.fileno()
-    except io.UnsupportedOperation:  # stdout is a text buffer of the caller's
-        yield lambda document: output().document(json_text(document))
-        return
-    true_stdout = os.dup(descriptor)
-    os.dup2(2, descriptor)
-    documents: list[object] = []
-    try:
-        yield documents.append
-    finally:
-        output().clear()
-        sys.stdout.flush()
-        os.dup2(true_stdout, descriptor)
-        os.close(true_stdout)
-    for document in documents:
+    except io.UnsupportedOperation:
+        yield
+    else:
+        true_stdout = os.dup(descriptor)
+        os.dup2(2, descriptor)
+        try:
+            yield
+        finally:
+            output().clear()
+            sys.stdout.flush()
+            os.dup2(true_stdout, descriptor)
+            os.close(true_stdout)
+    for document in _documents:
         output().document(json_text(document))

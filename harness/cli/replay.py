@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from harness.cli.files import run_folder
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json, add_plugin
 from harness.suite.outcome import EXIT_CODES
 
@@ -33,17 +33,16 @@ def run(arguments: argparse.Namespace) -> int:
     is_equal = case.digest == recorded.digest
     count = sum(command.kind != "end" for command in recorded.run.commands)
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            write_json(
-                {
-                    "format": "armharness-replay/1",
-                    "outcome": case.outcome,
-                    "commands": count,
-                    "digest": case.digest,
-                    "recorded_digest": recorded.digest,
-                    "is_equal": is_equal,
-                }
-            )
+        say_json(
+            {
+                "format": "armharness-replay/1",
+                "outcome": case.outcome,
+                "commands": count,
+                "digest": case.digest,
+                "recorded_digest": recorded.digest,
+                "is_equal": is_equal,
+            }
+        )
     else:
         say(f"{count} commands replayed; {case.outcome}")
         if case.outcome not in ("passed", "failed"):

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.arguments import whole_number
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json
 from harness.suite.outcome import EXIT_CODES
 
@@ -64,8 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.csv or arguments.parquet:
             return _export(arguments, database, query)
         if arguments.json:
-            with only_json_on_stdout() as write_json:
-                write_json(_document(arguments, database, query))
+            say_json(_document(arguments, database, query))
             return 0
         for line in _lines(arguments, database, query):
             say(line)
@@ -157,15 +156,8 @@ def _compare(arguments: argparse.Namespace, database: sqlite3.Connection) -> int
     found = compare_campaigns(database, other / DATABASE)
     code = EXIT_CODES["failed" if found.is_worse else "passed"]
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            write_json(
-                {
-                    "format": "armharness-campaign-comparison/1",
-                    "exit_code": code,
-                    "is_worse": found.is_worse,
-                    "comparison": found,
-                }
-            )
+        facts = {"exit_code": code, "is_worse": found.is_worse, "comparison": found}
+        say_json({"format": "armharness-campaign-comparison/1", **facts})
         return code
     for line in _comparison_lines(arguments, found):
         say(line)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from harness.cli.arguments import whole_number
 from harness.cli.files import refuse_existing, refusing_unwritable, write_text
-from harness.cli.output import only_json_on_stdout, say
+from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json
 from harness.suite.discovery import UsageError
@@ -85,8 +85,7 @@ def _check(arguments: argparse.Namespace) -> int:
         extra_lines += _draw(description, arguments.state, image)
     code = 0 if checked.report.is_good else 1
     if arguments.json:
-        with only_json_on_stdout() as write_json:
-            write_json({"format": FORMAT, "exit_code": code, "robot": checked.report})
+        say_json({"format": FORMAT, "exit_code": code, "robot": checked.report})
         return code
     say(*page(checked.report, Style.of(sys.stdout)), *extra_lines)
     return code

@@ -18,7 +18,7 @@ def add_robot_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     text = "read groups, states and allowed pairs from this SRDF"
     add("--srdf", metavar="FILE", default="", help=text)
-    text = "look package:// up in this folder, and allow meshes to be read there"
+    text = "find package:// paths in this folder, and allow meshes to be read there"
     add("--package-path", metavar="DIR", action="append", default=[], help=text)
     text = "mount this bundled gripper, or name the SRDF group of the arm's own one"
     add("--gripper", metavar="NAME", default="", help=text)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from harness.cli.arguments import batch_size, whole_number
 from harness.cli.files import one_scenario
-from harness.cli.output import complain, only_json_on_stdout, output, say
+from harness.cli.output import complain, output, say, say_json
 from harness.cli.progress import remaining
 from harness.cli.shared_options import (
     add_hard_cap,
@@ -67,15 +67,13 @@ def add_options(command: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Search for conditions under which a scenario fails; exit code 1 when there are some."""
-    if arguments.json:
-        from harness.failure_search.write import search_document
+    from harness.failure_search.write import search_document
 
-        with only_json_on_stdout() as write_json:
-            found, written, code = _search(arguments)
-            write_json({**search_document(found, written), "exit_code": code})
-        return code
     found, written, code = _search(arguments)
-    _show(arguments, found, written)
+    if arguments.json:
+        say_json({**search_document(found, written), "exit_code": code})
+    else:
+        _show(arguments, found, written)
     return code
 
 

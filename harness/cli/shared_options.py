@@ -61,7 +61,7 @@ def add_package_path(command: argparse.ArgumentParser) -> None:
         action="append",
         type=folder,
         default=[],
-        help="look package:// up in this folder, and allow meshes to be read there",
+        help="find package:// paths in this folder, and allow meshes to be read there",
     )
 
 

@@ -144,7 +144,7 @@ def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
         [file, *more] = discover([word])
     except UsageError as error:
         hint = did_you_mean(word, robot_names(), "robots")
-        raise UsageError(f"{error}; a robot is not called so either: {hint}") from error
+        raise UsageError(f"{error}; no robot has that name either; {hint}") from error
     if more:
         raise UsageError(f"'{word}' has several scenarios; the studio opens one of them")
     text = read_text(file)

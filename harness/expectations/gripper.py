@@ -9,7 +9,12 @@ from pydantic import Field, model_validator
 
 from harness.assertions.contacts import finger_gap, gripper_of
 from harness.assertions.expectation import Predicate
-from harness.assertions.joints import POSITION_ERROR, SLIDING_TOLERANCE, near
+from harness.assertions.joints import (
+    POSITION_ERROR,
+    SLIDING_TOLERANCE,
+    check_tolerance,
+    near,
+)
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amounts
 from harness.assertions.window import (
@@ -73,6 +78,9 @@ class GripperState(Predicate):
         elif hand is not None:
             for key in self.model_fields_set.intersection(("position", "tolerance")):
                 at.scope.check_joint_unit(hand.joint, at.key(key))
+        if self.position is not None and hand is not None:
+            is_given = "tolerance" in self.model_fields_set
+            check_tolerance(at, {hand.joint: self.position}, self.tolerance, is_given)
         if self.named_target is not None and hand is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from harness.assertions.expectation import Predicate
-from harness.assertions.joints import POSITION_ERROR, near
+from harness.assertions.joints import POSITION_ERROR, check_tolerance, near
 from harness.assertions.margins import MarginSignal
 from harness.assertions.window import Window
 from harness.cell.scope import At
@@ -30,6 +30,8 @@ class Joints(Predicate):
     def check(self, at: At) -> None:
         for name in self.positions:
             at.scope.check_joint(name, at.key("positions", name))
+        is_given = "tolerance" in self.model_fields_set
+        check_tolerance(at, self.positions, self.tolerance, is_given)
 
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from its position [rad or m]."""

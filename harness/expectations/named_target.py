@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from harness.assertions.expectation import Predicate
-from harness.assertions.joints import POSITION_ERROR, near
+from harness.assertions.joints import POSITION_ERROR, check_tolerance, near
 from harness.assertions.margins import MarginSignal
 from harness.assertions.window import NotObservable, Window
 from harness.cell.scope import At
@@ -33,6 +33,10 @@ class NamedTarget(Predicate):
     def check(self, at: At) -> None:
         group = at.scope.check_group(self.group, at.key("group"))
         at.scope.check_state(group, self.state, at.key("state"))
+        state = at.scope.description.states_of(group).get(self.state)
+        if state is not None:
+            is_given = "tolerance" in self.model_fields_set
+            check_tolerance(at, state.positions, self.tolerance, is_given)
 
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from the named state [rad or m]."""

@@ -197,7 +197,7 @@ class Sees(Predicate):
         latest = np.searchsorted([each.sample for each in pictures], samples, side="right") - 1
         taken = np.array([each.time for each in pictures])
         age = window.times - taken[latest]
-        return np.where((latest >= 0) & (age <= 1.01 * period(camera, window)), latest, -1)
+        return np.where(age <= 1.01 * period(camera, window), latest, -1)
 
     def _subject(self) -> tuple[str, str]:
         """What is looked for, in a sentence and as a name."""

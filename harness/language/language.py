@@ -14,6 +14,9 @@ from harness.language.expectation import (
 )
 from harness.language.step import Step
 
+PLACEHOLDER_VERB, PLACEHOLDER_WORD = "settle", "within_limits"
+"""What takes the place of a step or an expectation that cannot be read, so that indices stay."""
+
 UNTIL = "until"
 """Stands next to `always`: `{always: A, until: B}` is the expectation `until`."""
 

@@ -179,8 +179,3 @@ def lowered_margins_of(explanation: Mapping[str, Any]) -> tuple[LoweredMargin, .
     """The pairs whose margin was lowered during a step."""
     entries = explanation.get("lowered_margins", [])
     return from_plain(entries, tuple[LoweredMargin, ...], "lowered_margins")
-
-
-def stages_of(explanation: Mapping[str, Any]) -> tuple[Stage, ...]:
-    """The stages in a step's explanation; empty where it has none."""
-    return recorded_explanation(explanation).stages or ()

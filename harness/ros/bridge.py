@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from textwrap import indent
 
 from harness.core.errors import Problem, SpecError
 from harness.ports.simulation import LONGEST_RUN
@@ -39,6 +40,17 @@ class BridgeResult:
     commands: int = 0
     names: tuple[str, ...] = ()
     exit_code: int | None = None
+
+    def remarks(self) -> list[str]:
+        """What is said of wall time, names and the launched program; nothing of it is judged."""
+        has_passed = self.case.outcome == "passed"
+        said = [f"{self.commands} commands; {self.pace}"] if self.pace else []
+        said += self.names
+        if self.exit_code and has_passed:
+            said.append(f"the launched program ended with exit code {self.exit_code}")
+        if self.output and (self.exit_code or not has_passed):
+            said.append(f"the launched program printed:\n{indent(self.output, '  ')}")
+        return said
 
 
 def open_graph(
@@ -101,10 +113,7 @@ def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
     """Run a case whose steps may start the request's nodes, in a domain of its own."""
     with free_domain() as domain:
         result = run_bridge(BridgeRequest(request, domain, nodes=request.nodes), notify)
-    said = [*result.names, *([result.pace] if result.pace else [])]
-    if result.output and result.case.outcome != "passed":
-        said.append(f"the launched program printed: {result.output}")
-    return replace(result.case, notes=(*result.case.notes, *said))
+    return replace(result.case, notes=(*result.case.notes, *result.remarks()))
 
 
 def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:

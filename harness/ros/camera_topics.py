@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import cache, partial
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +18,6 @@ from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
 from harness.ros.graph import Graph, Publisher
 from harness.ros.interfaces import message, stamp
-
-if TYPE_CHECKING:
-    from harness.cameras.renderer import Renderer
 
 Drawn = tuple[np.ndarray, bytes]
 """A picture as the camera delivers it, and as a JPEG."""
@@ -91,8 +90,8 @@ class CameraTopics:
         self._topics = [_Topics.of(graph, camera) for camera in cameras]
         self._scene = tuple(cameras), description, tuple(objects), seed
         self._next = [0.0] * len(cameras)
-        self._painter: ProcessPoolExecutor | None = None
-        self._pending: tuple[_Topics, float, Future[Drawn | None]] | None = None
+        self._painter: tuple[BaseProcess, Connection] | None = None
+        self._pending: tuple[_Topics, float] | None = None
 
     def publish(
         self,
@@ -110,30 +109,48 @@ class CameraTopics:
             poses: Returns T_world_object of the objects that are there (xyz, quat wxyz), shape
                 (7,) each.
         """
-        if self._pending is not None and self._pending[2].done():
-            topics, drawn_at, future = self._pending
-            self._pending = None
-            if future.exception() is not None:  # it cannot draw; the run does not depend on it
-                self._topics.clear()
-            elif (drawn := future.result()) is not None:
-                topics.publish(drawn_at, drawn)
+        self._send_finished()
         for number, topics in enumerate(self._topics):
             if time < self._next[number] - 1e-9:
                 continue
             self._next[number] = time + 1.0 / topics.camera.update_rate
             topics.publish_info(time)
             if topics.are_watched and self._pending is None:
-                if self._painter is None:  # a fork inherits locks and OpenGL
-                    context = multiprocessing.get_context("spawn")
-                    self._painter = ProcessPoolExecutor(1, context, _prepare, self._scene)
-                request = topics.camera.name, sample, positions, poses()
-                self._pending = topics, time, self._painter.submit(_draw, *request)
+                self._pending = topics, time
+                self._connection.send((topics.camera.name, sample, positions, poses()))
 
     def close(self) -> None:
         """End the process that draws."""
         if self._painter is not None:
-            self._painter.shutdown(cancel_futures=True)
+            process, connection = self._painter
+            connection.close()
+            process.terminate()
+            process.join(5)
             self._painter = self._pending = None
+
+    @property
+    def _connection(self) -> Connection:
+        if self._painter is None:
+            ours, theirs = multiprocessing.Pipe()
+            # a fork inherits locks and OpenGL, and a worker of an executor outlives a killed parent
+            context = multiprocessing.get_context("spawn")
+            process = context.Process(target=_paint, args=(theirs, ours, *self._scene), daemon=True)
+            process.start()
+            theirs.close()
+            self._painter = process, ours
+        return self._painter[1]
+
+    def _send_finished(self) -> None:
+        if self._painter is None or self._pending is None or not self._painter[1].poll():
+            return
+        (topics, time), self._pending = self._pending, None
+        try:
+            drawn: Drawn | None = self._painter[1].recv()
+        except EOFError:  # it could not draw; the run does not depend on it
+            self._topics.clear()
+            return
+        if drawn is not None:
+            topics.publish(time, drawn)
 
 
 def camera_info(camera: Camera, time: float) -> Any:
@@ -157,55 +174,39 @@ def _header(camera: Camera, time: float) -> Any:
     return message("std_msgs/msg/Header", stamp=stamp(time), frame_id=frame)
 
 
-# -- in the process that draws ------------------------------------------------------------------
+def _paint(
+    requests: Connection,
+    parent: Connection,
+    cameras: Sequence[Camera],
+    description: RobotDescription,
+    objects: Sequence[WorldObject],
+    seed: int,
+) -> None:
+    """Draw what is requested, one picture after the other, until the pipe closes.
 
+    The answer is None while the camera's carrier is not in the scene.
+    """
+    from harness.cameras.camera_scene import CameraScene
+    from harness.cameras.captures import jpeg
+    from harness.cameras.renderer import make_renderer
+    from harness.cameras.sensor import as_delivered
+    from harness.robot.forward_kinematics import robot_poses
 
-class _Painter:
-    """The scene and its renderers, by the size of their pictures."""
-
-    def __init__(
-        self,
-        cameras: Sequence[Camera],
-        description: RobotDescription,
-        objects: Sequence[WorldObject],
-        seed: int,
-    ) -> None:
-        from harness.cameras.camera_scene import CameraScene
-
-        self._scene = CameraScene(description, objects, cameras)
-        self._cameras = {camera.name: camera for camera in cameras}
-        self._description, self._seed = description, seed
-        self._renderers: dict[tuple[int, int], Renderer] = {}
-
-    def draw(
-        self, name: str, sample: int, positions: np.ndarray, rows: Mapping[str, np.ndarray]
-    ) -> Drawn | None:
-        """A camera's picture; None while its carrier is not in the scene."""
-        from harness.cameras.captures import jpeg
-        from harness.cameras.renderer import make_renderer
-        from harness.cameras.sensor import as_delivered
-        from harness.robot.forward_kinematics import robot_poses
-
-        camera = self._cameras[name]
-        poses = robot_poses(self._description, positions)
+    parent.close()
+    scene, known = CameraScene(description, objects, cameras), {c.name: c for c in cameras}
+    make = cache(partial(make_renderer, scene.picture))
+    while True:
+        try:
+            name, sample, positions, rows = requests.recv()
+        except (EOFError, KeyboardInterrupt):
+            return
+        camera, poses = known[name], robot_poses(description, positions)
         poses |= {each: SE3.from_vector(row) for each, row in rows.items()}
-        self._scene.picture.pose(poses)
-        view = self._scene.view(camera, poses)
-        if view is None:
-            return None
-        size = camera.width, camera.height
-        if size not in self._renderers:
-            self._renderers[size] = make_renderer(self._scene.picture, *size)
-        picture = as_delivered(self._renderers[size].render(view), camera, self._seed, sample)
-        return picture, jpeg(picture, camera)
-
-
-_painters: list[_Painter] = []
-
-
-def _prepare(*scene: Any) -> None:
-    _painters.append(_Painter(*scene))
-
-
-def _draw(*request: Any) -> Drawn | None:
-    return _painters[0].draw(*request)
+        scene.picture.pose(poses)
+        view = scene.view(camera, poses)
+        drawn: Drawn | None = None
+        if view is not None:
+            ideal = make(camera.width, camera.height).render(view)
+            picture = as_delivered(ideal, camera, seed, sample)
+            drawn = picture, jpeg(picture, camera)
+        requests.send(drawn)

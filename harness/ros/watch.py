@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.language.expectation import ExpectationFields
 from harness.ports.external import ExternalRequest
-from harness.recording.run import ObjectRecord, RobotRecord, Run, Signals, StepRecord
+from harness.recording.run import ObjectRecord, RobotRecord, Run, StepRecord
+
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 EVERY, SHARE = 0.5, 0.05
 """Simulated time between two looks [s], and at least this share of the step's time: a look reads
 the whole record. Wall time has no part in it, so that a replay ends alike."""
-
-
-class Recorder(Protocol):
-    """The part of the simulator that is looked at."""
-
-    @property
-    def sample_count(self) -> int: ...
-    @property
-    def time(self) -> float: ...
-    def finish(self) -> Signals: ...
 
 
 @dataclass
@@ -31,7 +24,7 @@ class Watch:
     """Looks at one step's `until`."""
 
     request: ExternalRequest
-    recorder: Recorder
+    recorder: MujocoSimulator
     robot: RobotRecord
     objects: tuple[ObjectRecord, ...]
 

@@ -126,7 +126,7 @@ class GoalActions(LiveStudio):
         self.session.broadcast(
             {
                 "type": "reach",
-                "pose": [round(float(value), 5) for value in pose.as_vector()],
+                "pose": [round(float(value), 9) for value in pose.as_vector()],
                 "refusal": printable(reach.refusal),
                 "ways": [
                     {"name": way.name or f"way {number}", "refusal": printable(way.refusal)}

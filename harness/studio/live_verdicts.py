@@ -59,6 +59,6 @@ class LiveVerdicts:
 
 
 def _message(judged: Judged) -> Message:
-    top_level = [each for each in judged.run.steps if "[" not in each.path.partition("[")[2]]
+    top_level = [each for each in judged.run.steps if "." not in each.path]
     verdicts = zip(judged.verdicts, judged.is_decided, strict=True)
     return verdicts_message(judged.outcome, judged.digest, top_level, verdicts)

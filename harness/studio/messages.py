@@ -8,7 +8,6 @@ import numpy as np
 
 from harness.core.errors import Problem
 from harness.core.printable import printable
-from harness.language.step import STEPS
 from harness.recording.run import StepRecord
 from harness.reporting.explanation import explanation_lines
 from harness.studio.language_help import GRIPPER_TARGET, Names
@@ -63,7 +62,6 @@ def robot_message(cell: LiveCell) -> Message:
         "worlds": bundled_worlds(),
         "planners": list(planner_names()),
         "verbs": list(MOTIONS),
-        "steps": [f"{verb}: " for verb in STEPS],
         "cameras": list(cell.prepared.program.cameras),
     }
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from harness.core.lazy import LazySequence
 from harness.session.run_request import RunRequest
@@ -20,40 +20,10 @@ from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
 from harness.suite.stream import file_hash
-from harness.suite.variation import Case
+from harness.suite.variation import Case, Cases
 
-
-class CaseSource(Protocol):
-    """The cases of a file, each made when it is read."""
-
-    def __len__(self) -> int: ...
-
-    def __getitem__(self, index: int, /) -> Case: ...
-
-    def name(self, index: int) -> str:
-        """The name of a case, without making it."""
-        ...
-
-    def group(self, index: int) -> str | None:
-        """The name of the parametrised case that a case is a sample of; None where it is none."""
-        ...
-
-
-class SampledConditions(Protocol):
-    """Samples that are known before a suite is planned."""
-
-    @property
-    def digest(self) -> str:
-        """Hash of the samples."""
-        ...
-
-    def check(self, files: Sequence[Path]) -> None:
-        """Refuse a file without samples with a UsageError."""
-        ...
-
-    def cases(self, file: Path, *, is_alone: bool) -> CaseSource:
-        """The samples of a file."""
-        ...
+if TYPE_CHECKING:
+    from harness.suite.conditions import Conditions, FileConditions
 
 
 @dataclass(frozen=True)
@@ -93,7 +63,7 @@ class SuiteRequest:
     strict: bool = False
     reporters: Sequence[str] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
-    conditions: SampledConditions | None = None
+    conditions: Conditions | None = None
     share: bool = True
     live: str = ""
 
@@ -113,7 +83,7 @@ class FileCases:
     file: Path
     header: ScenarioHeader
     folder: Path | None
-    cases: CaseSource
+    cases: Cases | FileConditions
     request: SuiteRequest
 
 
@@ -248,7 +218,7 @@ def _header(header: ScenarioHeader, request: SuiteRequest) -> ScenarioHeader:
 
 def _cases(
     file: Path, header: ScenarioHeader, request: SuiteRequest, *, is_alone: bool
-) -> CaseSource:
+) -> Cases | FileConditions:
     if request.conditions is not None:
         return request.conditions.cases(file, is_alone=is_alone)
     return header.variation.cases(request.seed, request.samples)

@@ -57,98 +57,74 @@ def check_cluster(name: str) -> None:
 
 
 class RayCluster:
-    """A connection to a Ray cluster, or a cluster on this machine, while cases run.
+    """Cases that run on a Ray cluster; a process or node that ends costs time and no case.
 
     Attributes:
         processors: The processor families of the nodes that have returned results.
     """
 
-    def __init__(self, name: str, workers: int) -> None:
-        """Remember the cluster.
+    def __init__(
+        self,
+        jobs: Sequence[RunRequest],
+        *,
+        hard_cap: float | None = None,
+        is_needless: Chooser = never_needless,
+        function: BatchFunction = run_batch,
+    ) -> None:
+        """Run nothing yet.
+
+        Args:
+            jobs: The cases, of which only those under way are in memory.
+            hard_cap: Wall seconds a case may take; None: the program's own.
+            is_needless: Called with each index before its case is sent; a needless one is skipped.
+            function: What a process of a node calls; importable there by its name.
+        """
+        self.processors: set[str] = set()
+        self._jobs = jobs
+        self._hard_cap = hard_cap
+        self._is_needless = is_needless
+        self._function = function
+        self._next = 0
+        self._alone: list[int] = []  # cases of batches that failed, which run alone
+        self._seconds, self._cases = 0.0, 0
+
+    def run(
+        self, name: str, workers: int, files: Sequence[Path]
+    ) -> Iterator[tuple[int, CaseResult]]:
+        """Make batches of about the same duration, and collect their results.
 
         Args:
             name: `ray` for processes on this machine, or for the cluster that RAY_ADDRESS names;
                 else `ray://HOST:PORT`.
             workers: Processes on this machine.
-        """
-        self._name = name
-        self._workers = workers
-        self.processors: set[str] = set()
-
-    def run(
-        self,
-        jobs: Sequence[RunRequest],
-        files: Sequence[Path],
-        *,
-        hard_cap: float | None = None,
-        is_needless: Chooser = never_needless,
-        function: BatchFunction = run_batch,
-    ) -> Iterator[tuple[int, CaseResult]]:
-        """Run every case on some node; a process or node that ends costs time and no case.
-
-        Args:
-            jobs: The cases, of which only those under way are in memory.
             files: The scenario files of the cases.
-            hard_cap: Wall seconds a case may take; None: the program's own.
-            is_needless: Called with each index before its case is sent; a needless one is skipped.
-            function: What a process of a node calls; importable there by its name.
 
         Yields:
-            (index into `jobs`, result) in the order in which batches end. The reports are in their
-            folders on this machine.
+            (index into the cases, result) in the order in which batches end. The reports are in
+            their folders on this machine.
 
         Raises:
             HarnessError: The cluster cannot be reached, or a node has another installation.
         """
-        if all(is_needless(index) for index in range(len(jobs))):
+        if all(self._is_needless(index) for index in range(len(self._jobs))):
             return
-        with _connected(self._name, self._workers) as ray:
-            yield from _Batches(ray, self, jobs, files, hard_cap, is_needless, function).run()
-
-
-class _Batches:
-    """Makes batches of about the same duration, and collects their results."""
-
-    def __init__(
-        self,
-        ray: Any,
-        cluster: RayCluster,
-        jobs: Sequence[RunRequest],
-        files: Sequence[Path],
-        hard_cap: float | None,
-        is_needless: Chooser,
-        function: BatchFunction,
-    ) -> None:
-        self._ray = ray
-        self._cluster = cluster
-        self._jobs = jobs
-        self._hard_cap = hard_cap
-        self._is_needless = is_needless
-        self._task = ray.remote(num_cpus=1, max_retries=RETRIES)(function)
-        self._files = ray.put(_files_of(files))
-        self._next = 0
-        self._alone: list[int] = []  # cases of batches that failed, which run alone
-        self._running: dict[Any, Batch] = {}
-        self._seconds, self._cases = 0.0, 0
-
-    def run(self) -> Iterator[tuple[int, CaseResult]]:
-        """Yield results until every needed case has one."""
-        processes = int(self._ray.cluster_resources().get("CPU", 1))
-        try:
-            while True:
-                while len(self._running) < BATCHES_FOR_EACH_PROCESS * processes:
-                    batch = self._batch()
-                    if batch is None:
-                        break
-                    self._running[self._task.remote(batch, self._files)] = batch
-                if not self._running:
-                    return
-                ready, _ = self._ray.wait(list(self._running), num_returns=1, timeout=PATIENCE)
-                for reference in ready:
-                    yield from self._results(reference, self._running.pop(reference))
-        finally:
-            for reference in self._running:
-                self._ray.cancel(reference, force=True)
+        with _connected(name, workers) as ray:
+            task = ray.remote(num_cpus=1, max_retries=RETRIES)(self._function)
+            sent = ray.put(_files_of(files))
+            most = BATCHES_FOR_EACH_PROCESS * int(ray.cluster_resources().get("CPU", 1))
+            running: dict[Any, Batch] = {}
+            try:
+                while True:
+                    while len(running) < most and (batch := self._batch()):
+                        running[task.remote(batch, sent)] = batch
+                    if not running:
+                        return
+                    ready, _ = ray.wait(list(running), num_returns=1, timeout=PATIENCE)
+                    for reference in ready:
+                        yield from self._results(ray, reference, running.pop(reference))
+            finally:
+                for reference in running:
+                    ray.cancel(reference, force=True)
 
     def _batch(self) -> Batch | None:
         """The next cases; None when all are under way."""
@@ -168,10 +144,10 @@ class _Batches:
             return 1
         return max(1, min(MOST_CASES, round(BATCH_SECONDS * self._cases / self._seconds)))
 
-    def _results(self, reference: Any, batch: Batch) -> Iterator[tuple[int, CaseResult]]:
+    def _results(self, ray: Any, reference: Any, batch: Batch) -> Iterator[tuple[int, CaseResult]]:
         try:
-            done: BatchResult = self._ray.get(reference)
-        except self._ray.exceptions.RayError as error:
+            done: BatchResult = ray.get(reference)
+        except ray.exceptions.RayError as error:
             if len(batch.cases) > 1:  # one of them may be to blame
                 self._alone += [index for index, _ in batch.cases]
                 return
@@ -183,7 +159,7 @@ class _Batches:
                 f"{done.refusal}; results of different installations are not mixed: install the"
                 " same version everywhere"
             )
-        self._cluster.processors.add(done.processor)
+        self.processors.add(done.processor)
         self._seconds, self._cases = self._seconds + done.seconds, self._cases + len(batch.cases)
         for index, result, packed in done.results:
             yield index, self._reported(index, result, packed)

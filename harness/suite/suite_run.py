@@ -152,12 +152,9 @@ class SuiteRun:
         if how.cluster:
             from harness.suite.ray_cluster import RayCluster  # the extra `cluster`
 
-            cluster = RayCluster(how.cluster, how.workers)
+            cluster = RayCluster(self.jobs, hard_cap=how.hard_cap, is_needless=self.is_needless)
             self.processors = cluster.processors
-            files = [each.file for each in self.plan.files]
-            return cluster.run(
-                self.jobs, files, hard_cap=how.hard_cap, is_needless=self.is_needless
-            )
+            return cluster.run(how.cluster, how.workers, [each.file for each in self.plan.files])
         return run_isolated(
             self.jobs,
             server,

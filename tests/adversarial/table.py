@@ -103,6 +103,15 @@ how much the grip explains; it now counts the one and has no opinion of the othe
 | `clearance` | 897 | 100 |
 
 Eight runs are part of each test run; `pytest -m second_opinion` compares a thousand.
+
+The package's own tests notice errors in this code (`tests/code_mutation`): cosmic-ray changes one
+operator, number or name of expectations, observation, verification, digest or engine at random, and
+the tests that execute the line must fail. Of 66 mutants of the first draw 41 were noticed, of 50 of
+a later one 37. Of the 66 of the last one (seed 20261123) 58 were; two of the others change nothing
+(`survivors.yaml` says why), so that it is 58 of 64. The six led to a test each: an outline of a
+tilted cylinder, a support without shapes, a pair named by the wrong body, a step that moves objects
+from the first sample on, a group that there is not on a step that ignores it, and the margin of a
+moment without a collision. `pytest -m code_mutation` draws more; it requires 95 %.
 """
 
 

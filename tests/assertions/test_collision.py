@@ -7,6 +7,7 @@ import pytest
 
 from harness.assertions.collision import colliding
 from harness.core.geometry import Box
+from harness.expectations.always import Always
 from harness.expectations.collision import Collision
 from harness.expectations.eventually import Eventually
 from harness.expectations.never import Never
@@ -53,6 +54,12 @@ def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_dura
     )
     assert answer.measures[0].detail == "arm_link and wall"
     assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"
+
+
+def test_a_moment_without_a_collision_is_one_newton_from_one_by_definition():
+    answer = verdict(touching("arm_link", "wall", (30, 41)), Always(predicate=Collision()))
+    assert (answer.status, answer.margin, answer.unit) == ("failed", -1.0, "N")
+    assert answer.reason.startswith("no collision at this moment")
 
 
 def test_the_least_force_between_robot_and_wall_is_a_collision():

@@ -171,6 +171,7 @@ def test_a_step_that_puts_objects_somewhere_makes_no_jump_of_theirs_a_missed_con
         ("move_object", 10, 19, False),
         ("move_object", 10, 18, True),
         ("move_object", 21, 25, True),
+        ("move_object", 0, 25, False),
     ):
         steps = (step("put", first, last, verb),)
         run = make_run(N, object_poses={"box": poses}, steps=steps)

@@ -6,36 +6,12 @@ import numpy as np
 import pytest
 
 from harness.assertions.support import SINKING, is_below, lowest_points, rides_on, supports
-from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from harness.core.geometry import Mesh, Shape, Sphere
 from harness.core.spatial import SE3
+from tests.assertions.surfaces import GEOMETRIES, surface_of
 from tests.assertions.synthetic_run import BOX, TABLE, at, force, make_run, thing
 
 N = 4
-
-
-def surface_of(geometry, rng):
-    """Points of a shape's surface in its own frame, among them those that matter for its height."""
-    round_about = rng.uniform(0, 2 * np.pi, 4000)
-    circle = np.stack([np.cos(round_about), np.sin(round_about), 0 * round_about], axis=1)
-    up = np.array([0.0, 0.0, 1.0])
-    match geometry:
-        case Box(size=size):
-            return (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5) * size
-        case Sphere(radius=radius):
-            return radius * unit_vectors(rng, 40000)
-        case Cylinder(radius=radius, length=length):
-            return np.concatenate([radius * circle + side * length / 2 * up for side in (-1, 1)])
-        case Capsule(radius=radius, length=length):
-            ball = radius * unit_vectors(rng, 40000)
-            return np.concatenate([ball + side * length / 2 * up for side in (-1, 1)])
-
-
-def unit_vectors(rng, count):
-    vectors = rng.normal(size=(count, 3))
-    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
-
-
-GEOMETRIES = (Box((0.1, 0.06, 0.2)), Sphere(0.05), Cylinder(0.05, 0.3), Capsule(0.04, 0.3))
 
 
 @pytest.mark.parametrize("geometry", GEOMETRIES, ids=lambda geometry: type(geometry).__name__)
@@ -75,6 +51,11 @@ def test_one_shape_that_is_low_enough_suffices_and_an_unknown_body_is_not_below(
     over = replace(TABLE, shapes=(high,))
     assert not is_below(make_run(N, objects=(over, BOX)), "Table", "box").any()
     assert not is_below(make_run(N), "arm_link", "box").any()
+    bare = replace(TABLE, shapes=())
+    assert is_below(make_run(N, objects=(bare, BOX)), "Table", "box").all(), "its origin is below"
+    raised = {"Table": at(N, (0, 0, 0.1))}
+    run = make_run(N, objects=(bare, BOX), object_poses=raised)
+    assert not is_below(run, "Table", "box").any()
 
 
 def test_forces_from_below_count_whichever_of_the_two_is_named_first():

@@ -22,24 +22,10 @@ from harness.suite.stream import Stream, StreamEntry, entry_of
 from harness.suite.suite_run import SuiteOptions, SuiteRun
 from harness.suite.warm import WarmServer
 from tests.benchmarks.test_suites import picks
+from tests.suite.ball import ball
 
 pytestmark = pytest.mark.benchmark
 
-SCENARIO = """\
-scenario: A ball with a limit
-robot: open_manipulator_x
-params: {x: 0.0}
-objects:
-  - {name: ball, sphere: {radius: 2 cm}, pose: {xyz: ["${x}", 0.2, 0.5]}, static: true}
-steps:
-  - wait: 2 ms
-expect:
-  - formula: "always (x(ball) < 0.3)"
-randomize:
-  x: {uniform: [-20 cm, 40 cm]}
-samples: 2
-expect_rate: {at_least: 50 %, stop_early: false}
-"""
 PARTS = 2
 
 
@@ -57,7 +43,7 @@ def command(folder, *words):
 
 def parts_of(folder, count):
     """Report folders of parts with that many results, each a copy of one that was computed."""
-    (folder / "ball.scenario.yaml").write_text(SCENARIO)
+    (folder / "ball.scenario.yaml").write_text(ball(2))
     command(folder, "run", "ball.scenario.yaml", "--shard", "1/1", "--report-dir", "one")
     line = (folder / "one/results.jsonl").read_bytes().splitlines(keepends=True)[0]
     entry = entry_of(line)
@@ -112,7 +98,7 @@ def test_the_memory_of_a_driver_does_not_grow_with_the_number_of_cases(tmp_path,
     )
     stream = Stream(tmp_path)
     for number, (index, result) in enumerate(
-        RayCluster("ray", 2).run(jobs, [], function=trivial), start=1
+        RayCluster(jobs, function=trivial).run("ray", 2, []), start=1
     ):
         stream.write(jobs[index], result)
         if number in (1_000, 10_000, count):

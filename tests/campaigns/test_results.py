@@ -11,22 +11,9 @@ from harness.cli.main import main
 from harness.recording.run import Verdict
 from harness.reporting.result import CaseResult
 from harness.suite.stream import StreamEntry
+from tests.suite.ball import ball
 
-SCENARIO = """\
-scenario: A ball with a limit
-robot: open_manipulator_x
-tags: [ball]
-params: {x: 0.0}
-objects:
-  - {name: ball, sphere: {radius: 2 cm}, pose: {xyz: ["${x}", 0.2, 0.5]}, static: true}
-steps:
-  - wait: 2 ms
-expect:
-  - formula: "always (x(ball) < 0.3)"
-randomize:
-  x: {uniform: [-20 cm, 60 cm]}
-samples: 8
-"""
+SCENARIO = ball(8, rest="tags: [ball]\n", farthest="60 cm")
 
 
 def entry(number, margin, *, line=7, seed=None, tag="pick", **values):

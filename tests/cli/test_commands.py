@@ -67,7 +67,7 @@ def test_the_version_is_the_packages(capsys):
         (["run", "x", "-j", "0"], "'0' is not a number from 1"),
         (["run", "x", "--hard-cap", "-1"], "'-1' is not a number of seconds above 0"),
         (["list", "robot"], "robots"),
-        (["sweep", "x"], "invalid choice"),
+        (["sweep", "x"], "is not valid"),
         (["run", "x", "--out", "here"], "there is no option --out; did you mean --report-dir?"),
         (["check", "x", "--fromat=json"], "did you mean --format?"),
         (["robot", "check", "ur3e", "--wrold"], "`harness robot check --help` lists the options"),

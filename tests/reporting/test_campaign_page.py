@@ -41,15 +41,28 @@ def page_file(tmp_path_factory):
     return write_suite_page(folder, SuiteRecord("failed", cases))
 
 
+FIND = """
+words => {
+  const canvas = document.querySelector("#map canvas");
+  const said = document.querySelector("#map output");
+  const box = canvas.getBoundingClientRect();
+  for (let x = box.left + 60; x < box.right - 10; x += 9) {
+    for (let y = box.top + 24; y < box.bottom - 34; y += 9) {
+      canvas.dispatchEvent(new PointerEvent("pointermove", { clientX: x, clientY: y }));
+      if (said.textContent.includes(words)) return [x, y];
+    }
+  }
+}
+"""
+
+
 def place_of(page, words):
-    """Where on the map a run is whose description has these words; found as a user does."""
-    box = page.locator("#map canvas").bounding_box()
-    for x in range(60, int(box["width"]) - 10, 9):
-        for y in range(12, int(box["height"]) - 34, 9):
-            page.mouse.move(box["x"] + x, box["y"] + y)
-            if words in page.locator("#map output").inner_text():
-                return box["x"] + x, box["y"] + y
-    raise AssertionError(f"no run on the map says '{words}'")
+    """Where on the map a run is whose description has these words."""
+    place = page.evaluate(FIND, words)
+    assert place, f"no run on the map says '{words}'"
+    page.mouse.move(*place)
+    assert words in page.locator("#map output").inner_text()
+    return place
 
 
 def test_a_failed_run_on_the_map_is_described_and_opens_with_a_click(page_file, visit):

@@ -1,5 +1,6 @@
 """JUnit XML, results and GitHub's words of a suite, read by others."""
 
+import io
 import json
 import math
 from dataclasses import replace
@@ -13,7 +14,7 @@ from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of, short_lines
 from harness.reporting.suite.github import error_annotations, job_summary
 from harness.reporting.suite.history import history_of
-from harness.reporting.suite.junit import junit_xml
+from harness.reporting.suite.junit import JunitWriter
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
 from harness.reporting.terminal import causes, failure_place, root_failures
@@ -45,6 +46,15 @@ SCHEMA = {
     "error": ({"message", "type"}, set(), []),
     "system-out": (set(), set(), []),
 }  # fmt: skip
+
+
+def junit_xml(record):
+    """The JUnit document of a suite as text."""
+    writer, text = JunitWriter(record), io.BytesIO()
+    for case in record.cases:
+        writer.add(case)
+    writer.write(text)
+    return text.getvalue().decode()
 
 
 def check_schema(element):

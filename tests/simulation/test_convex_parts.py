@@ -10,11 +10,13 @@ import pytest
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.language.world import ObjectSpec
+from harness.planning.collision.scene import CoalScene
 from harness.robot.load import load_robot
 from harness.robot.solids import coal_geometry
 from harness.simulation.model import build_model
 from harness.world.objects import resolve_object
 from tests.engine.front_door import check, run
+from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
 
 ARM = "{model: open_manipulator_x}"
@@ -118,6 +120,40 @@ def test_planner_and_physics_agree_on_random_poses_of_a_body_near_a_bin(tmp_path
             agreed.append((frozenset(("bin", "probe")) in touching, apart < 0))
     assert all(one == other for one, other in agreed)
     assert 0.2 < np.mean([one for one, _ in agreed]) < 0.8
+
+
+def test_planner_and_physics_agree_on_random_states_of_an_arm_of_meshes(tmp_path):
+    ring = {"sides": 6, "outer": 0.45, "inner": 0.4, "height": 0.3, "floor": 0.02}
+    write_obj(tmp_path / "ring.obj", *vessel(**ring))
+    cup_file(tmp_path)
+    mesh = '<collision><origin xyz="0 0 {}"/><geometry><mesh filename="{}.obj"/></geometry>'
+    upper, wrist = mesh.format(-0.1, "ring"), mesh.format(0.1, "cup")
+    before, first, between, last = URDF.split(SHAPE.removesuffix("</collision>"))
+    urdf = before + upper + first + SHAPE.removesuffix("</collision>") + between + wrist + last
+    (tmp_path / "arm.urdf").write_text(urdf.replace('lower="-2" upper="2"', 'lower="-3" upper="3"'))
+    (tmp_path / "arm.srdf").write_text(SRDF.replace('link2="wrist"', 'link2="lower"'))
+    arm = load_robot(RobotSpec(urdf="arm.urdf", srdf="arm.srdf"), tmp_path)
+    scene = CoalScene(arm)
+    physics = build_model(arm, [], [], gravity=(0, 0, 0), timestep=0.001)
+    data = mujoco.MjData(physics.model)
+    rng, agreed = np.random.default_rng(0), []
+    for _ in range(300):
+        state = dict(zip(arm.joint_names, rng.uniform([-3, -3, 0], [3, 3, 0.2]), strict=True))
+        for name, position in state.items():
+            data.joint(name).qpos = position
+        mujoco.mj_forward(physics.model, data)
+        touching = {
+            frozenset(physics.body_names[physics.model.geom_bodyid[geom]] for geom in contact.geom)
+            for contact in data.contact
+            if contact.dist < 0
+        }
+        for touch, _ in scene.distances(np.array(list(state.values()))):
+            if abs(touch.distance) > 1e-4:
+                agreed.append(
+                    (frozenset((touch.first, touch.second)) in touching, touch.distance < 0)
+                )
+    assert all(one == other for one, other in agreed)
+    assert 0.1 < np.mean([one for one, _ in agreed]) < 0.9
 
 
 def test_an_unknown_link_of_the_robots_collision_is_reported(tmp_path):

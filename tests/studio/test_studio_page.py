@@ -270,6 +270,27 @@ def test_completion_offers_what_the_robot_has(opened):
     opened.wait("document.querySelectorAll('#problems button').length === 0")
 
 
+def test_the_field_of_a_step_is_completed(opened):
+    opened.page.evaluate("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
+
+    def offered(text):
+        opened.page.fill("#step-text", text)
+        opened.wait(f"[...document.querySelectorAll('#continuations option')].some({starts(text)})")
+        return opened.page.evaluate(OFFERED)
+
+    assert {"pick: ", "place: ", "wait: "} <= set(offered(""))
+    assert "place: {object: x, pose: " in offered("place: {object: x, ")
+    assert "move_to: home" in offered("move_to: ")
+    opened.page.fill("#step-text", "")
+
+
+OFFERED = "[...document.querySelectorAll('#continuations option')].map((each) => each.value)"
+
+
+def starts(text):
+    return f"(each) => each.value !== {text!r} && each.value.startsWith({text!r})"
+
+
 VISIBLE = """
 [...document.querySelectorAll("button, input, select, summary, textarea")].filter((e) =>
   e.checkVisibility() && !e.closest(".ace_search") && !e.closest(".ace_editor.ace_autocomplete"))

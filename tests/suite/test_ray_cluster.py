@@ -1,9 +1,11 @@
 """`--on ray`: the same results as locally, whatever is killed meanwhile."""
 
+import contextlib
 import json
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -12,23 +14,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.suite.ball import RATE, ball
+
 pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
 
-SCENARIO = """\
-scenario: A ball with a limit
-robot: open_manipulator_x
-params: {x: 0.0}
-objects:
-  - {name: ball, sphere: {radius: 2 cm}, pose: {xyz: ["${x}", 0.2, 0.5]}, static: true}
-steps:
-  - wait: 2 ms
-expect:
-  - formula: "always (x(ball) < 0.3)"
-randomize:
-  x: {uniform: [-20 cm, 40 cm]}
-samples: COUNT
-expect_rate: {at_least: 50 %, stop_early: EARLY}
-"""
 ENVIRONMENT = {**os.environ, "RAY_AUTH_MODE": "disabled", "RAY_USAGE_STATS_ENABLED": "0"}
 
 
@@ -43,9 +32,8 @@ def harness(folder, *words, **environment):
     )  # fmt: skip
 
 
-def scenario(folder, count, early="false"):
-    text = SCENARIO.replace("COUNT", str(count)).replace("EARLY", early)
-    (folder / "ball.scenario.yaml").write_text(text)
+def scenario(folder, count, rest=RATE):
+    (folder / "ball.scenario.yaml").write_text(ball(count, rest))
 
 
 def journal(folder):
@@ -106,7 +94,7 @@ def test_two_ray_processes_give_the_results_of_a_local_run(local):
 
 
 def test_a_sequential_test_ends_the_sampling_at_the_same_sample(tmp_path):
-    scenario(tmp_path, 200, early="true")
+    scenario(tmp_path, 200, RATE.replace("false", "true"))
     harness(tmp_path, "-j", "2", "--report-dir", "local")
     harness(tmp_path, "-j", "2", "--on", "ray", "--report-dir", "ray")
     assert document(tmp_path / "ray") == document(tmp_path / "local")
@@ -163,6 +151,41 @@ def test_a_killed_node_loses_and_repeats_no_case(local, cluster):
     cluster.remove_node(lost, allow_graceful=False)
     assert running.wait() == 0
     assert journal(local / "node") == journal(local / "local")
+
+
+@pytest.fixture
+def head():
+    """The address of a cluster that is reached through Ray's client."""
+    ray = Path(sys.executable).with_name("ray")
+    started = subprocess.Popen(
+        [ray, "start", "--head", "--block", "--node-ip-address=127.0.0.1", "--port=26379",
+         "--ray-client-server-port=21001", "--num-cpus=2", "--include-dashboard=false"],
+        env=ENVIRONMENT, start_new_session=True, stdout=subprocess.DEVNULL,
+    )  # fmt: skip
+    wait_for(lambda: answers(21001))
+    yield "ray://127.0.0.1:21001"
+    os.killpg(started.pid, signal.SIGTERM)
+    started.wait()
+
+
+def answers(port):
+    with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
+        return True
+    return False
+
+
+def test_a_cluster_that_a_client_reaches_gives_the_results_of_a_local_run(local, head):
+    done = harness(local, "--on", head, "--report-dir", "client")
+    assert done.returncode == 0, done.stderr
+    assert journal(local / "client") == journal(local / "local")
+    assert document(local / "client") == document(local / "local")
+
+
+def test_cases_of_a_node_share_results(local):
+    harness(local, "-j", "2", "--on", "ray", "--report-dir", "shared")
+    lines = (local / "shared/results.jsonl").read_text().splitlines()
+    taken = [json.loads(line)["result"]["shared"].get("distances", [0])[0] for line in lines]
+    assert sum(map(bool, taken)) > 100
 
 
 def test_a_node_with_other_sources_is_refused(local, cluster, tmp_path, monkeypatch):

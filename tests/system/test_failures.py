@@ -7,7 +7,7 @@ import cv2
 import pytest
 
 from harness.core.resources import data_folder
-from harness.recording.explanation import STAGES, stages_of
+from harness.recording.explanation import STAGES, recorded_explanation
 from harness.recording.store import read_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.terminal import failure
@@ -131,7 +131,7 @@ def test_every_failure_is_reported_in_the_words_that_a_person_needs(failed):
 def test_stages_come_in_order_and_the_first_that_failed_has_the_code(failed):
     _, run, _ = failed
     for step in run.steps:
-        stages = stages_of(step.explanation)
+        stages = recorded_explanation(step.explanation).stages
         if not stages:
             continue
         names = [stage.stage for stage in stages]

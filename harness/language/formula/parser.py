@@ -6,6 +6,7 @@ import math
 from typing import Literal
 
 from harness.core.suggestion import did_you_mean
+from harness.language.base import LARGEST_NUMBER
 from harness.language.formula.formula import (
     FUNCTIONS,
     SIGNALS,
@@ -198,6 +199,8 @@ class _Parser:
 
     def constant(self, token: Token) -> Const:
         value = float(token.text)
+        if value > LARGEST_NUMBER:
+            raise self.wrong(token, f"{token.text} is too large", f"at most {LARGEST_NUMBER:g}")
         if self.token.kind == "name" and self.token.text not in (*SIGNALS, *FUNCTIONS):
             unit = self.take()
             if unit.text not in UNITS:

@@ -15,6 +15,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Place, Source, walk
 from harness.language.files.yaml_file import LARGEST_TREE, parse_yaml, read_text
+from harness.language.language import PLACEHOLDER_VERB
 from harness.language.reading.params import PARAMS, escaped, filled
 from harness.language.reading.paths import paths_from
 
@@ -97,7 +98,7 @@ class _Expander:
 
     def _steps(self, include: Located, place: Place, context: _Context) -> Located:
         """The steps of the file; a stand-in, and a problem, where they cannot be had."""
-        nothing = Located([Located("settle", place)], place)
+        nothing = Located([Located(PLACEHOLDER_VERB, place)], place)
         named = include.mapping().get("file") if isinstance(include.value, dict) else None
         file = named.value if named is not None else include
         if not isinstance(file.value, str) or "://" in file.value or not file.value.isprintable():

@@ -7,11 +7,14 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any, Literal, cast
 
+from harness.language.expectation import CHECK
+from harness.language.language import PLACEHOLDER_VERB, PLACEHOLDER_WORD
+from harness.language.step import TAG
 from harness.language.variation import VARIATION_KEYS
 
 STAND_INS: dict[str, dict[str, Any]] = {
-    "steps": {"do": "settle"},
-    "expect": {"check": "within_limits"},
+    "steps": {TAG: PLACEHOLDER_VERB},
+    "expect": {CHECK: PLACEHOLDER_WORD},
     "objects": {"static": True, "sphere": {"radius": 1e-3}, "in": "planning"},
 }
 """Lists of a scenario, and what stands in for an item that cannot be read."""

@@ -24,6 +24,8 @@ from harness.language.language import (
     EXPECTATIONS,
     KEYS_BY_PREDICATE,
     KEYS_BY_VERB,
+    PLACEHOLDER_VERB,
+    PLACEHOLDER_WORD,
     PREDICATES,
     TEMPORAL,
     UNTIL,
@@ -125,7 +127,7 @@ class _Shaper:
     def step(self, item: Located) -> Located:
         found = take_apart(item, STEPS, KEYS_BY_VERB, "step", "verb", self.problems)
         if found is None:
-            return _stand_in(item, TAG, "settle", {})
+            return _placeholder(item, TAG, PLACEHOLDER_VERB)
         model = STEPS[found.word]
         content = self.model(_content(found.entry), model, verb=found.word)
         if not isinstance(content.value, dict):
@@ -141,7 +143,7 @@ class _Shaper:
         words = (*KEYS_BY_PREDICATE, UNTIL)
         found = take_apart(item, EXPECTATIONS, words, "expectation", "predicate", self.problems)
         if found is None:
-            return _stand_in(item, CHECK, "within_limits", {})
+            return _placeholder(item, CHECK, PLACEHOLDER_WORD)
         until = found.siblings.pop(UNTIL, None)
         if until is not None and found.word != "always":
             message = f"`until` goes with `always`, not with `{found.word}`"
@@ -156,7 +158,7 @@ class _Shaper:
             item, PREDICATES, KEYS_BY_PREDICATE, "expectation", "predicate", self.problems
         )
         if found is None:
-            return _stand_in(item, CHECK, "within_limits", {})
+            return _placeholder(item, CHECK, PLACEHOLDER_WORD)
         return self._predicate(found)
 
     def _predicate(self, found: Words) -> Located:
@@ -166,7 +168,7 @@ class _Shaper:
             place = found.entry.value.place
             message = f"a temporal word stands before its predicate, not in `{found.word}`"
             self.problems.append(place.problem(message, f"write `{near}`"))
-            return _stand_in(found.entry.value, CHECK, "within_limits", {})
+            return _placeholder(found.entry.value, CHECK, PLACEHOLDER_WORD)
         content = self.model(_content(found.entry), model, word=found.word)
         if not isinstance(content.value, dict):
             self._not_content(found, content, model)
@@ -188,7 +190,7 @@ class _Shaper:
         )
         entries = dict(found.siblings)
         if inner is None:
-            return _stand_in(found.entry.value, CHECK, "within_limits", {})
+            return _placeholder(found.entry.value, CHECK, PLACEHOLDER_WORD)
         for key, entry in inner.siblings.items():
             self._put(entries, key, entry)
         predicate = self._predicate(Words(inner.word, inner.entry, {}))
@@ -265,6 +267,6 @@ def _tagged(tag: str, found: Words, entries: dict[str, Entry]) -> Located:
     return Located({tag: word, **entries}, place, found.word)
 
 
-def _stand_in(item: Located, tag: str, word: str, siblings: dict[str, Entry]) -> Located:
-    """Holds the place of what could not be read, so that indices stay."""
-    return _tagged(tag, Words(word, Entry(item.place, item), {}), siblings)
+def _placeholder(item: Located, tag: str, word: str) -> Located:
+    """Takes the place of what could not be read, so that indices stay."""
+    return _tagged(tag, Words(word, Entry(item.place, item), {}), {})

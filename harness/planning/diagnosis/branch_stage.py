@@ -110,7 +110,7 @@ def _in_collision(
                 request.space, moved, request.start, request.options.seed
             ).solutions
         ),
-        lambda positions: not request.touches(positions),
+        request.is_free,
     )
     if found is None:
         farthest = length_text(SHIFTS[-1])

@@ -66,6 +66,12 @@ class StageRequest:
             return self.scene.touches(self.space.whole(positions), self.options.padding)
         return self.checker.touches(positions)
 
+    def is_free(self, positions: FloatArray) -> bool:
+        """Whether nothing is too near at group positions; much faster than `touches`."""
+        if self.checker is None:
+            return not self.touches(positions)
+        return self.checker.state_free(positions)
+
     def joints(self, positions: FloatArray) -> dict[str, float]:
         """Every joint of the robot by name, at positions of the group."""
         whole = self.space.whole(np.asarray(positions, dtype=float))

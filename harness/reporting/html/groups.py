@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,14 +16,6 @@ from harness.reporting.html.packing import Packer, pack, thin
 from harness.reporting.html.plot_group import Group, Limit
 
 STRETCHES_PER_SECOND, FEWEST_STRETCHES, MOST_STRETCHES = 40, 600, 3000
-LEAST = {
-    "position": 1.0, "velocity": 1.0, "effort": 1.0, "gripper_effort": 1.0, "tracking": 0.02,
-    "gripper": 1.0, "clearance": 1.0, "planned_clearance": 1.0, "contact": 0.1, "slip": 0.1,
-    "tcp": 1.0, "tcp_turn": 1.0, "tcp_speed": 1.0, "height": 1.0, "displacement": 1.0, "turn": 1.0,
-    "frame": 1.0, "command": 1.0, "velocity_error": 0.1, "plain_velocity": 0.1,
-    "plain_effort": 0.01, "other_position": 1.0,
-}  # fmt: skip
-"""Group -> smallest range of values that its plot shows, in its unit: less is noise."""
 NEAR_LIMIT = 0.4
 """Share of a limit that is used before the plot makes room to show it."""
 
@@ -43,7 +36,7 @@ def pack_groups(run: Run, verdicts: Sequence[Verdict], packer: Packer) -> list[d
                 "id": group.id,
                 "title": group.title,
                 "unit": group.unit,
-                "least": LEAST[group.id],
+                "least": group.least,
                 "points": thinned.values.shape[1],
                 "bin": thinned.bin,
                 "timestep": timestep,
@@ -79,26 +72,15 @@ def groups_of(run: Run, verdicts: Sequence[Verdict] = ()) -> Iterator[Group]:
             yield _with_expected(group, verdicts)
 
 
-EXPECTED = {
-    "clearance": ("clearance", 1e3),
-    "tracking": ("tracking error", 180 / math.pi),
-    "slip": ("slip in the hand", 1e3),
-    "effort": ("effort", 100.0),
-    "height": ("height gained", 1e3),
-}
-"""Group -> name of the measures whose limits it shows, and the factor to the plot's unit."""
-
-
 def _with_expected(group: Group, verdicts: Sequence[Verdict]) -> Group:
     """A group with the limits that the scenario's expectations set."""
-    name, factor = EXPECTED.get(group.id, ("", 1.0))
     found = {
-        factor * measure.limit
+        group.factor * measure.limit
         for verdict in verdicts
         for measure in verdict.measures
-        if measure.name == name and math.isfinite(measure.limit) and measure.limit
+        if measure.name == group.measure and math.isfinite(measure.limit) and measure.limit
         and not (group.id == "effort" and measure.unit != "1")
     }  # fmt: skip
-    both = {-value for value in found} if group.id in {"tracking", "effort"} else set[float]()
+    both = {-value for value in found} if group.is_signed else set[float]()
     extra = [Limit(value) for value in sorted(found | both)]
-    return Group(group.id, group.title, group.unit, group.series, [*group.limits, *extra])
+    return replace(group, limits=[*group.limits, *extra])

@@ -66,25 +66,38 @@ def velocities(run: Run) -> Group:
 def efforts(run: Run) -> Group:
     """Efforts of the arm against their limits."""
     series = _of_limit(run, run.signals.joint_efforts, "effort")
-    return Group("effort", "effort", "% of limit", series, [Limit(-100.0), Limit(100.0)])
+    limits = [Limit(-100.0), Limit(100.0)]
+    return Group(
+        "effort", "effort", "% of limit", series, limits, 1.0, "effort", 100.0, is_signed=True
+    )
 
 
 def plain_velocities(run: Run) -> Group:
     """Velocities of the arm, also of joints without a limit."""
     series = _joint_series(run, run.signals.joint_velocities)
-    return Group("plain_velocity", "joint velocity", f"{_angle_unit(_arm(run))}/s", series)
+    unit = f"{_angle_unit(_arm(run))}/s"
+    return Group("plain_velocity", "joint velocity", unit, series, least=0.1)
 
 
 def plain_efforts(run: Run) -> Group:
     """Efforts of the arm, also of joints without a limit."""
     series = {joint.name: run.signals.joint_efforts[:, column] for column, joint in _arm(run)}
-    return Group("plain_effort", "joint effort", "N m or N", series)
+    return Group("plain_effort", "joint effort", "N m or N", series, least=0.01)
 
 
 def tracking(run: Run) -> Group:
     """Measured less commanded positions of the arm."""
     errors = run.signals.joint_positions - run.signals.joint_commands
-    return Group("tracking", "tracking error", _angle_unit(_arm(run)), _joint_series(run, errors))
+    return Group(
+        "tracking",
+        "tracking error",
+        _angle_unit(_arm(run)),
+        _joint_series(run, errors),
+        least=0.02,
+        measure="tracking error",
+        factor=180 / math.pi,
+        is_signed=True,
+    )
 
 
 def gripper(run: Run) -> Group | None:
@@ -132,7 +145,7 @@ def velocity_errors(run: Run) -> Group:
     """Measured less commanded velocities of the arm."""
     errors = run.signals.joint_velocities - run.signals.joint_command_velocities
     unit = f"{_angle_unit(_arm(run))}/s"
-    return Group("velocity_error", "velocity error", unit, _joint_series(run, errors))
+    return Group("velocity_error", "velocity error", unit, _joint_series(run, errors), least=0.1)
 
 
 def other_positions(run: Run) -> Group:

@@ -24,10 +24,21 @@ class Limit:
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Series of one plot, shape (samples,) each."""
+    """Series of one plot, shape (samples,) each.
+
+    Attributes:
+        least: The smallest range of values that the plot shows, in its unit; less is noise.
+        measure: Name of the measures whose limits the plot shows; empty for none.
+        factor: From the measure's unit to the plot's.
+        is_signed: Whether such a limit holds for both signs.
+    """
 
     id: str
     title: str
     unit: str
     series: Mapping[str, FloatArray]
     limits: Sequence[Limit] = field(default_factory=list[Limit])
+    least: float = 1.0
+    measure: str = ""
+    factor: float = 1.0
+    is_signed: bool = False

@@ -15,7 +15,8 @@ from harness.reporting.html.plot_group import MOST_SERIES, Group
 
 def clearances(run: Run) -> Group:
     """The pairs that came nearest."""
-    return Group("clearance", "clearance", "mm", _nearest(run, run.signals.clearances))
+    series = _nearest(run, run.signals.clearances)
+    return Group("clearance", "clearance", "mm", series, measure="clearance", factor=1e3)
 
 
 def planned_clearances(run: Run) -> Group:
@@ -50,7 +51,7 @@ def contacts(run: Run) -> Group:
         for pair in order[:MOST_SERIES]
         if peaks[pair] > 0
     }
-    return Group("contact", "contact force", "N", series)
+    return Group("contact", "contact force", "N", series, least=0.1)
 
 
 def slip(run: Run) -> Group:
@@ -73,7 +74,8 @@ def slip(run: Run) -> Group:
         stands_for = "" if held.object == held.represents else f" ({held.represents})"
         name = held.object + stands_for
         series[name] = np.fmax(series[name], distance) if name in series else distance
-    return Group("slip", "held object, off its place in the plan", "mm", series)
+    title = "held object, off its place in the plan"
+    return Group("slip", title, "mm", series, least=0.1, measure="slip in the hand", factor=1e3)
 
 
 def tcp_position(run: Run) -> Group:
@@ -109,7 +111,8 @@ def _moving(run: Run) -> dict[str, FloatArray]:
 def heights(run: Run) -> Group:
     """How far objects rose."""
     series = {name: 1e3 * (poses[:, 2] - _first(poses)[2]) for name, poses in _moving(run).items()}
-    return Group("height", "object height gained", "mm", series)
+    title = "object height gained"
+    return Group("height", title, "mm", series, measure="height gained", factor=1e3)
 
 
 def displacements(run: Run) -> Group:

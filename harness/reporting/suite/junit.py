@@ -6,7 +6,6 @@ There is no one schema; what is written here is in all that are in use: `testsui
 
 from __future__ import annotations
 
-import io
 import math
 import re
 import shutil
@@ -38,20 +37,6 @@ SAMPLE = re.compile(r"(?:^|-)sample\d+$")
 """What the name of a sample adds to its group's."""
 
 
-def junit_xml(record: SuiteRecord) -> str:
-    """A document with one `testsuite` a scenario file; times are of the wall clock.
-
-    Samples may fail where a success rate is required: the rate is a `testcase` of its own, with
-    the `failure` when it is not confirmed.
-    """
-    writer = JunitWriter(record)
-    for case in record.cases:
-        writer.add(case)
-    text = io.BytesIO()
-    writer.write(text)
-    return text.getvalue().decode()
-
-
 @dataclass
 class _Counts:
     """What a `testsuite` counts."""
@@ -76,7 +61,11 @@ class _Counts:
 
 
 class JunitWriter:
-    """Writes JUnit XML case by case; what is written so far is in a file without a name."""
+    """Writes JUnit XML case by case, one `testsuite` for each scenario file; times are wall times.
+
+    What is written so far is in a file without a name. Samples may fail where a success rate is
+    required: the rate is a `testcase` of its own, with the `failure` when it is not confirmed.
+    """
 
     def __init__(self, record: SuiteRecord) -> None:
         """Begin a document."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,32 +18,14 @@ from harness.ros.control.gripper import GripperController
 from harness.ros.control.spline import Rows
 from harness.ros.control.trajectory import Finished, Tracking, TrajectoryController
 
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
+
 TICK = 0.01
 """Simulated time from one update of the controllers to the next [s]: 100 Hz, as in the course."""
 
 PREEMPTED = "a newer command replaced this goal"
 STOPPED = "the session ended while this goal was active"
-
-
-class Servos(Protocol):
-    """The part of the simulator that external control needs."""
-
-    description: RobotDescription
-
-    @property
-    def timestep(self) -> float: ...
-    @property
-    def sample_count(self) -> int: ...
-    @property
-    def time(self) -> float: ...
-    @property
-    def actuated_joints(self) -> tuple[str, ...]: ...
-    def joint_positions(self) -> FloatArray: ...
-    def stream(self, rows: Rows) -> None: ...
-    def command(self, positions: FloatArray) -> None: ...
-    def measured(self, first: int) -> tuple[FloatArray, FloatArray]: ...
-    def efforts(self) -> FloatArray: ...
-    def limit_gripper(self, effort: float) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -75,7 +57,7 @@ AnyController = TrajectoryController | GripperController
 class ExternalCell:
     """Controllers on the servos; time moves in `tick` alone, commands come between ticks."""
 
-    def __init__(self, servos: Servos, names: ControllerNames) -> None:
+    def __init__(self, servos: MujocoSimulator, names: ControllerNames) -> None:
         self._servos = servos
         self.names = names
         self.description = description = servos.description

@@ -20,6 +20,8 @@ export function options(select, values, first = []) {
   if ([...select.options].some((o) => o.value === chosen)) select.value = chosen;
 }
 
+export const list = (id, values) => $(id).replaceChildren(...values.map((value) => element("option", { value })));
+
 export const numbers = (text) => text.trim().split(/[\s,]+/).map(Number);
 
 export function log(kind, text) {

@@ -20,7 +20,7 @@ export function start() {
   ace.config.set("basePath", "/ace");
   ace.config.set("loadWorkerFromBlob", false);
   editor = ace.edit("editor", { mode: "ace/mode/yaml", useWorker: false, tabSize: 2, useSoftTabs: true,
-    enableBasicAutocompletion: true, enableLiveAutocompletion: true, showPrintMargin: false, fontSize: 13 });
+    enableBasicAutocompletion: true, enableLiveAutocompletion: true, showPrintMargin: false, fontSize: 13, wrap: true });
   session = editor.session;
   theme();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", theme);

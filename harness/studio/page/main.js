@@ -1,7 +1,7 @@
 // The page: what the buttons, sliders and keys do, and how the cell's numbers are shown.
 
 import { request, connect, on, page } from "./connection.js";
-import { $, element, log, numbers, options } from "./dom.js";
+import { $, element, list, log, numbers, options } from "./dom.js";
 import * as editor from "./editor.js";
 import { showScene } from "./scene.js";
 import { eulerOf } from "./turns.js";
@@ -31,14 +31,12 @@ on("robot", (message) => {
   document.title = `Studio: ${robot.name}`;
   if (isOther) showJoints();
   options($("goal-kind"), robot.states, [["", "the handle"], [LIST, "joint positions"]]);
-  const list = (id, values) => $(id).replaceChildren(...values.map((value) => element("option", { value })));
   list("planners", robot.planners);
   list("worlds", robot.worlds);
   list("objects", robot.bodies);
   options($("verb"), robot.verbs);
   options($("frame"), robot.frames);
   options($("handle-name"), robot.bodies, [["", "none"]]);
-  list("verbs", robot.steps);
   options($("camera"), robot.cameras);
   $("camera-box").hidden = !robot.cameras.length;
   showGripper();
@@ -129,8 +127,8 @@ on("reach", (message) => {
 
 function showGoal(pose) {
   const factor = $("unit").value === "deg" ? 180 / Math.PI : 1;
-  ["x", "y", "z"].forEach((name, index) => { $(`goal-${name}`).value = pose[index].toFixed(4); });
-  eulerOf(pose.slice(3)).forEach((angle, index) => { $(`goal-${["roll", "pitch", "yaw"][index]}`).value = (factor * angle).toFixed(3); });
+  ["x", "y", "z"].forEach((name, index) => { $(`goal-${name}`).value = Number(pose[index].toFixed(4)); });
+  eulerOf(pose.slice(3)).forEach((angle, index) => { $(`goal-${["roll", "pitch", "yaw"][index]}`).value = Number((factor * angle).toFixed(3)); });
   $("frame").value = "world";
 }
 
@@ -146,6 +144,13 @@ async function run(step) {
   if (!reply.error) log("passed", reply.step);
   return reply;
 }
+
+async function continueStep() {
+  const text = $("step-text").value, before = text.replace(/[\w./-]*$/, "");
+  const reply = await request("complete", { text: `steps:\n  - ${text}`, line: 1, column: 4 + text.length });
+  list("continuations", (reply.options ?? []).map((each) => before + (each.kind === "key" ? `${each.text}: ` : each.text)));
+}
+for (const event of ["focus", "input"]) $("step-text").addEventListener(event, continueStep);
 
 const goal = () => ({ verb: $("verb").value, state: $("goal-kind").value === LIST ? "" : $("goal-kind").value,
   joints: $("goal-kind").value === LIST ? numbers($("goal-joints").value) : [], unit: $("unit").value, planner: $("planner").value.trim(), frame: $("frame").value,

@@ -8,7 +8,7 @@
   const [across, up, kind] = ["x", "y", "kind"].map((name) => section.querySelector(`select[name=${name}]`));
   const count = data.parameters.length, SHARE = count, CAUSE = count + 1, NAME = count + 2, LINK = count + 3;
   const axes = [...data.parameters, { name: "worst margin (share of its limit)", unit: "", words: [] }];
-  const CELLS = 12, NEAR = 12, LEFT = 58, BOTTOM = 34, TOP = 10, RIGHT = 12;
+  const CELLS = 12, NEAR = 12, LEFT = 58, BOTTOM = 34, TOP = 20, RIGHT = 12;
   let placed = [], marked = null;
 
   for (const select of [across, up]) {
@@ -70,6 +70,8 @@
     }
     pen.textAlign = "center"; pen.textBaseline = "bottom";
     pen.fillText(`${axes[x].name} →`, (width + LEFT) / 2, height - 2);
+    pen.textAlign = "left"; pen.textBaseline = "top";
+    pen.fillText(`↑ ${axes[y].name}`, LEFT - 5, 2);
   }
 
   function ticks(axis, low, high, most) {
