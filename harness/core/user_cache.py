@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import tempfile
 from pathlib import Path
+
+_CHECKSUM = hashlib.sha256().digest_size
 
 
 def cache_folder() -> Path:
@@ -15,11 +18,13 @@ def cache_folder() -> Path:
 
 
 def cached(name: str) -> bytes | None:
-    """The content of a stored file; None where there is none."""
+    """The content of a stored file; None where there is none, or it is damaged."""
     try:
-        return (cache_folder() / name).read_bytes()
+        stored = (cache_folder() / name).read_bytes()
     except OSError:
         return None
+    checksum, content = stored[:_CHECKSUM], stored[_CHECKSUM:]
+    return content if hashlib.sha256(content).digest() == checksum else None
 
 
 def is_writable() -> bool:
@@ -32,14 +37,15 @@ def is_writable() -> bool:
 def store(name: str, content: bytes) -> None:
     """Store under a temporary name, then rename: a reader never sees half a file.
 
-    A full or read-only disk is no error: the content is computed again next time.
+    The file begins with a checksum. A full or read-only disk is no error: the content is computed
+    again next time.
     """
     path, temporary = cache_folder() / name, ""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent)
         with os.fdopen(handle, "wb") as file:
-            file.write(content)
+            file.write(hashlib.sha256(content).digest() + content)
         Path(temporary).replace(path)
     except OSError:
         if temporary:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
-from harness.core.user_cache import store
+from harness.core.user_cache import cache_folder, cached
 from harness.planning.collision import compiled
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
@@ -202,8 +202,10 @@ print("numba" in sys.modules)
 
 def test_damaged_machine_code_is_not_loaded(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    store(compiled.code_file(), b"x" * 100)
-    assert compiled.stored_code() is None
+    file = cache_folder() / compiled.code_file()
+    file.parent.mkdir(parents=True)
+    file.write_bytes(b"x" * 100)
+    assert cached(compiled.code_file()) is None
 
 
 @pytest.mark.parametrize("kind", ["arm", "gripper"])

@@ -31,7 +31,6 @@ Certify = Callable[[int, int, bool], int]
 
 _SOURCES = Path(__file__).with_name("kernel")
 _ARGUMENTS = 3
-_CHECKSUM = hashlib.sha256().digest_size
 
 _when: When = "when it pays"
 _states = 0
@@ -54,7 +53,7 @@ def compiled_check(states: int) -> Certify | None:
         return None
     if _when == "when it pays" and _states < COMPILING_PAYS_AFTER:
         _states += states
-        if _states >= _enough == PAYS_AFTER and stored_code() is None:
+        if _states >= _enough == PAYS_AFTER and cached(code_file()) is None:
             _enough = COMPILING_PAYS_AFTER
         if _states < _enough:
             return None
@@ -64,21 +63,14 @@ def compiled_check(states: int) -> Certify | None:
 @cache
 def _loaded() -> Certify | None:
     """The check; None where it would have to be compiled and cannot be stored."""
-    stored = stored_code()
+    stored = cached(code_file())
     if stored is None:
         if not is_writable():
             return None
         stored = _compile()
-        store(code_file(), hashlib.sha256(stored).digest() + stored)
+        store(code_file(), stored)
     name, _, code = stored.partition(b"\0")
     return _linked(code, name.decode())
-
-
-def stored_code() -> bytes | None:
-    """What `_compile` returned earlier; None where nothing is stored, or it is damaged."""
-    content = cached(code_file()) or b""
-    checksum, code = content[:_CHECKSUM], content[_CHECKSUM:]
-    return code if hashlib.sha256(code).digest() == checksum else None
 
 
 @cache

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import io
 import platform
-import zipfile
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import version
@@ -36,12 +35,13 @@ def stored_decomposition(
     key = hashlib.sha256(content)
     key.update(repr((factors.tolist(), METHOD, *_versions())).encode())
     name = f"convex_parts/{key.hexdigest()}.npz"
-    found = _read(cached(name))
-    if found is None:
-        from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
+    stored = cached(name)
+    if stored is not None:
+        return _read(stored)
+    from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
 
-        found = decompose(triangles())
-        store(name, _content(found))
+    found = decompose(triangles())
+    store(name, _content(found))
     return found
 
 
@@ -50,16 +50,10 @@ def _versions() -> tuple[str, ...]:
     return np.__version__, version("scipy"), platform.machine()
 
 
-def _read(content: bytes | None) -> Decomposition | None:
-    """What is stored; None where nothing is, or it is damaged."""
-    if content is None:
-        return None
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            hull, points, ends = arrays["hull"], arrays["points"], arrays["ends"]
-            excess, hull_excess, is_closed = arrays["measures"].tolist()
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        return None
+def _read(content: bytes) -> Decomposition:
+    with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+        hull, points, ends = arrays["hull"], arrays["points"], arrays["ends"]
+        excess, hull_excess, is_closed = arrays["measures"].tolist()
     parts = tuple(np.split(points, ends[:-1]))
     return Decomposition(hull, parts, excess, hull_excess, bool(is_closed))
 
