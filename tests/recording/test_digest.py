@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from harness.assertions.judge import judge
+from harness.core.trajectory import JointTrajectory
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.run import Verdict
@@ -100,7 +101,8 @@ def test_commanded_trajectories_enter():
 
 def test_the_bytes_of_a_small_run_are_those_of_the_definition():
     """Each chunk after its length: names, dtype with shape, and little-endian numbers."""
-    trajectory = {"joint_names": ["one", "two"], "times": [0, 1.5], "planner": "x", "count": 3}
+    times, positions = np.array([0.0, 1.5]), np.array([[1.0, 2.0], [3.0, 4.0]])
+    trajectory = JointTrajectory(("one", "two"), times, positions, 0.1 * positions, -positions)
     verdict = Verdict("e", "passed", 0.25, "m", 1.0)
     run = make_run(
         0, objects=(), steps=(step("go", 0, 1, trajectory=trajectory), step("wait", 0, 1))
@@ -114,10 +116,14 @@ def test_the_bytes_of_a_small_run_are_those_of_the_definition():
     def put_floats(*values, shape):
         put(f"<f8{shape}".encode(), struct.pack(f"<{len(values)}d", *values))
 
-    put(b"trajectory", b"count")
-    put_floats(3.0, shape="()")
-    put(b"joint_names", b"one", b"two", b"planner", b"x", b"times")
+    put(b"trajectory", b"accelerations")
+    put_floats(-1.0, -2.0, -3.0, -4.0, shape="(2, 2)")
+    put(b"joint_names", b"one", b"two", b"positions")
+    put_floats(1.0, 2.0, 3.0, 4.0, shape="(2, 2)")
+    put(b"times")
     put_floats(0.0, 1.5, shape="(2,)")
+    put(b"velocities")
+    put_floats(*(0.1 * positions).ravel(), shape="(2, 2)")
     for name, array in sorted(arrays_of(run.signals).items()):
         assert array.size == 0, name
         put(
