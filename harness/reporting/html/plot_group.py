@@ -29,7 +29,7 @@ class Group:
     Attributes:
         least: The smallest range of values that the plot shows, in its unit; less is noise.
         measure: Name of the measures whose limits the plot shows; empty for none.
-        factor: From the measure's unit to the plot's.
+        factor: The factor from the measure's unit to the plot's.
         is_signed: Whether such a limit holds for both signs.
     """
 
