@@ -100,8 +100,14 @@ class GoalActions(LiveStudio):
         self.follows = bool(message["on"])
         return {}
 
-    def answer_pose(self, pose: SE3, *, explain: bool = True) -> Reach:
-        """Find the ways to a TCP pose, and show them as ghosts."""
+    def answer_pose(self, pose: SE3, *, explain: bool = True, frame: str = "world") -> Reach:
+        """Find the ways to a TCP pose, and show them as ghosts.
+
+        Args:
+            pose: The requested pose T_world_tcp.
+            explain: Whether to look for the nearest pose that can be reached.
+            frame: The frame in which the page shows the pose.
+        """
         if self.study is None:
             self.study = ReachStudy(self.cell, self.cell.description.default_group)
         near = None if self.reach is None or self.reach.best is None else self.reach.best
@@ -123,10 +129,12 @@ class GoalActions(LiveStudio):
                 ]
             )
             self.view.show_path(None)
+        shown = self.cell.cell.frame(frame).inverse() @ pose
         self.session.broadcast(
             {
                 "type": "reach",
-                "pose": [round(float(value), 9) for value in pose.as_vector()],
+                "pose": [round(float(value), 9) for value in shown.as_vector()],
+                "frame": frame,
                 "refusal": printable(reach.refusal),
                 "ways": [
                     {"name": way.name or f"way {number}", "refusal": printable(way.refusal)}
@@ -145,12 +153,11 @@ class GoalActions(LiveStudio):
             turn = np.radians(turn)
         if not (np.isfinite(xyz).all() and np.isfinite(turn).all()) or len(xyz) + len(turn) != 6:
             raise RefusedError("a goal has three coordinates and three angles")
-        pose = self.cell.cell.frame(str(message.get("frame", "world"))) @ SE3.from_xyz_rpy(
-            xyz, turn
-        )
+        frame = str(message.get("frame", "world"))
+        pose = self.cell.cell.frame(frame) @ SE3.from_xyz_rpy(xyz, turn)
         if self.view is not None:
             self.view.put_handle("tcp", pose)
-        reach = self.answer_pose(pose)
+        reach = self.answer_pose(pose, frame=frame)
         return {"refusal": printable(reach.refusal), "ways": len(reach.ways)}
 
     def do_choose(self, message: Message) -> Message:

@@ -101,7 +101,12 @@ def test_a_refusal_names_the_limit_the_pair_or_the_distance(studio):
 
 def test_a_goal_is_recorded_in_the_chosen_frame(studio):
     reply(studio, "add_object", **BOX)
-    goal(studio, [0.2, 0, 0.15], 60)
+    shown = []
+    studio.session.broadcast = lambda message, **_: shown.append(message)
+    given = {"xyz": [0, 0, 0.11], "rpy": [0, 60, 0], "unit": "deg", "frame": "box"}
+    assert reply(studio, "goal", **given)["ways"] == 1
+    [reach] = [each for each in shown if each["type"] == "reach"]
+    assert (reach["frame"], reach["pose"][:3]) == ("box", pytest.approx([0, 0, 0.11], abs=1e-6))
     done = reply(studio, "execute", verb="move_to", frame="box")
     assert done["step"] == ("move_to: {position: {frame: box, xyz: [0, 0, 0.11]}, pitch: 1.0472}")
     assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)

@@ -154,8 +154,15 @@ class Mouse:
         """Drag the arrow of a handle along its axis, by one distance after the other."""
         handle, arrow = self.view.handles[kind], np.eye(3)[axis]
         start = np.add(handle.position, 0.6 * handle.scale * arrow)
-        self.mouse.move(*self.at(start))
-        self.mouse.down()
+        self.phases.clear()
+        for _ in range(200):  # until the picture has the handle
+            self.mouse.move(*self.at(start))
+            self.mouse.down()
+            self.mouse.move(*self.at(start + 0.01 * arrow), steps=2)
+            self.opened.page.wait_for_timeout(300)
+            if self.phases:
+                break
+            self.mouse.up()
         for distance in distances:
             self.mouse.move(*self.at(start + distance * arrow), steps=2)
             yield

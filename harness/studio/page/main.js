@@ -122,14 +122,14 @@ on("reach", (message) => {
     class: `way${way.refusal ? " refused" : ""}${index === message.best ? " best" : ""}`,
     onclick: () => act("choose", { way: index }) },
   `${way.name}${way.refusal ? `: ${way.refusal}` : ""}`)));
-  if (message.pose) { $("goal-kind").value = ""; showGoal(message.pose); }
+  if (message.pose) { $("goal-kind").value = ""; showGoal(message.pose, message.frame); }
 });
 
-function showGoal(pose) {
+function showGoal(pose, frame = "world") {
   const factor = $("unit").value === "deg" ? 180 / Math.PI : 1;
   ["x", "y", "z"].forEach((name, index) => { $(`goal-${name}`).value = Number(pose[index].toFixed(4)); });
   eulerOf(pose.slice(3)).forEach((angle, index) => { $(`goal-${["roll", "pitch", "yaw"][index]}`).value = Number((factor * angle).toFixed(3)); });
-  $("frame").value = "world";
+  $("frame").value = frame;
 }
 
 
