@@ -198,7 +198,7 @@ def test_several_files_of_another_kind_and_a_missing_robot_are_refused(folder, c
     assert "takes one FILE, not 2" in capsys.readouterr().err
     (folder / "r.yaml").write_text(REQUEST)
     assert main(["import", "moveit", "r.yaml"]) == 2
-    assert "--robot FILE or NAME" in capsys.readouterr().err
+    assert "--robot FILE or --robot NAME" in capsys.readouterr().err
 
 
 def test_json_is_yaml_too(folder):
