@@ -78,7 +78,9 @@ def read_triangles(geometry: Mesh) -> Triangles:
         raise RobotError(
             f"{path.name} cannot be read: it is damaged or not in {kind.upper()} format"
         ) from error
-    if not len(faces) or not np.isfinite(corners).all():
+    if not np.isfinite(corners).all():
+        raise RobotError(f"{path.name} has corners that are not finite numbers: it is damaged")
+    if not len(faces):
         raise RobotError(
             f"{path.name} has no triangles: it is empty, damaged or not in {kind.upper()} format"
         )

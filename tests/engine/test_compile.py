@@ -150,7 +150,11 @@ def test_a_step_overrides_the_scenarios_planning_key_by_key(tmp_path):
     ("file", "content", "reason"),
     [
         ("mug.dae", "<COLLADA/>", "mug.dae cannot be read: it is damaged or not in DAE format"),
-        ("mug.stl", "solid nothing", "mug.stl cannot be read: it is damaged or not in STL format"),
+        (
+            "mug.stl",
+            "solid nothing",
+            "mug.stl has no triangles: it is empty, damaged or not in STL format",
+        ),
         ("mug.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mug.obj is flat"),
     ],
 )
