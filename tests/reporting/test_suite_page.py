@@ -126,4 +126,4 @@ def test_view_opens_the_page_of_many_runs_and_says_where_a_run_is(small, tmp_pat
     (tmp_path / "pick").mkdir()
     (tmp_path / "pick/run.json").write_text("{}")
     assert main(["view", str(tmp_path), "--no-open"]) == 2
-    assert f"a run is in '{tmp_path}/pick'" in capsys.readouterr().err
+    assert f"there is a run in '{tmp_path}/pick'" in capsys.readouterr().err
