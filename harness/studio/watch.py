@@ -153,15 +153,15 @@ class Watch:
     # -- what pages see -----------------------------------------------------------------------
 
     def _frame(self, is_due: bool) -> None:
-        now = time.monotonic()
-        if now - self._last_scene < 0.9 * FRAME or not self._session.viewers:
+        if not self._session.viewers:
             return
-        self._last_scene = now
+        now = time.monotonic()
         cases = list(self._cases)
         shown = next((each for each in cases if each.number == self._chosen), None)
         if shown is None and cases:
             shown = max(cases, key=lambda each: (each.is_running, each.number))
-        if shown is not None:
+        if shown is not None and now - self._last_scene >= 0.9 * FRAME:
+            self._last_scene = now
             self._show(shown)
         if is_due:
             self._session.broadcast(self._state())
