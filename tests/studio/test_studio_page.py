@@ -159,20 +159,25 @@ class Mouse:
         handle, arrow = self.view.handles[kind], np.eye(3)[axis]
         start = np.add(handle.position, 0.6 * handle.scale * arrow)
         self.phases.clear()
-        for _ in range(200):  # until the picture has the handle
+        for _ in range(20):  # until the picture has the handle
             self.mouse.move(*self.at(start))
             self.mouse.down()
             self.mouse.move(*self.at(start + 0.01 * arrow), steps=2)
-            self.opened.page.wait_for_timeout(300)
+            for _ in range(60):  # the start of a drag may arrive late
+                self.opened.page.wait_for_timeout(50)
+                if self.phases:
+                    break
             if any(each == kind for _, each in self.phases):
                 break
             self.mouse.up()  # nothing was hit, or a handle where it no longer is
+            self.opened.page.wait_for_timeout(500)
+            self.phases.clear()
         for distance in distances:
             self.mouse.move(*self.at(start + distance * arrow), steps=2)
             yield
 
 
-@pytest.mark.mouse  # the picture is drawn in software, and a press sometimes misses it
+@pytest.mark.mouse  # the picture is drawn in software
 def test_handles_and_ghosts_are_used_with_the_mouse(browser, serve):
     served = serve()
     size, xyz = [0.06, 0.06, 0.06], [0.2, -0.15, 0.03]
