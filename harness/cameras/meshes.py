@@ -60,8 +60,9 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
     them, and are converted to sRGB.
     """
     text = geometry.path.read_text(encoding="utf-8", errors="replace")
-    lines = " ".join(re.findall(r"^v (.*)$", text, re.MULTILINE))
-    vertices = np.fromstring(lines, sep=" ").reshape(-1, 3) * np.array(geometry.scale)
+    rows = re.findall(r"^v[ \t]+(\S+[ \t]+\S+[ \t]+\S+)", text, re.MULTILINE)  # colours may follow
+    vertices = np.fromstring(" ".join(rows), sep=" ").reshape(len(rows), 3)
+    vertices *= np.array(geometry.scale)
     colours = _read_mtl(geometry.path, text)
     parts: list[MeshPart] = []
     for name, section in _sections(text):
@@ -72,11 +73,9 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
 
 
 def _sections(text: str) -> list[tuple[str, str]]:
-    """Faces by material: the text after each `usemtl`, or the whole text."""
+    """Faces by material: the text before the first `usemtl`, and after each."""
     pieces = re.split(r"^usemtl (.*)$", text, flags=re.MULTILINE)
-    if len(pieces) == 1:
-        return [("", text)]
-    return list(zip(pieces[1::2], pieces[2::2], strict=True))
+    return list(zip(["", *pieces[1::2]], pieces[::2], strict=True))
 
 
 def _faces(section: str, count: int) -> IntArray:
@@ -120,7 +119,7 @@ def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
             case _:
                 triangles = read_triangles(geometry)
                 return (MeshPart(*coarsen(triangles.vertices, triangles.faces), None),)
-    except (RobotError, OSError, ValueError):
+    except (RobotError, OSError, ValueError, IndexError):
         return ()
 
 

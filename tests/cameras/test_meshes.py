@@ -50,6 +50,20 @@ def test_polygons_become_fans(tmp_path):
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(1.0)
 
 
+CORNERS = ("0 0 0", "1 0 0", "0 1 0", "0 0 1")
+FACES = "f 1 2 3\nf 1 2 4\nusemtl red\nf 1 3 4\n"
+
+
+@pytest.mark.parametrize("after", ["", " 1.0", " 0.2 0.4 0.6"], ids=["plain", "weight", "colour"])
+def test_numbers_after_a_vertex_and_faces_before_the_first_material_are_read(tmp_path, after):
+    text = "".join(f"v {each}{after}\n" for each in CORNERS) + FACES
+    first, second = load_obj(write(tmp_path, "a.obj", text))
+    assert (len(first.faces), len(second.faces)) == (2, 1)
+    assert sorted_rows(first.vertices) == pytest.approx(
+        sorted_rows(read_triangles(write(tmp_path, "b.obj", text)).vertices)
+    )
+
+
 def test_coarsening_merges_near_vertices_and_keeps_the_shape():
     angles = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
     rim = 0.05 * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
