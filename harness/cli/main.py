@@ -65,7 +65,7 @@ def entry() -> NoReturn:
     _use_utf8()
     _prepare_streams()
     os.environ.pop("MUJOCO_GL", None)  # with a library that is missing, mujoco cannot be imported
-    from harness.cli.interruption import interrupt
+    from harness.core.interruption import interrupt
 
     try:
         _handle(interrupt)

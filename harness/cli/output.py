@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
-from harness.cli.interruption import is_interrupted
 from harness.core.errors import HarnessError, RobotError, SpecError
+from harness.core.interruption import is_interrupted
 from harness.core.printable import cropped, fitted, printable, printable_lines, terminal_text
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES, USAGE_EXIT_CODE

@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from harness.core.errors import SpecError
+from harness.core.interruption import is_interrupted
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
 from harness.suite.environment import prepare_process
@@ -98,7 +99,9 @@ def run_here(
         _clean(job)
         try:
             result = function(job, lambda event, index=index: watch(index, event))
-        except Exception:  # noqa: BLE001 - whatever breaks is this case's outcome
+        except Exception as error:
+            if is_interrupted():
+                raise KeyboardInterrupt from error
             result = error_result(job, traceback.format_exc())
         yield index, result
 

@@ -74,10 +74,11 @@ def test_an_interrupted_suite_counts_what_is_missing(folder):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, number):
-    for delay in (0.02, 0.05, 0.1, 0.15, 0.3, 0.6, 1.2):
+@pytest.mark.parametrize("option", ["--no-report", "--in-process"])
+def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, number, option):
+    for delay in (0.02, 0.05, 0.1, 0.15, 0.25, 0.3, 0.4, 0.5, 0.6, 1.2):
         with subprocess.Popen(
-            [*SCRIPT, "run", "long.scenario.yaml", "--no-report"], cwd=folder,
+            [*SCRIPT, "run", "long.scenario.yaml", option], cwd=folder,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         ) as process:  # fmt: skip
             time.sleep(delay)
@@ -87,6 +88,31 @@ def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, numbe
             continue  # Python was still starting or importing; nothing of the program had run
         assert process.returncode == 130, (delay, said)
         assert b"Traceback" not in said, (delay, said)
+
+
+IMPORTS = """\
+import signal, sys
+from harness.core.interruption import interrupt
+signal.signal(signal.SIGINT, interrupt)
+sys.path.insert(0, ".")
+try:
+    import interrupted_module
+    while True:
+        pass
+except KeyboardInterrupt:
+    print("module" if "interrupted_module" not in sys.modules else "after it")
+"""
+
+
+@pytest.mark.parametrize(("signals", "where"), [(1, "after it"), (2, "module")])
+def test_the_first_signal_waits_for_the_end_of_an_import(folder, signals, where):
+    module = "import os, signal\n" + "os.kill(os.getpid(), signal.SIGINT)\n" * signals
+    (folder / "interrupted_module.py").write_text(module)
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTS],
+        cwd=folder, capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert (done.stdout.strip(), done.stderr) == (where, "")
 
 
 @pytest.mark.parametrize(
