@@ -272,6 +272,30 @@ def test_a_held_object_that_is_dragged_along_a_table_is_a_collision(distance, ex
         assert "dragged along it by 21.0 mm" in verdict(run, NEVER).reason
 
 
+@pytest.mark.parametrize(("distance", "expected"), [(0.018, False), (0.022, True)])
+def test_letting_go_on_the_way_makes_no_new_drag_and_leaving_the_table_does(distance, expected):
+    """Half of the way in each of two holds; what happens between them is no drag."""
+    y = np.zeros(200)
+    y[60:100] = np.linspace(0, distance / 2, 40)
+    y[100:140] = np.linspace(distance / 2, distance / 2 + 0.05, 40)
+    y[140:] = np.linspace(y[139], y[139] + distance / 2, 60)
+    aside = np.tile([0.0, 0, 0.02, 1, 0, 0, 0], (200, 1))
+    aside[:, 1] = y
+    base = lift_run(leave=200, object_poses={"box": aside}, tcp_pose=aside)
+    spans = [(50, 100), (140, 200)]
+    forces = {
+        pair: force(200, *spans, value=1.0) if "finger" in pair[0] else values
+        for pair, values in base.signals.contact_forces.items()
+    }
+    run = changed(base, contact_forces=forces)
+    on_table = Never(predicate=Collision(between=("box", "Table")))
+    assert collides(run, on_table) is expected
+    if expected:
+        assert "dragged along it by 22.0 mm" in verdict(run, on_table).reason
+    lifted_between = {**forces, ("Table", "box"): force(200, (0, 110), (140, 200), value=1.0)}
+    assert not collides(changed(base, contact_forces=lifted_between), on_table)
+
+
 def test_what_rests_on_a_held_object_weighs_too():
     run = held_down(3.9)
     top = thing("top", mass=0.05)
