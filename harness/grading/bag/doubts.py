@@ -90,7 +90,9 @@ def jump_doubts(content: BagContent, timeline: Timeline, objects: set[str]) -> I
             far |= at_rest & (steps > OBJECT_SLACK + FROM_REST * spans**2 / 2)
             if far.any():
                 first = int(np.argmax(far))
-                said = f"{child} jumps by {1000 * steps[first]:.0f} mm at t={times[first + 1]:.3f} s"
+                said = (
+                    f"{child} jumps by {1000 * steps[first]:.0f} mm at t={times[first + 1]:.3f} s"
+                )
                 yield Doubt(
                     "jumps", f"{said}: objects were exchanged, or a program put it there", (child,)
                 )
