@@ -329,7 +329,7 @@ RECORDINGS = (
     ),
     RecordingScene(
         "boxes exchanged there and back", "for 0.4 s two boxes have each other's names",
-        lambda recording, run: renamed(EXCHANGED, 1.8)(renamed(EXCHANGED, 1.4)(recording, run), run),
+        lambda whole, run: renamed(EXCHANGED, 1.8)(renamed(EXCHANGED, 1.4)(whole, run), run),
         "every recorded pose is upright", lambda recording: len(box_poses(recording)) > 10,
         {BOX_STANDS: "jumps"}, (ARRIVED, ALWAYS_LOW),
     ),

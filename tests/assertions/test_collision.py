@@ -52,7 +52,8 @@ def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_dura
     assert answer.reason == (
         "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
     )
-    assert answer.measures[0].detail == "arm_link and wall"
+    measure = answer.measures[0]
+    assert (measure.detail, measure.limit, measure.comparison) == ("arm_link and wall", 0.0, "<=")
     assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"
 
 
@@ -91,6 +92,9 @@ def test_no_collision_reports_the_distance_that_was_left():
     answer = verdict(run, Never(predicate=Collision(between=("robot", "wall"))))
     assert (answer.status, answer.margin, answer.unit) == ("passed", 0.03, "m")
     assert answer.time == pytest.approx(0.8)
+    assert "30.0 mm were left between robot and wall" in answer.reason
+    itself = verdict(run, Never(predicate=Collision(between=("robot", "robot"))))
+    assert "50.0 mm were left between robot and itself" in itself.reason
     assert verdict(make_run(), NEVER).unit == "1", "nothing was measured"
     eventually = verdict(run, Eventually(predicate=Collision(between=("robot", "wall"))))
     assert (eventually.status, eventually.margin) == ("failed", -0.03)
@@ -440,6 +444,12 @@ def shelf_poses(z):
 )
 def test_what_the_hand_holds_may_leave_and_be_put_down_but_hits_nothing_on_its_way(spans, expected):
     assert collides(carried(*spans)) is expected
+
+
+def test_a_contact_that_nothing_excuses_is_not_explained_by_one_that_is_excused():
+    """It leaves the shelf, which presses it with 1 N of 3 N, and hits it again."""
+    reason = verdict(carried((40, 60), (80, 85)), NEVER).reason
+    assert reason == "box and shelf collide from t=0.800 s for 0.04 s, with up to 1.0 N"
 
 
 def test_the_put_down_needs_something_below():
