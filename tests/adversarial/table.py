@@ -13,10 +13,18 @@ from tests.adversarial.file_scenes import FILES
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
+from tests.adversarial.trick_scenes import TRICK_SCENES
 from tests.adversarial.window_scenes import WINDOW_SCENES
 from tests.running import run_case
 
-ALL_SCENES = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES, *CONTAINER_SCENES, *WINDOW_SCENES)
+ALL_SCENES = (
+    *SCENES,
+    *CONTACT_SCENES,
+    *OVERLAP_SCENES,
+    *CONTAINER_SCENES,
+    *WINDOW_SCENES,
+    *TRICK_SCENES,
+)
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"

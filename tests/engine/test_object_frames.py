@@ -40,6 +40,14 @@ def test_the_frame_of_an_object_of_the_world_file(tmp_path):
     assert saved.signals.object_poses["b"][0, :3] == pytest.approx([0.5, 0.3, 0.34], abs=1e-3)
 
 
+def test_the_frame_of_a_link_is_where_the_link_starts(tmp_path):
+    cube = CUBE.format("end_effector_link").replace("{name", "{static: true, name")
+    _, saved = run(tmp_path, WAIT, robot=OM, rest=objects(cube))
+    tcp = saved.signals.tcp_pose[0, :3]
+    assert saved.objects[-1].pose[:3] == pytest.approx(tcp + [0.05, 0, 0.12], abs=1e-4)
+    assert tcp[2] > 0.1
+
+
 @pytest.mark.parametrize("frame", ["tabl", "cube", "later"])
 def test_an_object_that_does_not_stand_there_before_is_no_frame(tmp_path, frame):
     later = TABLE.replace("name: table", "name: later")
