@@ -10,7 +10,7 @@ from pathlib import Path
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import STRICT, add_json, add_plugin
-from harness.recording.run import ContactRecord
+from harness.recording.signals import ContactRecord
 from harness.reporting.terminal import PLAIN, Style
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES

@@ -35,8 +35,12 @@ from harness.recording.files import FolderFiles, checked, write_files
 from harness.recording.npz_file import NpzError, NpzFile
 from harness.recording.older_runs import FORMAT, KNOWN_FORMATS, in_present_words
 from harness.recording.plain import PlainError, from_plain, to_plain
-from harness.recording.run import MeshRecord, Outcome, Run, Signals, StepRecord, Verdict
+from harness.recording.robot_record import MeshRecord
+from harness.recording.run import Outcome, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SavedResult
+from harness.recording.verdict import Verdict
 
 RUN, SIGNALS, RESOLVED = "run.json", "signals.npz", "scenario.resolved.yaml"
 CHECKSUM = "checksum"

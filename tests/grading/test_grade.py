@@ -23,8 +23,9 @@ from harness.grading.bag import reader, storage
 from harness.grading.bag.content import BagTopics
 from harness.grading.grade import grade_bag, graded
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.run import Signals, Verdict
+from harness.recording.signals import Signals
 from harness.recording.store import read_run
+from harness.recording.verdict import Verdict
 from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.grading.recordings import (
     GAZEBO_STARTED,
