@@ -23,7 +23,7 @@ from harness.suite.outcome import EXIT_CODES
 if TYPE_CHECKING:
     from harness.grading.grade import Grade, Graded
 
-DOUBTS = ("publishers", "tf", "frames", "steps", "velocities")
+DOUBTS = ("publishers", "tf", "frames", "steps", "velocities", "jumps", "once")
 EXAMPLE = "red_box=/red_box/pose"
 
 
