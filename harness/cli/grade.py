@@ -111,7 +111,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
 
     from harness.cli.bridge import bridge_request, show_case, show_remarks
     from harness.grading.grade import Grade, graded
-    from harness.recording.store import read_run
+    from harness.recording.read_run import read_run
     from harness.ros.bridge import run_bridge
     from harness.ros.domain import domain_of_user, free_domain
 

@@ -9,7 +9,9 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.language.expectation import ExpectationFields
 from harness.ports.external import ExternalRequest
-from harness.recording.run import ObjectRecord, RobotRecord, Run, StepRecord
+from harness.recording.robot_record import RobotRecord
+from harness.recording.run import ObjectRecord, Run
+from harness.recording.step_record import StepRecord
 
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator

@@ -13,7 +13,7 @@ from harness.core.pose_arrays import relative
 from harness.grading.bag.content import BagTopics
 from harness.grading.grade import grade_bag
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.grading.recordings import (
     GAZEBO_STARTED,
     POSES,

@@ -12,7 +12,7 @@ from harness.assertions.placed import PlacedExpectation
 from harness.assertions.window import NotObservable, window_of
 from harness.expectations.always import Always
 from harness.expectations.sees import Sees
-from harness.recording.run import CaptureRecord
+from harness.recording.signals import CaptureRecord
 from tests.assertions.synthetic_run import DT, make_run, step
 from tests.cameras.camera_runs import eye
 

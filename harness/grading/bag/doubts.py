@@ -12,7 +12,7 @@ from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
 from harness.grading.bag.joints import JointRows, joints_of_frames, rows_of_joint
-from harness.recording.run import LinkPlacement
+from harness.recording.robot_record import LinkPlacement
 from harness.robot.description import RobotDescription
 
 DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities", "jumps", "once"]

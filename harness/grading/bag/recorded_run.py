@@ -39,14 +39,10 @@ from harness.grading.bag.joints import (
 from harness.grading.bag.message_files import bag_error
 from harness.grading.bag.reader import read_bag
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.run import (
-    Finding,
-    ObjectRecord,
-    RobotRecord,
-    Run,
-    Signals,
-    StepRecord,
-)
+from harness.recording.robot_record import RobotRecord
+from harness.recording.run import Finding, ObjectRecord, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
 NEVER_THERE = (
