@@ -485,6 +485,18 @@ def test_a_contact_that_nothing_excuses_is_not_explained_by_one_that_is_excused(
     assert reason == "box and shelf collide from t=0.800 s for 0.04 s, with up to 1.0 N"
 
 
+def test_what_is_gripped_again_is_in_the_hand_again():
+    run = lift_run(grip=(10, 40), leave=150, objects=(TABLE, BOX, WALL))
+    forces = {
+        pair: force(200, (10, 40), (90, 200), value=1.0) if "finger" in pair[0] else values
+        for pair, values in run.signals.contact_forces.items()
+    }
+    again = changed(run, contact_forces=forces)
+    of_box = Never(predicate=Collision(between=("box", "wall")))
+    assert not collides(touching("box", "wall", (50, 60), run=again), of_box), "nothing holds it"
+    assert collides(touching("box", "wall", (120, 125), run=again), of_box)
+
+
 def test_the_put_down_needs_something_below():
     run = carried((145, 180))
     assert not collides(run)
