@@ -486,7 +486,7 @@ def test_a_contact_that_nothing_excuses_is_not_explained_by_one_that_is_excused(
 
 
 def test_what_is_gripped_again_is_in_the_hand_again():
-    run = lift_run(grip=(10, 40), leave=150, objects=(TABLE, BOX, WALL))
+    run = lift_run(grip=(10, 200), leave=150, objects=(TABLE, BOX, WALL))
     forces = {
         pair: force(200, (10, 40), (90, 200), value=1.0) if "finger" in pair[0] else values
         for pair, values in run.signals.contact_forces.items()
