@@ -86,7 +86,11 @@ SAME_THING = {
         for kind in ("swap", "swap midway")
     },
     ("static", "object_poses", "glued"): "the hand stands still at the end, too",
-    ("until", "object_poses", "glued"): "the contact says that the box left the table, wherever that is",
+    (
+        "until",
+        "object_poses",
+        "glued",
+    ): "the contact says that the box left the table, wherever that is",
     ("lifted", "contact_forces", "hole"): "the hand carries the box, whatever else touches it",
     ("in_contact", "contact_forces", "hole"): "one moment of contact is enough",
     **{
