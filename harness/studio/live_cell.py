@@ -312,12 +312,6 @@ class LiveCell:
         self.simulator.jog(target[actuated], share * seconds * limits[actuated])
         self.idle(seconds)
 
-    def move_object(self, name: str, pose: SE3) -> None:
-        """Put an object somewhere else, at rest."""
-        self.is_by_hand = True
-        self.cell.move_in_scene(name, pose)
-        self.simulator.idle(1)
-
     @property
     def timestep(self) -> float:
         """The physics step [s]."""
