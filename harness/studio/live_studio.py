@@ -151,10 +151,9 @@ class LiveStudio(ABC):
 
     def _compile(self, text: str) -> bool:
         document = Document(text, str(self.files.path))
-        self.files.refuse_outside(document)
         if self._cell is not None:
             return self._cell.load(document)
-        self._cell = LiveCell(self.files.path, document, self._on_step)
+        self._cell = LiveCell(self.files, document, self._on_step)
         self._cell.pace = self._pace
         return True
 

@@ -51,8 +51,6 @@ class Studio(GoalActions):
                 results.append(self.cell.execute(text))
                 return
             self._refuse_mistakes()
-            document = self.cell.document.with_step(text, self.cell.steps_done)
-            self.files.refuse_outside(document)
             new_text, record = self.cell.record(text)
             results.append(record)
             self._take_text(new_text)
@@ -258,9 +256,7 @@ class Studio(GoalActions):
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""
-        document = Document(text, str(self.files.path))
-        self.files.refuse_outside(document)
-        is_new = self.cell.load(document)
+        is_new = self.cell.load(Document(text, str(self.files.path)))
         self._set_text(text)
         self.keep_unsaved(text)
         if is_new:
