@@ -99,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def show_remarks(result: BridgeResult) -> None:
     """What is said of wall time, names and the launched program."""
-    for remark in result.remarks():
+    for remark in result.remarks:
         complain(f"note: {remark}")
 
 

@@ -19,12 +19,12 @@ from harness.recording.run import Signals
 from harness.reporting.result import CaseResult
 from harness.ros.action_client import ActionClient, ClientGoal
 from harness.ros.action_server import Status
-from harness.ros.contents import POINT
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message, span
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, span
 from harness.ros.joint_states import GRID, JointStates
+from harness.ros.names import actions
 from harness.session.prepare import Prepared, prepare
 from harness.session.progress import Notify
 from harness.session.run_case import run_case
@@ -126,7 +126,7 @@ class RemoteArm:
         found = self._wait(lambda: any(a.is_ready for a in self._arms.values()), PATIENCE)
         if not found:
             required = " or ".join(f"/{name}/follow_joint_trajectory" for name in self._arms)
-            served = ", ".join(graph.names()[1].actions) or "no action"
+            served = ", ".join(actions(graph.uses()[1])) or "no action"
             _unreachable(f"{required} is not served in this domain; served are: {served}")
         self._arm = next(arm for arm in self._arms.values() if arm.is_ready)
         if not self._wait(lambda: self._states.time >= 0, PATIENCE):
