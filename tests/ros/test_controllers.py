@@ -94,6 +94,8 @@ def test_each_mistake_has_its_error_code():
     assert refused(**content((1.0, [0, 2.1], []))) is Code.INVALID_GOAL
     assert refused(**content((1.0, [0, np.inf], []))) is Code.INVALID_GOAL
     assert refused(**content((1.0, [0, 0], [0, 1]))) is Code.INVALID_GOAL
+    overflow = content((0.3, [0, 0], [1e308, 0]), (0.5, [0, 0], [0, 0]))
+    assert refused(**overflow) is Code.INVALID_GOAL
     assert refused(**content((0.1, [0, 0], []), stamp=0.5)) is Code.OLD_HEADER_TIMESTAMP
     unknown = [{"name": "third", "position": 0.1, "velocity": 0.0}]
     assert refused(**good, path_tolerance=unknown) is Code.INVALID_JOINTS

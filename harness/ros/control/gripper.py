@@ -27,7 +27,11 @@ class GripperMotion:
         assert gripper is not None
         target, effort = (float(command.content[key]) for key in ("position", "max_effort"))
         if not np.isfinite([target, effort]).all() or effort < 0:
-            raise GoalRefused(Code.INVALID_GOAL, "position and max_effort must be finite numbers")
+            raise GoalRefused(
+                Code.INVALID_GOAL,
+                f"position ({target:g}) and max_effort ({effort:g}) must be finite numbers,"
+                " max_effort not below 0",
+            )
         joint = description.joint_by_name[gripper.joint]
         if not joint.lower - LIMIT_SLACK <= target <= joint.upper + LIMIT_SLACK:
             raise GoalRefused(
