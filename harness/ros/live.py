@@ -112,7 +112,8 @@ class LiveControl(HandOver):
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """What is said of wall time, names and the launched program; nothing of it is judged."""
         count = sum(command.kind != "end" for command in self.cell.commands)
-        said = [f"{count} commands; {self._pace.text()}", *self.names]
+        commands = f"{count} command{'' if count == 1 else 's'}"
+        said = [f"{commands}; {self._pace.text()}", *self.names]
         if self._exit_code and has_passed:
             said.append(f"the launched program ended with exit code {self._exit_code}")
         if self._output and (self._exit_code or not has_passed):

@@ -72,7 +72,7 @@ class RclpyGraph:
     ) -> Publisher:
         package, folder, _ = kind.split("/")
         if folder == "msg" and importlib.util.find_spec(package) is None:
-            self._say(f"note: --adapter rclpy: {topic} is not published: {_advice(package)}")
+            self._say(f"--adapter rclpy: {topic} is not published: {_advice(package)}")
             return Publisher(kind, lambda _: None, lambda: 0)
         profile = self._profile(latched, True, depth)
         made = self._node.create_publisher(_message_type(kind), topic, profile)
