@@ -42,10 +42,17 @@ class BridgeResult:
 def open_graph(
     adapter: str, domain: int, *, node: str, is_local: bool = True, say: Say = lambda _: None
 ) -> Graph:
-    """Join a domain; notes on what cannot be published are given to `say`.
+    """Join a domain.
+
+    Args:
+        adapter: `rtps`, or `rclpy` of a ROS 2 installation.
+        domain: The number of the ROS domain.
+        node: The name of the node.
+        is_local: Whether it talks to this machine alone.
+        say: Receives a note for each topic that cannot be published.
 
     Raises:
-        SpecError: There is no such domain, or the adapter is not installed.
+        SpecError: The adapter, or a message package that it needs, is not installed.
         NetworkError: The domain cannot be joined.
     """
     if adapter == "rclpy":

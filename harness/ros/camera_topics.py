@@ -16,9 +16,10 @@ from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
 from harness.robot.description import RobotDescription
 from harness.ros.graph import Graph
-from harness.ros.interfaces import message, stamp
+from harness.ros.interfaces import header
 
 IMAGE, COMPRESSED, INFO = (
     f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "CameraInfo")
@@ -45,27 +46,18 @@ class _Topics:
 
     def publish_info(self, time: float) -> None:
         if any(info.subscribers for info in self._infos):
-            content = camera_info(self.camera, time)
+            content = camera_info(self.camera, self._header(time))
             for info in self._infos:
                 info.publish(content)
 
     def publish(self, time: float, drawn: Drawn) -> None:
         picture, jpeg = drawn
-        header, encoding = _header(self.camera, time), "mono8" if self.camera.is_grey else "rgb8"
-        height, width = picture.shape[:2]
-        raw = message(
-            IMAGE,
-            header=header,
-            height=height,
-            width=width,
-            encoding=encoding,
-            step=picture.size // height,
-            data=picture.reshape(-1),
-        )
-        kind = f"{encoding}; jpeg compressed {'mono8' if self.camera.is_grey else 'bgr8'}"
-        data = np.frombuffer(jpeg, np.uint8)
-        self._raw.publish(raw)
-        self._compressed.publish(message(COMPRESSED, header=header, format=kind, data=data))
+        self._raw.publish(image(picture, self._header(time)))
+        self._compressed.publish(compressed_image(jpeg, self.camera, self._header(time)))
+
+    def _header(self, time: float) -> Any:
+        frame = self.camera.optical_frame_id or f"{self.camera.name}_optical_frame"
+        return header(time, frame)
 
 
 class CameraTopics:
@@ -136,26 +128,6 @@ class CameraTopics:
             return
         if drawn is not None:
             topics.publish(time, drawn)
-
-
-def camera_info(camera: Camera, time: float) -> Any:
-    """The calibration of a pinhole without distortion."""
-    return message(
-        INFO,
-        header=_header(camera, time),
-        height=camera.height,
-        width=camera.width,
-        distortion_model="plumb_bob",
-        d=np.zeros(5),
-        k=camera.matrix.reshape(-1),
-        r=np.eye(3).reshape(-1),
-        p=np.hstack([camera.matrix, np.zeros((3, 1))]).reshape(-1),
-    )
-
-
-def _header(camera: Camera, time: float) -> Any:
-    frame = camera.optical_frame_id or f"{camera.name}_optical_frame"
-    return message("std_msgs/msg/Header", stamp=stamp(time), frame_id=frame)
 
 
 def _paint(

@@ -135,6 +135,11 @@ def stamp(seconds: float, kind: str = "Time") -> Any:
     return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
 
 
+def header(seconds: float, frame_id: str = "") -> Any:
+    """A simulated time, and the frame that the content is in."""
+    return message("std_msgs/msg/Header", stamp=stamp(seconds), frame_id=frame_id)
+
+
 def span(seconds: float) -> Any:
     """A length of time as a Duration."""
     return stamp(seconds, "Duration")

@@ -39,17 +39,7 @@ class RclpyGraph:
     def __init__(
         self, domain: int, *, node: str, is_local: bool = True, say: Callable[[str], None]
     ) -> None:
-        """Join a domain.
-
-        Args:
-            domain: The number of the ROS domain.
-            node: The name of the node.
-            is_local: Whether it talks to this machine alone.
-            say: Receives a note for each topic that cannot be published.
-
-        Raises:
-            SpecError: rclpy or a message package cannot be imported.
-        """
+        """Join a domain, as `open_graph` says."""
         if is_local:
             os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         try:

@@ -14,7 +14,7 @@ from harness.ros.action_server import ActionServer
 from harness.ros.control.cell import ExternalCell
 from harness.ros.control.controller import Window
 from harness.ros.graph import Graph
-from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, seconds, stamp
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, message, seconds
 
 FEEDBACK_EVERY = 5
 """Ticks between two messages of feedback: 20 Hz, as controllers are set by default."""
@@ -142,7 +142,7 @@ def follow_feedback(names: tuple[str, ...], window: Window) -> Any:
     desired, actual = window.desired[:2, -1], window.measured[:, -1]
     return message(
         f"{FOLLOW}_Feedback",
-        header=message("std_msgs/msg/Header", stamp=stamp(float(window.times[-1]))),
+        header=header(float(window.times[-1])),
         joint_names=list(names),
         desired=point(desired),
         actual=point(actual),

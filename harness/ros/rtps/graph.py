@@ -62,17 +62,7 @@ class RtpsGraph:
     """A node in a domain, with a participant of its own."""
 
     def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
-        """Join a domain.
-
-        Args:
-            domain: The number of the ROS domain.
-            node: The name of the node.
-            is_local: Whether it talks to this machine alone.
-
-        Raises:
-            SpecError: There is no such domain.
-            NetworkError: There is no free port.
-        """
+        """Join a domain, as `open_graph` says."""
         self.participant = Participant(domain, name=node, is_local=is_local)
         self._node = node
         latched = Qos(is_latched=True, depth=1)
