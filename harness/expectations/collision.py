@@ -21,7 +21,8 @@ from harness.cell.scope import At
 from harness.core.types import FloatArray
 from harness.language.base import Flag, Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 LEAST_DISTANCE = 1e-6
 """A recorded distance of zero without contact is still none [m]."""

@@ -11,7 +11,7 @@ from harness.assertions.window import NotReached, Window
 from harness.core.quantity import distinct
 from harness.language.base import Duration
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 DURATION = Quantity("duration", "s", "at most `at_most`, at least `at_least`")
 

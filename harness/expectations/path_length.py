@@ -11,7 +11,7 @@ from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.language.base import PositiveLength
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 LENGTH = Quantity("path length", "m", "at most `at_most`, at least `at_least`", "tcp")
 

@@ -42,7 +42,8 @@ from harness.core.types import BoolArray, FloatArray
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose, PoseTolerance
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 PLACE_POSITION = 0.01
 """Tolerance of `placed` with a pose and no tolerance [m]."""

@@ -21,7 +21,8 @@ from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
 from harness.language.expectation import Quantity
 from harness.language.markers import MarkerName
 from harness.recording.looks import PictureKind
-from harness.recording.run import CaptureRecord, Measure
+from harness.recording.signals import CaptureRecord
+from harness.recording.verdict import Measure
 
 ColorName = Literal["red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink"]
 HUES: dict[ColorName, tuple[float, float]] = {

@@ -19,7 +19,7 @@ from harness.language.expectation import Quantity
 from harness.language.poses import Pose
 from harness.language.step import step_class
 from harness.recording.link_poses import replayed_link_poses as placed_links
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 SHORTEST = 1e-6
 """Points nearer than this are one [m]."""

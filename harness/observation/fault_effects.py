@@ -10,7 +10,10 @@ import numpy as np
 
 from harness.core.types import BoolArray
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
-from harness.recording.run import Finding, ObjectRecord, RobotRecord, Signals, StepRecord
+from harness.recording.robot_record import RobotRecord
+from harness.recording.run import Finding, ObjectRecord
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 
 MOVING = 1e-3
 """A body faster than this moves [m/s]."""

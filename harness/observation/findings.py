@@ -10,7 +10,8 @@ from harness.core.geometry import Box, Capsule, Cylinder, Sphere
 from harness.core.world import WorldObject
 from harness.ports.scene import Touch
 from harness.recording.explanation import lowered_margins_of
-from harness.recording.run import Finding, StepRecord
+from harness.recording.run import Finding
+from harness.recording.step_record import StepRecord
 
 LARGE = 5.0
 """Size from which a movable object is probably given in millimetres [m]."""

@@ -14,7 +14,8 @@ from harness.engine.execute import object_record
 from harness.language.expectation import ExpectationFields
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
-from harness.recording.run import Run, StepRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 from harness.ros.control.cell import ExternalCell, controller_names
 from harness.session.prepare import Prepared
 from harness.session.record import robot_record

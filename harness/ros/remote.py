@@ -15,7 +15,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.reporting.result import CaseResult
 from harness.ros.action_client import ActionClient, ClientGoal
 from harness.ros.action_server import Status

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.link_poses import placement_poses
-from harness.recording.run import RobotRecord
+from harness.recording.robot_record import RobotRecord
 from harness.reporting.rosbag.messages import TransformStamped, transform
 from harness.ros.graph import Graph
 from harness.ros.interfaces import header, message, stamp

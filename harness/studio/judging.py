@@ -8,7 +8,8 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.core.activity import unobserved
 from harness.recording.digest import digest
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 from harness.session.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
 from harness.session.record import executed_run

@@ -18,7 +18,7 @@ from harness.engine.execute import OnStep, ProgramExecution
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.scene import Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared, prepare
 from harness.session.start import start_physics

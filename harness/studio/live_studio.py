@@ -17,7 +17,7 @@ from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.scene import Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.studio.document import Document, robot_alone
 from harness.studio.files import StudioFiles
 from harness.studio.live_camera import LiveCamera

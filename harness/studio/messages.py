@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.errors import Problem
 from harness.core.printable import printable
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.reporting.explanation import explanation_lines
 from harness.studio.language_help import GRIPPER_TARGET, Names
 from harness.studio.live_cell import LiveCell

@@ -6,7 +6,7 @@ from harness.core.errors import SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.studio.document import Document
 from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions

@@ -5,7 +5,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES

@@ -90,11 +90,15 @@ def test_observations_name_frames_and_a_sufficient_cutoff():
     assert Clearance(at_least=0.01).observations().recorded_cutoff == 0.15
     far = Formula(formula="always distance(robot, box) < 40 cm")
     assert far.observations().recorded_cutoff == pytest.approx(0.45)
+    nearer = Formula(formula="always distance(robot, box) < distance(robot, cup)")
+    assert nearer.observations().clearance_cutoff == pytest.approx(0.05)
+    assert Formula(formula="always z(box) < 1").observations().clearance_cutoff is None
 
 
 def test_judging_needs_neither_planner_nor_physics():
     code = (
-        "import sys, harness.assertions.judge, harness.recording.store, harness.recording.digest;"
+        "import sys, harness.assertions.judge, harness.recording.read_run;"
+        "import harness.recording.digest;"
         "heavy = {'mujoco', 'pinocchio', 'coal', 'ompl', 'toppra', 'scipy', 'cv2'};"
         "sys.exit(', '.join(heavy & set(sys.modules)) or 0)"
     )

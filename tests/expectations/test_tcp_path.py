@@ -10,7 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath, along_arc, along_line
-from harness.recording.run import LinkPlacement
+from harness.recording.robot_record import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three

@@ -117,6 +117,18 @@ def test_what_is_unknown_decides_nothing_that_the_known_samples_decide():
     assert verdict(run, Never(predicate=far)).status == "not observable"
 
 
+def test_the_unknown_samples_that_would_decide_are_counted_from_the_first_to_the_last():
+    poses = at(200, (0, 0, 0.02))
+    poses[[50, 70, 120]] = np.nan
+    run = make_run(object_poses={"box": poses}, steps=(step("late", 40, 200),))
+    for during in ("", "late"):
+        answer = verdict(run, Always(predicate=Upright(object="box")), during)
+        assert answer.status == "not observable"
+        assert answer.reason == (
+            "3 samples from t=0.500 s to t=1.200 s are not known, and would decide it"
+        )
+
+
 ALREADY = "already true at the start"
 
 

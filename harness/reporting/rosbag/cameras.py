@@ -11,7 +11,8 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.recording.film import decoded_film
-from harness.recording.run import CaptureRecord, Run, VideoRecord
+from harness.recording.run import Run
+from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.reporting.rosbag.frames import optical_frames
 from harness.reporting.rosbag.messages import (
     CameraInfo,
