@@ -216,6 +216,12 @@ def test_three_points_are_on_a_line_where_one_is_a_micrometre_from_the_line_of_t
             along_arc(points, start, interim, end)
 
 
+def test_three_times_the_same_point_is_no_arc():
+    points = np.ones((4, 3))
+    with pytest.raises(NotObservable, match="lie on a line"):
+        along_arc(points, points, points, points)
+
+
 @pytest.mark.parametrize(("length", "is_judged"), [(1.1e-6, True), (0.9e-6, False)])
 def test_a_line_is_longer_than_a_micrometre(length, is_judged):
     start, end = np.zeros((2, 3)), np.tile([0, length, 0], (2, 1))
