@@ -111,7 +111,7 @@ def test_an_arc_through_points_on_a_line_cannot_be_judged():
     assert verdict(make_run(), TcpPath(arc=flat)).status == "not observable"
     point = {"start": LINE["start"], "end": LINE["start"]}
     assert verdict(make_run(), TcpPath(line=point)).status == "not observable"
-    with pytest.raises(ValueError, match="`line`, or `arc`, or neither"):
+    with pytest.raises(ValueError, match="takes `line` or `arc`, not both"):
         TcpPath(line=LINE, arc=ARC)
 
 
