@@ -1,4 +1,4 @@
-"""The rules behind the scenes: what each says, with which limits, and where it must not fire."""
+"""The rules of the scenes: what each says, with which limits, and where it must not fire."""
 
 from __future__ import annotations
 

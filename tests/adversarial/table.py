@@ -10,7 +10,7 @@ from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
-from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, saved_run, told
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
 from tests.adversarial.rules import RULES, rule_row
@@ -256,7 +256,7 @@ def main():
             recordings.append(recording_row(scene, graded_scene(scene, run, Path(folder))[1]))
         files = [file_row(scene, checked(scene, Path(folder))) for scene in FILES]
         runs = {robot: saved_run(Path(folder), robot) for robot in ROBOTS}
-        folders = [folder_row(scene, told(scene, runs, Path(folder))[1]) for scene in FOLDERS]
+        folders = [folder_row(scene, report_on(scene, runs, Path(folder))[1]) for scene in FOLDERS]
         started = [environment_row(each, each.exit_code(Path(folder))) for each in ENVIRONMENTS]
     PAGE.write_text(page(rows, recordings, files, folders, started), encoding="utf-8")
 

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.adversarial.file_scenes import FILES
-from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, saved_run, told
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
 from tests.adversarial.rules import RULES
 from tests.adversarial.table import (
@@ -86,13 +86,13 @@ def test_a_file_that_says_something_else_than_it_seems_is_refused(scene, tmp_pat
 
 @pytest.fixture(scope="module")
 def said_of(tmp_path_factory):
-    """Each changed folder and what is said of it, asked once."""
+    """Each changed folder and what is said of it, computed once."""
     folder, known = tmp_path_factory.mktemp("folders"), {}
     runs = {robot: saved_run(folder, robot) for robot in ROBOTS}
 
     def said(scene):
         if scene.title not in known:
-            known[scene.title] = told(scene, runs, folder)
+            known[scene.title] = report_on(scene, runs, folder)
         return known[scene.title]
 
     return said
