@@ -109,6 +109,24 @@ def test_the_distance_to_what_the_planner_alone_knows_is_left_out():
     assert (answer.status, answer.unit) == ("passed", "1")
 
 
+def test_distances_that_are_not_known_leave_those_that_are():
+    distances = {("robot", "Table"): np.full(200, np.nan), ("robot", "wall"): np.full(200, 0.15)}
+    run = make_run(objects=(TABLE, BOX, WALL), clearances=distances)
+    answer = verdict(run, NEVER)
+    assert (answer.status, answer.margin, answer.unit) == ("passed", 0.15, "m")
+
+
+def test_pairs_beyond_the_second_are_counted():
+    run = touching("arm_link", "wall", (30, 41))
+    for more, said in ((("palm",), ""), (("palm", "left_finger"), "; and 1 more pairs"),
+                       (("palm", "left_finger", "right_finger"), "; and 2 more pairs")):  # fmt: skip
+        several = run
+        for link in more:
+            several = touching(link, "wall", (50, 60), run=several)
+        reason = verdict(several, NEVER).reason
+        assert reason.endswith(f"with up to 1.0 N{said}")
+
+
 def test_a_distance_of_zero_without_contact_is_no_collision():
     run = make_run(objects=(WALL,), clearances={("robot", "wall"): np.zeros(200)})
     assert not collides(run)
@@ -357,6 +375,9 @@ def test_bodies_that_overlap_at_the_start_are_a_collision_by_their_depth():
     assert answer.reason.startswith("arm_link and wall overlap by 12.0 mm at the start")
     [measure] = answer.measures
     assert (measure.value, measure.limit, measure.comparison) == (-0.012, 0.0, ">=")
+    always = verdict(run, Always(predicate=Collision()))
+    assert (always.status, always.margin, always.unit) == ("failed", -1e-6, "m")
+    assert always.reason.startswith("no collision at this moment")
 
 
 def test_links_inside_each_other_that_the_srdf_excludes_count_where_allowed_pairs_do():

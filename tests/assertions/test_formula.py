@@ -281,6 +281,15 @@ def test_what_is_certain_is_decided_by_what_is_known_and_not_by_what_may_come():
     assert (node.left.name, index, sign) == ("y", 0, 1)
 
 
+def test_what_must_hold_until_a_later_time_is_decided_by_its_worst_sample_so_far():
+    run = run_of([3.0, 2.0, 1.0], [-5.0] * 3, [0.0, 0.1, 0.2])
+    formula = parse_formula("x(tcp) > 0 until[0, 5] y(tcp) > 0")
+    evaluation = Evaluation(window_of(run))
+    assert evaluation.bounds(formula).high[0] == 1.0
+    node, index, _ = evaluation.decider(formula, 0, at_least=False)
+    assert (node.left.name, index) == ("x", 2)
+
+
 def test_what_never_comes_is_worth_no_more_than_its_best_sample():
     run = run_of([1.0, 1.0, 1.0], [-2.0, -3.0, -2.5], [0.0, 0.1, 0.2])
     formula = parse_formula("x(tcp) > 0 until y(tcp) > 0")

@@ -57,6 +57,16 @@ def test_no_camera_stands_on_what_only_the_planner_knows(tmp_path):
     assert "planner alone" in message
 
 
+def test_no_camera_sees_what_only_the_planner_knows(tmp_path):
+    rest = """
+    objects: [{name: ghost, in: planning, static: true, box: {size: [1, 1, 1]}}]
+    expect: [{sees: {camera: gripper_camera, object: ghost}}]
+    """
+    ((line, message),) = found(tmp_path, rest)
+    assert line == 8
+    assert "planner alone" in message
+
+
 def test_two_cameras_have_two_names(tmp_path):
     rest = "cameras: [{name: gripper_camera}, {name: a}, {name: a}]"
     assert [message for _, message in found(tmp_path, rest)] == [

@@ -49,6 +49,13 @@ def test_the_frame_of_a_link_is_where_the_link_starts(tmp_path):
     assert tcp[2] > 0.1
 
 
+def test_a_scene_has_a_thousand_objects_at_most(tmp_path):
+    dot = "{{name: o{}, static: true, pose: {{xyz: [5, 5, 5]}}, sphere: {{radius: 1 mm}}}}"
+    rest = objects(*(dot.format(number) for number in range(1001)))
+    [(line, message)] = problems(tmp_path, WAIT, robot=OM, rest=rest)
+    assert (line, message) == (7, "there are 1001 objects; a scene may have 1000")
+
+
 @pytest.mark.parametrize("frame", ["tabl", "cube", "later"])
 def test_an_object_that_does_not_stand_there_before_is_no_frame(tmp_path, frame):
     later = TABLE.replace("name: table", "name: later")

@@ -43,6 +43,29 @@ def test_what_is_inside_the_outline_of_a_container_is_in_it():
     assert verdict(in_bin(box=(0, 0, 0.101)), spec).status == "failed", "above its rim"
 
 
+@pytest.mark.parametrize("missing", range(4))
+def test_three_sides_without_a_floor_enclose_nothing(missing):
+    """Boards around an origin that is off the middle; no way to the missing one is a diagonal."""
+    ways = ((1, 0), (-1, 0), (0, 1), (0, -1))
+    boards = [
+        Shape(
+            Box((0.01 if x else 0.2, 0.2 if x else 0.01, 0.1)),
+            SE3.from_xyz_rpy((0.095 * x, 0.095 * y, 0)),
+        )
+        for x, y in ways
+    ]
+    for shapes, status in (
+        (boards, "passed"),
+        (boards[:missing] + boards[missing + 1 :], "failed"),
+    ):
+        corner = Shape(Box((0.001, 0.001, 0.1)), SE3.from_xyz_rpy((0.0995, 0.0995, 0)))
+        other = Shape(Box((0.001, 0.001, 0.1)), SE3.from_xyz_rpy((-0.0995, -0.0995, 0)))
+        record = replace(thing("bin", static=True), shapes=(*shapes, corner, other))
+        poses = {"bin": at(200, (0, 0, 0.05)), "box": at(200, (0.01, 0.02, 0.05))}
+        run = make_run(objects=(BOX, record), object_poses=poses)
+        assert verdict(run, In(object="box", container="bin")).status == status
+
+
 def test_nothing_is_in_a_container_that_has_tipped_over():
     spec = In(object="box", container="bin")
     assert verdict(in_bin(lean=np.radians(44), box=(0, 0, 0.05)), spec).status == "passed"

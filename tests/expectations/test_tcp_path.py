@@ -167,6 +167,9 @@ def test_a_step_without_a_path_of_its_own_is_not_observable():
     assert verdict(run, TcpPath()).status == "not observable"
     waiting = make_run(steps=(step("wait", 0, 200, "wait"),))
     assert verdict(waiting, TcpPath(), "wait").status == "not observable"
+    straight = verdict(sliding(np.linspace(0, 0.2, 200), [0.0, 0.1, 0.2], "circ"), TcpPath(), "go")
+    assert straight.status == "not observable"
+    assert straight.reason.startswith("the three points of the arc lie on a line")
     still = sliding(np.zeros(200), [0.1, 0.1])
     assert verdict(still, TcpPath(), "go").status == "not observable", "it has no length"
     failed = make_run(
