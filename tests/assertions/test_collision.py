@@ -118,8 +118,12 @@ def test_distances_that_are_not_known_leave_those_that_are():
 
 def test_pairs_beyond_the_second_are_counted():
     run = touching("arm_link", "wall", (30, 41))
-    for more, said in ((("palm",), ""), (("palm", "left_finger"), "; and 1 more pairs"),
-                       (("palm", "left_finger", "right_finger"), "; and 2 more pairs")):  # fmt: skip
+    fingers = ("left_finger", "right_finger")
+    for more, said in (
+        (("palm",), ""),
+        (("palm", *fingers[:1]), "; and 1 more pairs"),
+        (("palm", *fingers), "; and 2 more pairs"),
+    ):
         several = run
         for link in more:
             several = touching(link, "wall", (50, 60), run=several)
