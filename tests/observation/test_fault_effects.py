@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.observation.fault_effects import with_receipts
+from harness.observation.fault_effects import COMMANDED, with_receipts
 from harness.recording.faults import InjectedFault, faults_of
 from tests.assertions.synthetic_run import BOX, DT, ROBOT, TABLE, at, force, make_run, step
 
@@ -80,7 +80,7 @@ def test_a_push_of_one_sample_shows_in_the_motion_after_it(start):
     assert faults_of(steps[0])[0].receipt == "landed"
 
 
-@pytest.mark.parametrize(("by", "landed"), [(0.00011, True), (0.00009, False)])
+@pytest.mark.parametrize(("by", "landed"), [(0.00011, True), (COMMANDED, False), (0.00009, False)])
 def test_a_stall_lands_where_the_joint_is_commanded_to_move(by, landed):
     answer = receipt(STALL, joint_commands=ramp(0, by), joint_positions=ramp(0, 0.0))
     assert (answer.receipt == "landed") is landed
@@ -146,7 +146,7 @@ def test_noise_and_latency_say_by_how_much_and_zero_sets_them_back():
     assert evidence(False, LATENCY) == "no joint was commanded to move afterwards"
     moves = {"joint_commands": ramp(0, 0.3), "joint_positions": ramp(0, 0.0)}
     assert evidence(True, LATENCY, **moves) == "joints lagged up to 0.3 rad behind their set points"
-    for by, is_landed in ((0.00011, True), (0.00009, False)):
+    for by, is_landed in ((0.00011, True), (COMMANDED, False), (0.00009, False)):
         assert evidence(is_landed, LATENCY, joint_commands=ramp(0, by))
 
 
