@@ -50,7 +50,7 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     prepared = cell.prepared
     if document is not None:
         prepared = replace(prepared, expectations=cell.prepared_as(document).expectations)
-    request = RunRequest(cell.path, text=cell.document.text)
+    request = RunRequest(cell.files.path, text=cell.document.text)
     execution = cell.execution.finish()
     signals = with_believed_poses(prepared, execution, cell.simulator.finish())
     run = executed_run(request, prepared, execution, signals, cell.overlaps_at_start)

@@ -185,11 +185,11 @@ def test_a_picture_of_earlier_says_nothing_of_the_end():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({}, "exactly one of object, color, marker"),
-        ({"object": "a", "marker": 1}, "exactly one of object, color, marker"),
+        ({}, "exactly one of `object`, `color` and `marker`"),
+        ({"object": "a", "marker": 1}, "exactly one of `object`, `color` and `marker`"),
         ({"marker": 50}, "markers 0 to 49, not 50"),
         ({"color": {"min_value": 0.1}}, "exactly one of `named` and `hue`"),
-        ({"color": "red", "min_visible": 0.3}, "`min_visible` is of an object"),
+        ({"color": "red", "min_visible": 0.3}, "`min_visible` goes with `object`"),
     ],
 )
 def test_impossible_words_are_refused(words, message):
