@@ -93,6 +93,7 @@ class GripperDrive:
         simulator, timestep = self._simulator, self._recording.timestep
         points = self._ramp(position)
         whole = simulator.whole(points, np.array([self._actuator]))
+        controls = simulator.controls(whole)
         first = self._recording.count
         stall_samples = round(STALL_TIME / timestep)
         begin, reached, stalled = 0, False, False
@@ -100,7 +101,7 @@ class GripperDrive:
             simulator.limit_grip(self._actuator, max_effort)
             if begin < len(whole) - 1:
                 end = min(begin + CHECK_EVERY, len(whole) - 1)
-                simulator.follow(whole, begin, end)
+                simulator.follow(whole, controls, begin, end)
                 begin = end
             else:
                 simulator.command(whole.positions[-1])
