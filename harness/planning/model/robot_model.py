@@ -82,7 +82,7 @@ class RobotModel:
 
 @lru_cache(maxsize=4)
 def _pinocchio_model(urdf: str) -> pin.Model:
-    """The model of a URDF, which nobody changes."""
+    """The model of a URDF, made once and not changed."""
     return pin.buildModelFromXML(urdf)
 
 
