@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.geometry import Shape
 from harness.core.sharing import shared
-from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.observation.body_tracks import (
     BodyTrack,
     carried_track,
@@ -39,7 +39,8 @@ from harness.observation.sampled_clearance import (
 )
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.motion import Motion
-from harness.recording.run import AttachmentRecord, ObjectRecord, Pair, Signals
+from harness.recording.run import AttachmentRecord, ObjectRecord
+from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 

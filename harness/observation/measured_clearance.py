@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.recording.run import Pair
+from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 
 
 @dataclass(eq=False)

@@ -13,10 +13,12 @@ from harness.assertions.joints import gripper_joints
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached
 from harness.core.pose_arrays import compose
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, Pair
 from harness.ports.kinematics import Kinematics
 from harness.recording.motion import Motion
-from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
+from harness.recording.run import AttachmentRecord, Finding, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.recording.step_results import AllowedCollisions
 
 LOST = 0.003

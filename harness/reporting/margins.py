@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from harness.recording.run import Measure, Verdict
+from harness.recording.verdict import Measure, Verdict
 
 SMALL = 0.05
 """A margin that is a smaller share than this is worth a look before it is gone."""

@@ -12,7 +12,8 @@ from harness.observation.beliefs import believed_poses
 from harness.observation.contacts import contact_records
 from harness.observation.couplings import coupling_findings
 from harness.observation.tracking import as_commanded, plan_against_physics
-from harness.recording.run import Finding, Run, Signals
+from harness.recording.run import Finding, Run
+from harness.recording.signals import Signals
 from harness.session.prepare import Prepared
 
 if TYPE_CHECKING:

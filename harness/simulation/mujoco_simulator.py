@@ -17,7 +17,7 @@ from harness.core.world import WorldObject
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ContactForce, ControlFailure, UnrestFailure
 from harness.recording.motion import Motion
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.simulation.contact_record import BodyPair
 from harness.simulation.faults import MujocoFaults

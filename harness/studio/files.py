@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from harness.core.errors import HarnessError, Problem, SpecError
-from harness.studio.document import Document
+from harness.core.errors import HarnessError, SpecError
+from harness.language.files.source import Located, walk
+from harness.language.reading.load import WORLD_SUFFIXES, LoadedScenario, load_world
 
 SUFFIX = ".scenario.yaml"
 UNSAVED = ".unsaved"
-TEXTS = ("scenario", "description", "name", "text", "verifies", "title")
-"""Keys whose values are for people, whatever they look like."""
+TEXTS = (("scenario",), ("description",), ("text",), ("verifies",), ("title",))
+"""Ends of the paths of values that are for people, whatever they look like."""
 
 
 class OutsideError(HarnessError):
@@ -88,37 +88,43 @@ class StudioFiles:
         except (OSError, UnicodeDecodeError):
             return None
 
-    def refuse_outside(self, document: Document) -> None:
-        """See that a text names no file outside the folder.
+    def refuse_outside(self, written: Located) -> None:
+        """See that no value of a file leads out of the folder.
 
         Raises:
-            SpecError: It does.
+            SpecError: Some do, each at its place.
         """
-        folder = self.path.parent
-        problems: list[Problem] = []
-        for words in _words(document.root.plain()):
-            given = Path(words).expanduser()
-            path = (folder / given).resolve()
-            looks_like_path = words.startswith(("/", "~")) or ".." in given.parts
-            is_allowed = path.is_relative_to(self.root) or path in self.given
-            if looks_like_path and not is_allowed:
-                line = next((n for n, t in enumerate(document.lines, 1) if words in t), 1)
-                message = f"`{words}` is outside {self.root}, where the studio reads nothing"
-                problems.append(Problem(str(self.path), line, 1, message))
+        problems = [
+            item.place.problem(f"`{item.value}` is outside {self.root}, where nothing is read")
+            for loc, item in walk(written)
+            if isinstance(item.value, str) and loc[-1:] not in TEXTS and self._leads_out(item)
+        ]
         if problems:
             raise SpecError(problems)
 
+    def refuse_used_outside(self, loaded: LoadedScenario) -> None:
+        """See the same of the values as they are used: parameters filled in, the world's too.
 
-def _words(value: Any) -> Iterator[str]:
-    if isinstance(value, Mapping):
-        for key, each in value.items():
-            if key not in TEXTS or not isinstance(each, str):
-                yield from _words(each)
-    elif isinstance(value, str):
-        yield value
-    elif isinstance(value, Sequence):
-        for each in value:
-            yield from _words(each)
+        Raises:
+            SpecError: Some lead out of the folder.
+        """
+        self.refuse_outside(loaded.written)
+        world = loaded.scenario.world.name
+        if Path(world).suffix in WORLD_SUFFIXES:
+            try:
+                written = load_world(world, loaded.path.parent).written
+            except SpecError:  # whoever compiles it reports that
+                return
+            self.refuse_outside(written)
+
+    def _leads_out(self, item: Located) -> bool:
+        words = str(item.value)
+        if not words.isprintable() or not {"/", ".", "~"} & set(words):
+            return False
+        path = (Path(item.place.source.path).parent / Path(words).expanduser()).resolve()
+        if path.is_relative_to(self.root) or path in self.given:
+            return False
+        return words.startswith(("/", "~")) or ".." in Path(words).parts or path.exists()
 
 
 def _write(path: Path, text: str) -> None:

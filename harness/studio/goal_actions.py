@@ -21,9 +21,6 @@ from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost, Handle
 from harness.studio.session import Message, RefusedError
 from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
 
-MOST_GHOSTS = 4
-"""Ways that are drawn at once, nearest first."""
-
 SOLID, FAINT = 0.8, 0.2
 """Opacity of the way that continues the current posture, and of the others."""
 
@@ -117,17 +114,18 @@ class GoalActions(LiveStudio):
         if self.follows and best is not None:
             self.target = best.positions
         if self.view is not None:
-            self.view.show_ghosts(
-                [
-                    Ghost(
-                        way.positions,
-                        REFUSED if way.refusal else GHOST,
-                        SOLID if way is best else FAINT,
-                        number,
-                    )
-                    for number, way in enumerate(reach.ways[:MOST_GHOSTS])
-                ]
-            )
+            ghosts = [
+                Ghost(
+                    way.positions,
+                    REFUSED if way.refusal else GHOST,
+                    SOLID if way is best else FAINT,
+                    number,
+                )
+                for number, way in enumerate(reach.ways)
+            ]
+            if reach.nearest is not None:
+                ghosts.append(Ghost(reach.nearest, REFUSED, SOLID))
+            self.view.show_ghosts(ghosts)
             self.view.show_path(None)
         shown = self.cell.cell.frame(frame).inverse() @ pose
         self.session.broadcast(

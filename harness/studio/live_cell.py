@@ -5,7 +5,6 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -18,12 +17,13 @@ from harness.engine.execute import OnStep, ProgramExecution
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.scene import Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared, prepare
 from harness.session.start import start_physics
 from harness.studio.cell_state import CellState
 from harness.studio.document import Document
+from harness.studio.files import StudioFiles
 from harness.studio.live_simulator import LiveSimulator, Pace
 
 
@@ -42,19 +42,19 @@ class LiveCell:
     Not thread-safe: one thread does everything.
 
     Attributes:
-        path: The scenario's file, whether it exists or not; relative paths begin in its folder.
+        files: The scenario's file, whether it exists or not, and the folder that may be read.
         document: The text that the cell was compiled from.
         history: Snapshots: at the start, then after every step that was executed.
         is_by_hand: Whether something was moved by hand since the last snapshot.
     """
 
-    def __init__(self, path: Path, document: Document, on_step: OnStep = _no_step) -> None:
+    def __init__(self, files: StudioFiles, document: Document, on_step: OnStep = _no_step) -> None:
         """Build the cell at the scenario's start.
 
         Raises:
             SpecError: With every problem of the text.
         """
-        self.path = path
+        self.files = files
         self.on_step = on_step
         self.pace: Pace | None = None
         self.history: list[CellState] = []
@@ -147,7 +147,9 @@ class LiveCell:
         Raises:
             SpecError: With every problem of the text.
         """
-        return prepare(self.path, text=document.compiled_text())
+        self.files.refuse_outside(document.root)
+        text, inspect = document.compiled_text(), self.files.refuse_used_outside
+        return prepare(self.files.path, text=text, inspect=inspect)
 
     # -- executing steps ----------------------------------------------------------------------
 
@@ -311,12 +313,6 @@ class LiveCell:
         self.is_by_hand = True
         self.simulator.jog(target[actuated], share * seconds * limits[actuated])
         self.idle(seconds)
-
-    def move_object(self, name: str, pose: SE3) -> None:
-        """Put an object somewhere else, at rest."""
-        self.is_by_hand = True
-        self.cell.move_in_scene(name, pose)
-        self.simulator.idle(1)
 
     @property
     def timestep(self) -> float:

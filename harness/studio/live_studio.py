@@ -17,7 +17,7 @@ from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.scene import Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.studio.document import Document, robot_alone
 from harness.studio.files import StudioFiles
 from harness.studio.live_camera import LiveCamera
@@ -63,12 +63,18 @@ class LiveStudio(ABC):
             self.do,
             self._frame,
             self._greeting,
-            {"stop": self._stop, "play": self._play, "speed": self._set_speed},
+            {
+                "stop": self._stop,
+                "play": self._play,
+                "speed": self._set_speed,
+                "recording": self._set_recording,
+            },
             self._recover,
         )
         self.view: SceneView | None = None
         self.server: viser.ViserServer | None = None
         self.is_playing, self.speed, self.share = True, 1.0, 0.3
+        self.is_recording = True
         self.stopping = threading.Event()
         self.busy = ""
         self.target: FloatArray | None = None
@@ -145,10 +151,9 @@ class LiveStudio(ABC):
 
     def _compile(self, text: str) -> bool:
         document = Document(text, str(self.files.path))
-        self.files.refuse_outside(document)
         if self._cell is not None:
             return self._cell.load(document)
-        self._cell = LiveCell(self.files.path, document, self._on_step)
+        self._cell = LiveCell(self.files, document, self._on_step)
         self._cell.pace = self._pace
         return True
 
@@ -183,6 +188,12 @@ class LiveStudio(ABC):
         self.view.move(cell.joint_positions(), cell.object_vectors())
         self.study = self.target = None
         self.clear_preview()
+        self._pause_before_overlaps()
+
+    def _pause_before_overlaps(self) -> None:
+        """Stand still at a start at which bodies overlap: physics would push them apart."""
+        if self.cell.overlaps_at_start and not self.cell.steps_done:
+            self.is_playing = False
 
     def _pace(self, samples: int) -> bool:
         """Wait as long as samples last, showing them; False where the motion is to stop."""
@@ -254,6 +265,7 @@ class LiveStudio(ABC):
 
     def working(self, what: str, action: Callable[[], None]) -> None:
         """Do something that takes simulated time, and judge where it leaves the scenario."""
+        was_playing, self.is_playing = self.is_playing, True
         self.busy, self.target = what, None
         self.stopping.clear()
         self._due = time.monotonic()
@@ -262,6 +274,7 @@ class LiveStudio(ABC):
             action()
         finally:
             self.busy = ""
+            self.is_playing &= was_playing
             self.study = None
             self._last_tick = time.monotonic()
         if self.cell.document.step_count and not self.cell.is_by_hand:
@@ -321,6 +334,7 @@ class LiveStudio(ABC):
             "is_playing": self.is_playing,
             "speed": self.speed,
             "share": self.share,
+            "is_recording": self.is_recording,
         }
 
     def clear_preview(self) -> None:
@@ -357,6 +371,10 @@ class LiveStudio(ABC):
         if speed not in SPEEDS:
             raise RefusedError(f"the speed is one of {', '.join(map(str, SPEEDS))}")
         self.speed = speed
+        return {}
+
+    def _set_recording(self, message: Message) -> Message:
+        self.is_recording = bool(message["on"])
         return {}
 
     # -- moving by hand -----------------------------------------------------------------------
@@ -399,6 +417,7 @@ class LiveStudio(ABC):
         return {}
 
     def after_jump(self) -> None:
+        self._pause_before_overlaps()
         self.study = None
         self.forget_verdicts()
         self.clear_preview()

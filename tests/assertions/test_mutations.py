@@ -37,7 +37,7 @@ from harness.expectations.fraction import FractionCheck
 from harness.expectations.lifted import Lifted
 from harness.expectations.until import Until
 from harness.language.language import PREDICATES
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.recording.step_results import SavedResult
 from tests.assertions.evidence import AT_ONCE, COURSES, collected
 from tests.assertions.evidence_runs import N

@@ -169,8 +169,39 @@ def test_a_robot_of_the_command_line_may_be_anywhere(tmp_path):
     from harness.studio.files import StudioFiles
 
     robot = tmp_path / "elsewhere" / "arm.urdf"
-    document = Document(f"robot: {{urdf: {robot}}}\n")
+    written = Document(f"robot: {{urdf: {robot}}}\n").root
     folder = tmp_path / "here"
-    StudioFiles(folder, folder / "x.scenario.yaml", [robot]).refuse_outside(document)
+    StudioFiles(folder, folder / "x.scenario.yaml", [robot]).refuse_outside(written)
     with pytest.raises(SpecError, match="is outside"):
-        StudioFiles(folder, folder / "x.scenario.yaml").refuse_outside(document)
+        StudioFiles(folder, folder / "x.scenario.yaml").refuse_outside(written)
+
+
+MESH = "{name: m, mesh: {file: '%s'}}"
+WAYS_OUT = {
+    "a mesh": f"objects: [{MESH % '../secret.stl'}]",
+    "a parameter": f"params: {{text: ../secret.stl}}\nobjects: [{MESH % '${text}'}]",
+    "two parts": f"params: {{a: ., b: ./secret.stl}}\nobjects: [{MESH % '${a}${b}'}]",
+    "a link of the file system": f"objects: [{MESH % 'link/secret.stl'}]",
+    "a world with a name": "world: {name: ../secret.yaml}",
+    "a world's mesh": "world: w.yaml",
+}
+
+
+@pytest.mark.parametrize("way", WAYS_OUT)
+def test_no_value_leads_out_of_the_folder(tmp_path, way):
+    from harness.core.errors import SpecError
+    from harness.studio.document import Document
+    from harness.studio.files import StudioFiles
+    from harness.studio.live_cell import LiveCell
+
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path)
+    (folder / "w.yaml").write_text(f"world: w\nobjects: [{MESH % '../secret.stl'}]\n")
+    (tmp_path / "secret.stl").write_text("solid x")
+    (tmp_path / "secret.yaml").write_text("world: secret\n")
+    files = StudioFiles(folder, folder / "x.scenario.yaml")
+    text = f"scenario: x\nrobot: open_manipulator_x\n{WAYS_OUT[way]}\nsteps: [wait: 1 s]\n"
+    with pytest.raises(SpecError, match="is outside"):
+        LiveCell(files, Document(text, str(files.path)))
+    assert LiveCell(files, Document(text.replace(WAYS_OUT[way], ""), str(files.path)))

@@ -18,7 +18,8 @@ from typing import IO
 from xml.sax.saxutils import escape
 
 from harness.core.printable import printable, printable_lines
-from harness.recording.run import Outcome, Verdict
+from harness.recording.run import Outcome
+from harness.recording.verdict import Verdict
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
