@@ -314,7 +314,7 @@ class LiveStudio(ABC):
         return {
             "type": "document",
             "text": self.text,
-            "file": str(self.files.path.name),
+            "file": self.files.name,
             "is_saved": self.text == self.saved,
             "problems": [problem_message(each, str(self.files.path)) for each in self.problems],
             "step_lines": [] if self._cell is None else self.cell.document.step_lines(),
