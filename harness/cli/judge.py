@@ -34,7 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     folder = run_folder(arguments.folder)
     from harness.cli.judge import contact_lines
     from harness.observation.contacts import contact_records
-    from harness.recording.store import blames_changes, read_run
+    from harness.recording.read_run import read_run
+    from harness.recording.stored_run import blames_changes
     from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.rejudge import judge_stored
 

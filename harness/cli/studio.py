@@ -98,7 +98,7 @@ def refuse_missing_extra() -> None:
 
 def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
     """The file that the studio saves to, the text with which it begins, and the time to go to."""
-    from harness.recording.store import RESOLVED, RUN
+    from harness.recording.stored_run import RESOLVED, RUN
 
     word: str = arguments.target
     if (Path(word) / RUN).is_file():

@@ -33,7 +33,7 @@ class DurationCheck(Predicate):
     @model_validator(mode="after")
     def _one(self) -> DurationCheck:
         if self.at_most is None and self.at_least is None:
-            raise ValueError("`at_most`, `at_least`, or both")
+            raise ValueError("`duration` needs `at_most`, `at_least` or both")
         return self
 
     def signal(self, window: Window) -> MarginSignal:

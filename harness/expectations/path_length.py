@@ -32,7 +32,7 @@ class PathLength(Predicate):
     @model_validator(mode="after")
     def _one(self) -> PathLength:
         if self.at_most is None and self.at_least is None:
-            raise ValueError("`at_most`, `at_least`, or both")
+            raise ValueError("`path_length` needs `at_most`, `at_least` or both")
         return self
 
     def signal(self, window: Window) -> MarginSignal:

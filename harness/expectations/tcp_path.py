@@ -70,7 +70,9 @@ class TcpPath(Predicate):
     @model_validator(mode="after")
     def _one(self) -> TcpPath:
         if self.line is not None and self.arc is not None:
-            raise ValueError("`line`, or `arc`, or neither for the step's own path: not both")
+            raise ValueError(
+                "`tcp_path` takes `line` or `arc`, not both; without them it is the step's own path"
+            )
         return self
 
     def corners(self) -> list[tuple[tuple[str, str], Pose]]:

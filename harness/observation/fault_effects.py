@@ -122,7 +122,8 @@ class _Record:
         last = len(self.signals.times) if set_again is None else max(set_again, first + 1)
         rows = slice(first, last)
         if fault.fault == "push":
-            rows = slice(step.start_index, max(step.end_index, step.start_index + 1))
+            after = 2 if step.end_index > step.start_index else 0  # what it did shows one later
+            rows = slice(max(step.start_index - 1, 0), step.end_index + after)
         effect = self._effects[fault.fault](fault, rows)
         return replace(
             fault,
@@ -166,7 +167,7 @@ class _Record:
 
     def _push(self, fault: InjectedFault, rows: slice) -> Effect:
         speed = self._speed(fault.target, rows)
-        before, fastest = float(speed[0]), float(speed.max())
+        before, fastest = float(speed[0]) if rows.start else 0.0, float(speed.max())
         if fastest - before <= MOVING:
             return Effect(False, "it did not move: friction or a hand held it")
         return Effect(True, f"it reached {fastest:.3g} m/s")

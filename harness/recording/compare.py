@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.recording.arrays import arrays_of
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 
 DERIVED = ("clearance", "planned_clearances")

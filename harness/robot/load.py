@@ -162,7 +162,8 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Robot
         known = did_you_mean(name, gripper_names(), "grippers")
     else:
         known = did_you_mean(name, robot_names(), "robots")
-    hints = [known, *broken_plugins()]
+    own = "a robot of your own is named by its file: `robot: {urdf: FILE}`"
+    hints = [known, *[own] * (key == "model"), *broken_plugins()]
     if "/" in name or name.startswith(".") or folder.is_dir():
         hints.insert(0, f"{folder} has no robot.yaml")
     raise RobotOptionError(key, f"'{name}' is not known; {'; '.join(hints)}")

@@ -10,7 +10,7 @@ from harness.cell.program import Program, ProgramStep
 from harness.engine.execute import StepEvent
 from harness.ports.simulation import Simulator
 from harness.recording.step_record import StepRecord
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.reporting.result import CaseResult, ProgressEvent
 
 Notify = Callable[[ProgressEvent], None]

@@ -5,18 +5,27 @@ import sys
 import tempfile
 from pathlib import Path
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, saved_run, told
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
+from tests.adversarial.trick_scenes import TRICK_SCENES
 from tests.adversarial.window_scenes import WINDOW_SCENES
 from tests.running import run_case
 
-ALL_SCENES = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES, *CONTAINER_SCENES, *WINDOW_SCENES)
+ALL_SCENES = (
+    *SCENES,
+    *CONTACT_SCENES,
+    *OVERLAP_SCENES,
+    *CONTAINER_SCENES,
+    *WINDOW_SCENES,
+    *TRICK_SCENES,
+)
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
@@ -51,6 +60,24 @@ Every key of these files is known, and a check of the keys alone accepts them.
 
 | file | result |
 | --- | --- |
+"""
+SAVED = """
+## Saved runs
+
+A run whose one expectation fails, and what was done to its folder. `harness judge` judges the
+recorded signals again, whatever run.json says.
+
+| folder | naive check: passes | `harness judge` or `harness compare` |
+| --- | --- | --- |
+"""
+STARTED = """
+## Environments
+
+`harness run` of a scenario with an arm whose files are YAML and xacro, in environments of other
+machines: nothing on standard error, and the exit code of any other run.
+
+| environment | variables | exit code |
+| --- | --- | --- |
 """
 LIMITS = """
 ## What the verdicts do not claim
@@ -169,6 +196,19 @@ def file_row(scene, problems):
     return f"| **{scene.title}**: `{line}` | {said} |"
 
 
+def folder_row(scene, text):
+    """A saved run's line of the table."""
+    said = [line for line in text.splitlines() if scene.said and scene.said in line]
+    answer = " ".join(said[0].split()) if said else "nothing was changed"
+    return f"| **{scene.title}** | {scene.naive} | {answer} |"
+
+
+def environment_row(scene, code):
+    """An environment's line of the table."""
+    words = " ".join(f"`{name}={value}`" for name, value in scene.variables.items())
+    return f"| {scene.title} | {words} | {code} |"
+
+
 def checked(scene, folder):
     """The problems of a file."""
     path = folder / "file.scenario.yaml"
@@ -178,20 +218,22 @@ def checked(scene, folder):
 
 def without_numbers(text):
     """A page without its numbers: they may differ in the last place from machine to machine."""
-    return re.sub(r"-?\d+(\.\d+)?", "#", text)
+    return re.sub(r"-?\d+(\.\d+)?", "#", re.sub(r"\b[0-9a-f]{12}\b", "#", text))
 
 
-def page(rows, recordings, files):
+def page(rows, recordings, files, folders, environments):
     """The whole page."""
-    count = len(rows) + len(recordings) + len(files)
+    count = sum(map(len, (rows, recordings, files, folders, environments)))
     tables = [HEAD.replace("{count}", str(count)), *(f"{row}\n" for row in rows), RECORDED]
     tables += [*(f"{row}\n" for row in recordings), WRITTEN, *(f"{row}\n" for row in files)]
+    tables += [SAVED, *(f"{row}\n" for row in folders)]
+    tables += [STARTED, *(f"{row}\n" for row in environments)]
     return "".join([*tables, LIMITS, CORRUPTED])
 
 
 def main():
     """Run every scene and write the page."""
-    rows, recordings, files = [], [], []
+    rows, recordings = [], []
     for scene in ALL_SCENES:
         with tempfile.TemporaryDirectory() as folder:
             result, _ = run_scene(scene, Path(folder))
@@ -201,7 +243,10 @@ def main():
         for scene in RECORDINGS:
             recordings.append(recording_row(scene, graded_scene(scene, run, Path(folder))[1]))
         files = [file_row(scene, checked(scene, Path(folder))) for scene in FILES]
-    PAGE.write_text(page(rows, recordings, files), encoding="utf-8")
+        runs = {robot: saved_run(Path(folder), robot) for robot in ROBOTS}
+        folders = [folder_row(scene, told(scene, runs, Path(folder))[1]) for scene in FOLDERS]
+        started = [environment_row(each, each.exit_code(Path(folder))) for each in ENVIRONMENTS]
+    PAGE.write_text(page(rows, recordings, files, folders, started), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -169,6 +169,7 @@ def test_the_smallest_of_all_distances_is_found_up_to_the_cutoff(seed, step, cut
     distances, which = smallest_distances(found, cutoff)
     assert distances == pytest.approx(np.minimum(every.min(axis=1), cutoff), abs=2e-6)
     assert (which >= 0).tolist() == (distances < cutoff).tolist()
+    assert (which[distances >= cutoff] == -1).all()
     rows = np.flatnonzero(which >= 0)
     assert every[rows, which[rows]] == pytest.approx(distances[rows], abs=2e-6)
     for index, pair in enumerate(found):

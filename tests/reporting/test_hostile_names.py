@@ -9,7 +9,7 @@ from harness.core.geometry import Box
 from harness.recording.robot_record import JointRecord
 from harness.recording.run import Finding
 from harness.recording.signals import CaptureRecord
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Measure, Verdict
 from harness.reporting.html.page import page_html
 from harness.reporting.html.summary import SummaryPicture

@@ -16,7 +16,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from harness.core.geometry import Box, Mesh
 from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Finding
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.groups import groups_of

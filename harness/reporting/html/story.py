@@ -12,7 +12,7 @@ from harness.recording.plain import to_plain
 from harness.recording.robot_record import JointRecord
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord, is_nested
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.margins import allowance_used
 

@@ -12,7 +12,7 @@ from typing import Any
 from harness.recording.plain import to_plain
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.rosbag.messages import Log, String, stamp
 from harness.reporting.rosbag.samples import Message
