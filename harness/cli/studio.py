@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     if studio.problems and not files.path.exists():  # what the command line names is the mistake
         said = (": ".join(filter(None, (each.message, each.hint))) for each in studio.problems)
         raise UsageError("; ".join(said))
-    if time is not None:
+    if time:
         say(f"going on to t={time:g} s, as the run did")
         studio.cell.run_until(time)
     host = arguments.host or LOOPBACK[0]
