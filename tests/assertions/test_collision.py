@@ -379,6 +379,11 @@ def test_bodies_that_overlap_at_the_start_are_a_collision_by_their_depth():
     assert answer.reason.startswith("arm_link and wall overlap by 12.0 mm at the start")
     [measure] = answer.measures
     assert (measure.value, measure.limit, measure.comparison) == (-0.012, 0.0, ">=")
+    assert measure.time == 0.0
+    later = replace(touching("arm_link", "wall", (3, 8), value=50.0), findings=(overlap,))
+    assert verdict(later, NEVER).unit == "N", "they were apart at the first sample"
+    elsewhere = replace(overlap, values={"pair": ["palm", "wall"], "depth": 0.012})
+    assert verdict(replace(run, findings=(elsewhere,)), NEVER).unit == "N", "another pair"
     always = verdict(run, Always(predicate=Collision()))
     assert (always.status, always.margin, always.unit) == ("failed", -1e-6, "m")
     assert always.reason.startswith("no collision at this moment")

@@ -2,6 +2,7 @@
 
 import math
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -30,6 +31,15 @@ def test_no_measure_of_a_verdict_contradicts_it(found):
     else:
         assert all(map(holds, limited))
     assert [each.value for each in reported] == [each.value for each in found]
+
+
+@pytest.mark.parametrize(
+    ("comparison", "below", "equal", "above"),
+    [("<=", True, True, False), (">=", False, True, True), ("==", False, True, False)],
+)
+def test_a_value_holds_on_its_side_of_a_limit_and_at_it(comparison, below, equal, above):
+    for value, expected in ((0.9, below), (1.0, equal), (1.1, above)):
+        assert holds(Measure("height", value, 1.0, comparison, "m", 1.0)) is expected
 
 
 def test_measures_of_a_violation_stay():

@@ -41,6 +41,16 @@ def test_the_frame_of_an_object_of_the_world_file(tmp_path):
     assert saved.signals.object_poses["b"][0, :3] == pytest.approx([0.5, 0.3, 0.34], abs=1e-3)
 
 
+def test_an_unusable_object_that_is_replaced_costs_none_after_it(tmp_path):
+    broken = "{name: table, static: true, mesh: {file: none.stl}}"
+    world = f"world: w\nobjects:\n  - {broken}\n  - {CUBE.format('world')}\n"
+    (tmp_path / "w.yaml").write_text(world)
+    replaced = TABLE.replace("{name", "{replace: true, name")
+    rest = objects(replaced) + "expect: [{upright: cube}]\n"
+    result, _ = run(tmp_path, WAIT, robot=OM, world="w.yaml", rest=rest)
+    assert result.verdicts[0].status == "passed"
+
+
 def test_the_frame_of_a_link_is_where_the_link_starts(tmp_path):
     cube = CUBE.format("end_effector_link").replace("{name", "{static: true, name")
     _, saved = run(tmp_path, WAIT, robot=OM, rest=objects(cube))

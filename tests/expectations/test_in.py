@@ -66,6 +66,17 @@ def test_three_sides_without_a_floor_enclose_nothing(missing):
         assert verdict(run, In(object="box", container="bin")).status == status
 
 
+def test_what_was_in_all_along_is_warned_of_and_what_came_in_is_not():
+    record, poses = a_bin()
+    for x, names in ((0.0, ["already true at the start"]), (0.15, [])):
+        box = at(200, (0, 0, 0.03))
+        box[:50, 0] = x
+        run = make_run(objects=(BOX, record), object_poses={"bin": poses, "box": box})
+        answer = verdict(run, In(object="box", container="bin"))
+        assert answer.status == "passed"
+        assert [warning.name for warning in answer.warnings] == names
+
+
 def test_nothing_is_in_a_container_that_has_tipped_over():
     spec = In(object="box", container="bin")
     assert verdict(in_bin(lean=np.radians(44), box=(0, 0, 0.05)), spec).status == "passed"
