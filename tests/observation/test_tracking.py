@@ -95,8 +95,9 @@ def test_each_motion_is_compared_where_it_came_nearest_and_the_nearest_is_always
     )
     rows = []
 
-    def planned(signals):
+    def planned(signals, pairs):
         rows.append(signals.times)
+        assert pairs == {("robot", "box")}
         return {("robot", "box"): np.array([0.0512, 0.0305])}
 
     back, out = findings(run, "clearance", planned)
