@@ -107,7 +107,7 @@ def test_each_motion_is_compared_where_it_came_nearest_and_the_nearest_is_always
     assert (back.time, out.time) == (pytest.approx(0.9), pytest.approx(0.2))
     assert "robot and box" in back.message
 
-    def alike(_):
+    def alike(*_):
         return {("robot", "box"): np.array([0.0509, 0.0305])}
 
     assert [each.step for each in findings(run, "clearance", alike)] == ["back"]
