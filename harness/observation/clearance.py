@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -146,9 +146,10 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
-    ) -> Mapping[tuple[str, str], FloatArray]:
-        """Distances at every given sample, by pair as in `Signals.clearances`."""
-        return self._measured(motion, objects, attachments, cutoff).distances
+        pairs: Collection[Pair] | None = None,
+    ) -> Mapping[Pair, FloatArray]:
+        """Distances of all pairs, or of some, at every given sample, as in `Signals.clearances`."""
+        return self._measured(motion, objects, attachments, cutoff, pairs).distances
 
     def _measured(
         self,
@@ -156,13 +157,14 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
+        only: Collection[Pair] | None = None,
     ) -> MeasuredClearance:
-        """Distances at every given sample."""
+        """Distances at every given sample; None measures all pairs."""
         links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
             record.name: object_track(record, attachments, motion, links) for record in objects
         }
-        found = MeasuredClearance(len(motion.times))
+        found = MeasuredClearance(len(motion.times), only=only)
         self._robot_to_itself(found, links, motion, cutoff)
         for record in objects:
             there = tracks[record.name].present & ~_held(record.name, attachments, motion)
@@ -272,6 +274,8 @@ class CoalClearance:
         cutoff: float,
     ) -> None:
         """Distances of two bodies, measured here or by a case in which they moved alike."""
+        if found.only is not None and key not in found.only:
+            return
 
         def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
             every = list(pairs())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -30,7 +30,7 @@ GRIP_GAP = 0.05
 DIFFERENT = 1e-3
 """Planned and actual clearance that differ by more are reported step by step [m]."""
 
-Distances = Callable[[Motion], Mapping[Pair, FloatArray]]
+Distances = Callable[[Motion, Collection[Pair]], Mapping[Pair, FloatArray]]
 
 
 def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
@@ -39,7 +39,7 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
     Args:
         run: The run, with its clearances observed.
         planned: The run's signals `as_commanded`.
-        distances: Measures clearances at every sample it is given.
+        distances: Measures the clearances of some pairs at every sample it is given.
     """
     held = [found for record in run.attachments if (found := held_finding(run, record)) is not None]
     near = _clearances(run, planned, distances)
@@ -139,7 +139,8 @@ def _clearances(run: Run, planned: Signals, distances: Distances) -> tuple[Findi
     if not moves:
         return ()
     rows = np.array([row for _, (row, _) in moves], dtype=np.int64)
-    expectations = distances(Motion.of(planned).at(rows))
+    pairs = {pair for _, (_, pair) in moves}
+    expectations = distances(Motion.of(planned).at(rows), pairs)
     found: list[Finding] = []
     compared: list[tuple[float, Finding]] = []
     for place, (step, (row, pair)) in enumerate(moves):

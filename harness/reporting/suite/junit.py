@@ -11,7 +11,7 @@ import re
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from tempfile import SpooledTemporaryFile
 from typing import IO
@@ -116,7 +116,6 @@ def _tag(name: str, attributes: Mapping[str, str], inner: str | None = None) -> 
     return f"<{name}{said} />" if inner is None else f"<{name}{said}>{inner}</{name}>"
 
 
-@lru_cache(maxsize=1000)
 def _escaped(text: str) -> str:
     """Text in one line as XML, in an attribute too."""
     return _xml(printable(text))
