@@ -114,7 +114,8 @@ def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     from harness.robot_tools.robot_source import RobotSource
 
     kind = RobotSource(word).kind
-    is_robot = word in robot_names() or (kind not in ("model", "scenario") or _has_robot(word))
+    is_file = kind not in ("model", "scenario") or (Path(word) / "robot.yaml").is_file()
+    is_robot = is_file or word in robot_names()
     if not is_robot:
         return _scenario(word, arguments)
     from harness.studio.document import new_text
@@ -126,10 +127,6 @@ def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
         return path, path.read_text(encoding="utf-8")
     given = {key: value for key, value in robot.items() if value}
     return path, new_text(f"{stem} by hand", given, arguments.world or "empty")
-
-
-def _has_robot(word: str) -> bool:
-    return (Path(word) / "robot.yaml").is_file()
 
 
 def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:

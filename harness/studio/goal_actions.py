@@ -1,24 +1,20 @@
-"""Goals and plans: the handles, the ways to a pose, motions that are shown before they are made."""
+"""Goals and plans: the ways to a pose, motions that are shown before they are made."""
 
 from __future__ import annotations
 
-import gc
-from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
-import viser
 
 from harness.core.printable import printable
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray
 from harness.language.step import STEPS
 from harness.studio.files import StudioFiles
 from harness.studio.live_studio import LiveStudio
 from harness.studio.messages import failure_message
 from harness.studio.previews import preview
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost, Handle, SceneView
+from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost
 from harness.studio.session import Message, RefusedError
 from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
 
@@ -26,80 +22,12 @@ SOLID, FAINT = 0.8, 0.2
 """Opacity of the way that continues the current posture, and of the others."""
 
 
-class GoalActions(LiveStudio, ABC):
-    """What handles, goals by number and the buttons `Plan` do."""
+class GoalActions(LiveStudio):
+    """What a goal and the button `Plan` do."""
 
     def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
         super().__init__(files, text, notice)
-        self.follows = False
-        self.server: viser.ViserServer
-        self._drag: tuple[str, SE3, Handle] | None = None
         self._goal = SE3.identity()
-
-    def open(self, server: viser.ViserServer) -> None:
-        """Show the cell in a server's scene, and begin."""
-        self.server = server
-        self.view = SceneView(server, self.on_drag, self.on_choose)
-        self.show_cell()
-        gc.collect()
-        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
-        self.session.start()
-
-    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
-        """Keep the newest pose for the cell's thread; poses of spectators are put back."""
-        if not self._controls(client):
-            self.session.post(self.put_handles_back)
-            return
-        is_waiting = self._drag is not None
-        self._drag = (phase, pose, kind)
-        if not is_waiting or phase == "end":
-            self.session.post(self._answer_drag)
-
-    def on_choose(self, client: int, way: int) -> None:
-        """Choose the way of a ghost that the controlling page clicked."""
-        if self._controls(client):
-            self.session.post(lambda: self._choose(way))
-
-    def _controls(self, client: int) -> bool:
-        """Whether the page that shows a scene is the one that controls."""
-        live = self.server._websock_server._live_connections  # noqa: SLF001 - viser names no page
-        connection = next((each for key, each in live.items() if int(key) == client), None)
-        path = "" if connection is None or connection.request is None else connection.request.path
-        return path.rpartition("/")[2] == self.session.controller
-
-    def _answer_drag(self) -> None:
-        drag, self._drag = self._drag, None
-        if drag is None or self.busy:
-            return
-        phase, pose, kind = drag
-        name = self.object_handle
-        if kind == "tcp":
-            self.answer_pose(pose, explain=phase == "end")
-        elif phase != "end":
-            self.dragged = {name: pose.as_vector()} if kind == "object" else {}
-        elif kind == "object":
-            self.put_object(name, pose)
-        else:
-            self.resize_object(name, pose.translation)
-
-    def put_handles_back(self) -> None:
-        """Show the handles where they were before a page moved them."""
-        if self.view is not None:
-            goal = self._goal if self.reach is not None else self.cell.tcp_pose()
-            self.view.put_handle("tcp", goal)
-        self.show_object_handle(self.object_handle)
-
-    @abstractmethod
-    def show_object_handle(self, name: str) -> None:
-        """Put handles on an object; an empty name takes them away."""
-
-    @abstractmethod
-    def put_object(self, name: str, pose: SE3) -> None:
-        """An object's handle was let go."""
-
-    @abstractmethod
-    def resize_object(self, name: str, corner: FloatArray) -> None:
-        """The handle of an object's size was let go at a point of the world, shape (3,)."""
 
     def do_follow(self, message: Message) -> Message:
         """Let the arm follow the handle, or not."""

@@ -129,7 +129,7 @@ def complete(text: str, line: int, column: int, names: Names) -> list[Option]:
     for node in _nodes(path):
         if not is_value:
             for key, child in node.get("properties", {}).items():
-                options.append(Option(key, "key", _first_line(_description(child))))
+                options.append(Option(key, "key", _description(child).partition("\n\n")[0]))
         words = [*node.get("enum", ()), *((node["const"],) if "const" in node else ())]
         words += ("true", "false") if node.get("type") == "boolean" else ()
         options += [Option(str(word), "value", "") for word in words]
@@ -194,7 +194,3 @@ def _description(node: Schema) -> str:
     if "$ref" in node:
         return _description(_schema()["$defs"][node["$ref"].rpartition("/")[2]])
     return ""
-
-
-def _first_line(text: str) -> str:
-    return text.partition("\n\n")[0]

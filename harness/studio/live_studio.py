@@ -19,11 +19,7 @@ from harness.studio.files import StudioFiles
 from harness.studio.live_camera import LiveCamera
 from harness.studio.live_cell import LiveCell
 from harness.studio.live_verdicts import LiveVerdicts
-from harness.studio.messages import (
-    cell_message,
-    problem_message,
-    robot_message,
-)
+from harness.studio.messages import cell_message, problem_message, robot_message
 from harness.studio.reach import Reach, ReachStudy
 from harness.studio.scene_view import SceneView
 from harness.studio.session import FRAME, Message, RefusedError, Session
@@ -69,7 +65,7 @@ class LiveStudio:
         )
         self.view: SceneView | None = None
         self.is_playing, self.speed, self.share = True, 1.0, 0.3
-        self.is_recording = True
+        self.is_recording, self.follows = True, False
         self.stopping = threading.Event()
         self.busy = ""
         self.target: FloatArray | None = None
@@ -316,11 +312,11 @@ class LiveStudio:
             if nearest is None
             else [nearest.first, nearest.second, round(nearest.distance, 5)],
             "busy": self.busy,
-            "is_judging": self.verdicts.is_busy,
             "is_playing": self.is_playing,
             "speed": self.speed,
             "share": self.share,
             "is_recording": self.is_recording,
+            "follows": self.follows,
         }
 
     def clear_preview(self) -> None:

@@ -26,11 +26,6 @@ class LiveVerdicts:
         self.text = ""
         self._work: Newest[Message] = Newest()
 
-    @property
-    def is_busy(self) -> bool:
-        """Whether verdicts are being computed."""
-        return self._work.is_busy
-
     def begin(self, cell: LiveCell, *, is_last: bool) -> None:
         """Judge the cell as it is now, unless an earlier state is still being judged.
 

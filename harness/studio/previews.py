@@ -53,19 +53,14 @@ def preview(cell: LiveCell, text: str) -> Preview:
     if not plans:
         return Preview(None, None, record=record)
     plan = plans[0]
-    positions = _whole_positions(cell, plan)
-    rows = np.unique(np.linspace(0, len(positions) - 1, MOST_POINTS).astype(int))
-    positions = positions[rows]
-    tcp = cell.description.tcp_link
-    path = cell.prepared.kinematics.link_poses(positions, [tcp])[:, 0, :3]
+    description, trajectory = cell.description, plan.trajectory
+    count = len(trajectory.positions)
+    drawn = np.unique(np.linspace(0, count - 1, MOST_POINTS).astype(int))
+    rows = np.repeat(cell.cell.planning_start()[None], len(drawn), axis=0)
+    index = [description.joint_index[name] for name in trajectory.joint_names]
+    rows[:, index] = trajectory.positions[drawn]
+    positions = np.array([description.with_mimics(row) for row in rows])
+    path = cell.prepared.kinematics.link_poses(positions, [description.tcp_link])[:, 0, :3]
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     planner = str(plan.statistics.get("planner_id", ""))
-    return Preview(positions, path, plan.trajectory.duration, length, planner)
-
-
-def _whole_positions(cell: LiveCell, plan: MotionPlan) -> FloatArray:
-    description = cell.description
-    index = [description.joint_index[name] for name in plan.trajectory.joint_names]
-    rows = np.repeat(cell.cell.planning_start()[None], len(plan.trajectory.positions), axis=0)
-    rows[:, index] = plan.trajectory.positions
-    return np.array([description.with_mimics(row) for row in rows])
+    return Preview(positions, path, trajectory.duration, length, planner)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+
+import viser
+
 from harness.core.errors import SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
@@ -12,11 +16,7 @@ from harness.studio.document import Document
 from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions
 from harness.studio.language_help import complete, hover
-from harness.studio.messages import (
-    failure_message,
-    names_of,
-    robot_message,
-)
+from harness.studio.messages import failure_message, names_of, robot_message
 from harness.studio.object_texts import (
     AXES,
     corner_of,
@@ -26,12 +26,16 @@ from harness.studio.object_texts import (
     resized,
 )
 from harness.studio.proposals import proposals
+from harness.studio.scene_view import Handle, SceneView
 from harness.studio.session import Message, RefusedError, guarded
 from harness.studio.step_texts import step_text
 
 
 class Studio(GoalActions):
     """A cell, the scenario that grows from it, and the pages that show both."""
+
+    server: viser.ViserServer
+    _drag: tuple[str, SE3, Handle] | None = None
 
     @classmethod
     def opened(cls, files: StudioFiles, text: str, unsaved: str | None, notice: str) -> Studio:
@@ -40,6 +44,63 @@ class Studio(GoalActions):
         if unsaved is not None:
             studio.take_text(unsaved)
         return studio
+
+    # -- the picture and its handles ----------------------------------------------------------
+
+    def open(self, server: viser.ViserServer) -> None:
+        """Show the cell in a server's scene, and begin."""
+        self.server = server
+        self.view = SceneView(server, self.on_drag, self.on_choose)
+        self.show_cell()
+        gc.collect()
+        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
+        self.session.start()
+
+    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
+        """Keep the newest pose for the cell's thread; poses of spectators are put back."""
+        if not self._controls(client):
+            self.session.post(self.put_handles_back)
+            return
+        is_waiting = self._drag is not None
+        self._drag = (phase, pose, kind)
+        if not is_waiting or phase == "end":
+            self.session.post(self._answer_drag)
+
+    def on_choose(self, client: int, way: int) -> None:
+        """Choose the way of a ghost that the controlling page clicked."""
+        if self._controls(client):
+            self.session.post(lambda: self._choose(way))
+
+    def _controls(self, client: int) -> bool:
+        """Whether the page that shows a scene is the one that controls."""
+        live = self.server._websock_server._live_connections  # noqa: SLF001 - viser names no page
+        connection = next((each for key, each in live.items() if int(key) == client), None)
+        path = "" if connection is None or connection.request is None else connection.request.path
+        return path.rpartition("/")[2] == self.session.controller
+
+    def _answer_drag(self) -> None:
+        drag, self._drag = self._drag, None
+        if drag is None or self.busy:
+            return
+        phase, pose, kind = drag
+        name = self.object_handle
+        if kind == "tcp":
+            self.answer_pose(pose, explain=phase == "end")
+        elif phase != "end":
+            self.dragged = {name: pose.as_vector()} if kind == "object" else {}
+        elif kind == "object":
+            self.put_object(name, pose)
+        else:
+            self.resize_object(name, pose.translation)
+
+    def put_handles_back(self) -> None:
+        """Show the handles where they were before a page moved them."""
+        if self.view is not None:
+            goal = self._goal if self.reach is not None else self.cell.tcp_pose()
+            self.view.put_handle("tcp", goal)
+        self.show_object_handle(self.object_handle)
+
+    # -- steps --------------------------------------------------------------------------------
 
     def do_execute(self, message: Message) -> Message:
         """Execute a step; recorded, it becomes the scenario's next one."""

@@ -9,7 +9,6 @@ import time
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, Listener
 from pathlib import Path
-from types import TracebackType
 
 import viser
 
@@ -91,12 +90,7 @@ class Watch:
         self._session.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._has_ended = True
         self._session.post(lambda: self._session.broadcast(self._state()))
         self._session.stop()

@@ -384,6 +384,7 @@ def test_a_page_that_comes_back_finds_everything_as_it_was(opened):
     opened.wait("document.querySelectorAll('.joint').length > 0")
     opened.wait("document.getElementById('status').innerText.includes('steps executed')")
     assert opened.editor() == before
+    assert opened.page.input_value("#speed") == "0"
     opened.wait("document.getElementById('control').hidden")
 
 

@@ -5,7 +5,6 @@ import { $, element } from "./dom.js";
 
 /* global ace */
 let editor = null, session = null, timer = 0, setting = false, sent = null, stepLines = [], done = 0;
-const SEVERITY = "error";
 const STAND_IN = { none: "There is no robot yet: correct the marked lines.", robot: "The robot alone, until the marked lines are correct." };
 
 export const text = () => editor.getValue();
@@ -46,7 +45,6 @@ export function start() {
     toggleBreakpoint(event.getDocumentPosition().row);
     event.stop();
   });
-  return editor;
 }
 
 export function toggleBreakpoint(row) {
@@ -63,9 +61,7 @@ export function breakpoint() {
 
 async function check() {
   sent = text();
-  const began = performance.now();
   const reply = await request("edit", { text: sent });
-  window.lintMilliseconds = performance.now() - began;
   if (reply.document && text() === sent) show(reply.document);
   else if (reply.error) $("problems").textContent = reply.error;
 }
@@ -80,7 +76,7 @@ function show(message) {
   stepLines = message.step_lines;
   $("file").classList.toggle("unsaved", !message.is_saved);
   session.setAnnotations(message.problems.map((p) => ({ row: Math.max(0, p.line - 1), column: p.column,
-    text: p.hint ? `${p.text}\n${p.hint}` : p.text, type: SEVERITY })));
+    text: p.hint ? `${p.text}\n${p.hint}` : p.text, type: "error" })));
   for (const id of Object.keys(session.getMarkers())) if (session.getMarkers()[id].clazz === "mistake") session.removeMarker(id);
   const Range = ace.require("ace/range").Range;
   for (const p of message.problems) {

@@ -1,6 +1,6 @@
 // The page: what the buttons, sliders and keys do, and how the cell's numbers are shown.
 
-import { request, connect, on, page } from "./connection.js";
+import { request, connect, on } from "./connection.js";
 import { $, element, list, log, numbers, options } from "./dom.js";
 import * as editor from "./editor.js";
 import { showScene } from "./scene.js";
@@ -74,6 +74,8 @@ on("state", (message) => {
   $("clock").textContent = `${message.time.toFixed(3)} s`;
   $("overlaps").hidden = message.time > 0;
   $("record").checked = message.is_recording;
+  $("follow").checked = message.follows;
+  for (const id of ["speed", "share"]) if (document.activeElement !== $(id)) $(id).value = message[id];
   $("play").textContent = message.is_playing ? "Pause" : "Play";
   $("play").setAttribute("aria-pressed", message.is_playing);
   document.body.classList.toggle("busy", Boolean(message.busy));
@@ -133,7 +135,6 @@ function showGoal(pose, frame = "world") {
   eulerOf(pose.slice(3)).forEach((angle, index) => { $(`goal-${["roll", "pitch", "yaw"][index]}`).value = Number((factor * angle).toFixed(3)); });
   $("frame").value = frame;
 }
-
 
 on("note", (message) => log(message.kind, message.text));
 on("lost", () => { document.body.classList.add("lost"); $("status").textContent = "connection lost; it comes back by itself"; });
