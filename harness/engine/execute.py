@@ -59,7 +59,7 @@ class _RunEndedError(Exception):
 class _Runner:
     cell: Cell
     on_step: OnStep
-    keep_going: bool = False
+    keep_going: bool
     records: list[StepRecord] = field(default_factory=list[StepRecord])
     depth: int = 0
 

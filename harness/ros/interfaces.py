@@ -130,7 +130,10 @@ def prepare(kind: str) -> None:
 
 
 def stamp(seconds: float, kind: str = "Time") -> Any:
-    """A simulated time as a stamp; the clock of the bridge begins at 0, as that of Gazebo."""
+    """A simulated time as a Time, or a span as a Duration.
+
+    The clock of the bridge begins at 0, as that of Gazebo.
+    """
     whole, rest = divmod(round(seconds * 1e9), 10**9)
     return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
 
@@ -138,11 +141,6 @@ def stamp(seconds: float, kind: str = "Time") -> Any:
 def header(seconds: float, frame_id: str = "") -> Any:
     """A simulated time, and the frame that the content is in."""
     return message("std_msgs/msg/Header", stamp=stamp(seconds), frame_id=frame_id)
-
-
-def span(seconds: float) -> Any:
-    """A length of time as a Duration."""
-    return stamp(seconds, "Duration")
 
 
 def seconds(moment: Any) -> float:

@@ -22,7 +22,7 @@ from harness.ros.action_server import Status
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, span
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, stamp
 from harness.ros.joint_states import GRID, JointStates
 from harness.ros.names import actions
 from harness.session.prepare import Prepared, prepare
@@ -89,6 +89,13 @@ def run_on_robot(
         return Start(prepared, cast("TimedSimulator", RemoteArm(graph, prepared, options)), 0)
 
     return run_case(request, notify, start=start)
+
+
+def _refuses(why: str) -> Callable[..., NoReturn]:
+    def refuse(*_: object) -> NoReturn:
+        raise StepFailed("ABORT", why)
+
+    return refuse
 
 
 class RemoteArm:
@@ -202,11 +209,6 @@ class RemoteArm:
             between=held,
         )
 
-    def start_gripper(self, position: float, max_effort: float) -> None:
-        """Refuse: motions of arm and gripper are sent one after the other."""
-        del position, max_effort
-        raise StepFailed("ABORT", "arm and gripper of a ROS 2 robot do not move in parallel here")
-
     def hold(self, duration: float) -> None:
         """Let the robot's time pass [s]."""
         end = self._states.time + duration
@@ -226,22 +228,13 @@ class RemoteArm:
             raise StepFailed("TIMED_OUT", f"the robot still moves after {timeout:g} s")
         return True
 
-    # -- objects: a program does not change those of a real cell --------------------------------
+    # -- what a program does not do to a real cell ----------------------------------------------
 
-    def add_object(self, name: str, pose: SE3) -> None:
-        del pose
-        raise StepFailed("ABORT", f"'{name}' would have to appear in the real cell: `in: planning`")
-
-    def remove_object(self, name: str) -> None:
-        raise StepFailed("ABORT", f"'{name}' cannot be taken out of the real cell by a program")
-
-    def move_object(self, name: str, pose: SE3) -> None:
-        del pose
-        raise StepFailed("ABORT", f"'{name}' cannot be moved in the real cell by a program")
-
-    def weld(self, name: str, link: str) -> None:
-        del link
-        raise StepFailed("ABORT", f"'{name}' cannot be welded to the gripper of a real robot")
+    start_gripper = _refuses("arm and gripper of a ROS 2 robot do not move in parallel here")
+    add_object = _refuses("an object would have to appear in the real cell; add it `in: planning`")
+    remove_object = _refuses("an object cannot be taken out of the real cell by a program")
+    move_object = _refuses("an object cannot be moved in the real cell by a program")
+    weld = _refuses("an object cannot be welded to the gripper of a real robot")
 
     def unweld(self, name: str) -> None:
         del name
@@ -358,7 +351,9 @@ def _goal(trajectory: JointTrajectory, share: float) -> Any:
         strict=True,
     )
     points = [
-        message(POINT, positions=p, velocities=v, accelerations=a, time_from_start=span(t))
+        message(
+            POINT, positions=p, velocities=v, accelerations=a, time_from_start=stamp(t, "Duration")
+        )
         for t, p, v, a in rows
     ]
     points[-1].velocities = np.zeros_like(points[-1].velocities)

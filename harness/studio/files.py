@@ -36,6 +36,11 @@ class StudioFiles:
         self.given = frozenset(each.resolve() for each in given)
 
     @property
+    def name(self) -> str:
+        """The file as a page names it, from the folder."""
+        return os.path.relpath(self.path, self.root)
+
+    @property
     def unsaved(self) -> Path:
         """The copy of work that was not saved."""
         return self.path.with_name(f".{self.path.name}{UNSAVED}")
@@ -55,21 +60,19 @@ class StudioFiles:
             raise OutsideError(f"there is no folder '{path.parent}'")
         return path
 
-    def save(self, name: str, text: str) -> Path:
-        """Write the scenario, and forget the unsaved copy.
+    def save(self, path: Path, text: str) -> None:
+        """Write the scenario to a path of `named`, and forget the unsaved copy.
 
         Raises:
-            HarnessError: The file cannot be written, or may not be.
+            HarnessError: The file cannot be written.
         """
-        path = self.named(name)
         try:
             _write(path, text)
         except OSError as error:
-            raise HarnessError(f"'{name}' cannot be written: {error.strerror}") from error
+            raise HarnessError(f"'{path.name}' cannot be written: {error.strerror}") from error
         with contextlib.suppress(OSError):
             self.unsaved.unlink(missing_ok=True)
         self.path = path
-        return path
 
     def keep_unsaved(self, text: str) -> str:
         """Keep a copy of the text that a crash leaves; returns why that is not possible."""
@@ -129,5 +132,10 @@ class StudioFiles:
 
 def _write(path: Path, text: str) -> None:
     partial = path.with_name(f"{path.name}.partial")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, path)  # noqa: PTH105 - one call that replaces the file whole
+    try:
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(path)
+    except OSError:
+        with contextlib.suppress(OSError):
+            partial.unlink()
+        raise

@@ -53,11 +53,11 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     request = RunRequest(cell.files.path, text=cell.document.text)
     execution = cell.execution.finish()
     signals = with_believed_poses(prepared, execution, cell.simulator.finish())
-    run = executed_run(request, prepared, execution, signals, cell.overlaps_at_start)
+    run = executed_run(request, prepared, execution, signals, cell.simulator.overlaps_at_start)
     with Pictures(request, prepared, run) as pictures:
         run = pictures.captured(observed_run(prepared, run), unobserved)
     verdicts = judge(run, prepared.expectations)
-    is_over = cell.is_at_end or bool(execution.ended_early)
+    is_over = cell.steps_done >= cell.document.step_count or bool(execution.ended_early)
     is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
     return Judged(
         run,

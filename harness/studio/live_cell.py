@@ -127,19 +127,9 @@ class LiveCell:
         return self.history[-1].is_run and not self.is_by_hand
 
     @property
-    def is_at_end(self) -> bool:
-        """Whether every step of the file was executed."""
-        return self.steps_done >= self.document.step_count
-
-    @property
     def has_run_digest(self) -> bool:
         """Whether a run of the file would have recorded the same, and no less."""
         return self.is_run and self._has_same_links
-
-    @property
-    def overlaps_at_start(self) -> tuple[Touch, ...]:
-        """Bodies that overlap at the start, deepest first."""
-        return self.simulator.overlaps_at_start
 
     def prepared_as(self, document: Document) -> Prepared:
         """A text as it is compiled in the place of the cell's own.
@@ -190,7 +180,8 @@ class LiveCell:
     def go_to(self, count: int) -> None:
         """Make the state the one after some steps: forwards by executing, backwards restored."""
         if count < self.steps_done or self.is_by_hand or not self.is_run:
-            self.restore(min(count, self._last_of_run()))
+            last_of_run = max(state.steps for state in self.history if state.is_run)
+            self.restore(min(count, last_of_run))
         self.run_steps(count)
 
     def step_back(self) -> None:
@@ -389,7 +380,3 @@ class LiveCell:
     def _restore(self, state: CellState) -> None:
         state.restore(self.execution, self.simulator, self.scene)
         self.is_by_hand = self._is_idle = False
-
-    def _last_of_run(self) -> int:
-        """The last executed step after which a run would be in the same state."""
-        return max(state.steps for state in self.history if state.is_run)

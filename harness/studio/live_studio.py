@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import gc
 import threading
 import time
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import viser
 
 from harness.core.errors import Problem, SpecError
 from harness.core.printable import printable
-from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.scene import Touch
 from harness.recording.step_record import StepRecord
@@ -29,7 +25,7 @@ from harness.studio.messages import (
     robot_message,
 )
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import Handle, SceneView
+from harness.studio.scene_view import SceneView
 from harness.studio.session import FRAME, Message, RefusedError, Session
 from harness.studio.verdict_messages import NO_VERDICTS
 
@@ -40,7 +36,7 @@ MEASURED_EVERY = 5
 """Updates of the page between two measurements of the smallest clearance."""
 
 
-class LiveStudio(ABC):
+class LiveStudio:
     """The cell's thread: physics that goes on, joints that are moved by hand, what pages see.
 
     Attributes:
@@ -72,7 +68,6 @@ class LiveStudio(ABC):
             self._recover,
         )
         self.view: SceneView | None = None
-        self.server: viser.ViserServer | None = None
         self.is_playing, self.speed, self.share = True, 1.0, 0.3
         self.is_recording = True
         self.stopping = threading.Event()
@@ -159,15 +154,6 @@ class LiveStudio(ABC):
 
     # -- the server and the thread ------------------------------------------------------------
 
-    def open(self, server: viser.ViserServer) -> None:
-        """Show the cell in a server's scene, and begin."""
-        self.server = server
-        self.view = SceneView(server, self.on_drag, self.on_choose)
-        self.show_cell()
-        gc.collect()
-        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
-        self.session.start()
-
     def close(self) -> None:
         """End; unsaved work stays in its file."""
         self.stopping.set()
@@ -192,7 +178,7 @@ class LiveStudio(ABC):
 
     def _pause_before_overlaps(self) -> None:
         """Stand still at a start at which bodies overlap: physics would push them apart."""
-        if self.cell.overlaps_at_start and not self.cell.steps_done:
+        if self.cell.simulator.overlaps_at_start and not self.cell.steps_done:
             self.is_playing = False
 
     def _pace(self, samples: int) -> bool:
@@ -314,7 +300,7 @@ class LiveStudio(ABC):
         return {
             "type": "document",
             "text": self.text,
-            "file": str(self.files.path.name),
+            "file": self.files.name,
             "is_saved": self.text == self.saved,
             "problems": [problem_message(each, str(self.files.path)) for each in self.problems],
             "step_lines": [] if self._cell is None else self.cell.document.step_lines(),
@@ -346,14 +332,6 @@ class LiveStudio(ABC):
         self.session.broadcast(
             {"type": "reach", "pose": None, "refusal": "", "ways": [], "best": -1}
         )
-
-    @abstractmethod
-    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
-        """A handle was moved on a page; called in the server's thread."""
-
-    @abstractmethod
-    def on_choose(self, client: int, way: int) -> None:
-        """A ghost was clicked on a page; called in the server's thread."""
 
     # -- at once ------------------------------------------------------------------------------
 

@@ -58,7 +58,7 @@ def robot_message(cell: LiveCell) -> Message:
         "bodies": list(cell.cell.presence),
         "overlaps": [
             f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
-            for touch in cell.overlaps_at_start
+            for touch in cell.simulator.overlaps_at_start
         ],
         "worlds": bundled_worlds(),
         "planners": list(planner_names()),

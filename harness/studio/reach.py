@@ -101,9 +101,11 @@ class ReachStudy:
 
         study = study_goal(self._kinematics, self._space, find_touches, start, goal, 0)
         ways = tuple(
-            Way(self._space.whole(branch.positions), branch.name, touches_text(branch.touches))
-            if branch.touches
-            else Way(self._space.whole(branch.positions), branch.name, "")
+            Way(
+                self._space.whole(branch.positions),
+                branch.name,
+                touches_text(branch.touches) if branch.touches else "",
+            )
             for branch in study.branches
         )
         if any(not way.refusal for way in ways):

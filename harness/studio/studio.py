@@ -7,6 +7,7 @@ from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.recording.step_record import StepRecord
+from harness.session.prepare import prepare
 from harness.studio.document import Document
 from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions
@@ -245,10 +246,13 @@ class Studio(GoalActions):
         if judged is not None:
             self.session.broadcast(judged)
         self._refuse_mistakes()
-        path = self.files.save(str(message.get("name") or self.files.path.name), self.text)
+        path = self.files.named(str(message.get("name") or self.files.name))
+        if path.parent.resolve() != self.files.path.parent.resolve():
+            prepare(path, text=self.text)  # relative paths begin in another folder
+        self.files.save(path, self.text)
         self.saved = self.text
         self.session.broadcast(self.document_message())
-        return {"file": path.name, "digest": self.verdicts.message["digest"]}
+        return {"file": self.files.name, "digest": self.verdicts.message["digest"]}
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:

@@ -112,7 +112,7 @@ FOLDERS = (
 )  # fmt: skip
 
 
-def told(scene: FolderScene, runs: Mapping[str, Path], folder: Path) -> tuple[Path, str]:
+def report_on(scene: FolderScene, runs: Mapping[str, Path], folder: Path) -> tuple[Path, str]:
     """The changed copy of a run, and what the command says of it."""
     report = folder / scene.title.replace(" ", "_")
     shutil.copytree(runs["open_manipulator_x"], report)

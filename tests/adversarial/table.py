@@ -10,9 +10,10 @@ from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
-from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, saved_run, told
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
+from tests.adversarial.rules import RULES, rule_row
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
 from tests.adversarial.trick_scenes import TRICK_SCENES
 from tests.adversarial.window_scenes import WINDOW_SCENES
@@ -38,6 +39,12 @@ expectations that hold in the same run, so that no scene is simply rejected as a
 rule there is a scene in which it must not fire. A naive check marked as too strict raises a false
 alarm where the expectations pass. `python -m tests.adversarial.table` writes this page from the
 runs.
+
+## Rules
+
+| rule | scenes that it refutes | scenes in which it must not fire |
+| --- | --- | --- |
+{rules}
 
 ## Scenes in the physics
 
@@ -224,7 +231,12 @@ def without_numbers(text):
 def page(rows, recordings, files, folders, environments):
     """The whole page."""
     count = sum(map(len, (rows, recordings, files, folders, environments)))
-    tables = [HEAD.replace("{count}", str(count)), *(f"{row}\n" for row in rows), RECORDED]
+    rules = "\n".join(map(rule_row, RULES))
+    tables = [
+        HEAD.replace("{count}", str(count)).replace("{rules}", rules),
+        *(f"{row}\n" for row in rows),
+        RECORDED,
+    ]
     tables += [*(f"{row}\n" for row in recordings), WRITTEN, *(f"{row}\n" for row in files)]
     tables += [SAVED, *(f"{row}\n" for row in folders)]
     tables += [STARTED, *(f"{row}\n" for row in environments)]
@@ -244,7 +256,7 @@ def main():
             recordings.append(recording_row(scene, graded_scene(scene, run, Path(folder))[1]))
         files = [file_row(scene, checked(scene, Path(folder))) for scene in FILES]
         runs = {robot: saved_run(Path(folder), robot) for robot in ROBOTS}
-        folders = [folder_row(scene, told(scene, runs, Path(folder))[1]) for scene in FOLDERS]
+        folders = [folder_row(scene, report_on(scene, runs, Path(folder))[1]) for scene in FOLDERS]
         started = [environment_row(each, each.exit_code(Path(folder))) for each in ENVIRONMENTS]
     PAGE.write_text(page(rows, recordings, files, folders, started), encoding="utf-8")
 

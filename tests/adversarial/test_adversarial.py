@@ -3,8 +3,9 @@
 import pytest
 
 from tests.adversarial.file_scenes import FILES
-from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, saved_run, told
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
+from tests.adversarial.rules import RULES
 from tests.adversarial.table import (
     ALL_SCENES,
     PAGE,
@@ -85,13 +86,13 @@ def test_a_file_that_says_something_else_than_it_seems_is_refused(scene, tmp_pat
 
 @pytest.fixture(scope="module")
 def said_of(tmp_path_factory):
-    """Each changed folder and what is said of it, asked once."""
+    """Each changed folder and what is said of it, computed once."""
     folder, known = tmp_path_factory.mktemp("folders"), {}
     runs = {robot: saved_run(folder, robot) for robot in ROBOTS}
 
     def said(scene):
         if scene.title not in known:
-            known[scene.title] = told(scene, runs, folder)
+            known[scene.title] = report_on(scene, runs, folder)
         return known[scene.title]
 
     return said
@@ -121,6 +122,16 @@ def exit_code_in(tmp_path_factory):
 @pytest.mark.parametrize("scene", ENVIRONMENTS, ids=lambda scene: scene.title)
 def test_a_run_goes_on_in_any_environment(scene, exit_code_in):
     assert exit_code_in(scene) == 1, "its expectation fails"
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.title)
+def test_every_rule_has_three_scenes_and_one_in_which_it_must_not_fire(rule):
+    scenes = (*ALL_SCENES, *RECORDINGS, *FILES, *FOLDERS, *ENVIRONMENTS)
+    titles = {scene.title for scene in scenes}
+    assert {*rule.fires, *rule.silent} <= titles
+    assert not set(rule.fires) & set(rule.silent)
+    assert len(rule.fires) + len(rule.silent) >= 3
+    assert rule.silent
 
 
 def test_the_page_of_verdicts_is_current(run_of, grade_of, said_of, exit_code_in, tmp_path):

@@ -468,6 +468,8 @@ def shelf_poses(z):
         (((50, 55),), False),
         (((51, 55),), True),
         (((150, 190),), False),  # after it was released
+        (((151, 190),), False),
+        (((152, 190),), False),
         (((149, 190),), False),  # put down: it stays where it is
         (((148, 151),), True),  # it touched on its way: the hold lasts to sample 150
         (((148, 152),), False),

@@ -95,7 +95,9 @@ def test_clearance_is_judged_while_the_object_is_there():
     distance = np.full(200, np.nan)
     spec = Clearance(between=("robot", "box"), at_least=0.01)
     never_there = (TABLE, replace(BOX, present=()))
-    assert verdict(clearance_run(distance, objects=never_there), spec).status == "not reached"
+    absent = verdict(clearance_run(distance, objects=never_there), spec)
+    assert absent.status == "not reached"
+    assert absent.reason == "robot and box were never there together"
     distance[50:60] = 0.02
     there = clearance_run(distance, objects=(TABLE, replace(BOX, present=((0.5, 0.59),))))
     assert verdict(there, spec).status == "passed"

@@ -193,6 +193,10 @@ def test_an_until_that_comes_at_once_judges_nothing_before_it():
     at_once = Until(predicate=Upright(object="box"), until=Released(object="box"))
     later = Until(predicate=Upright(object="box"), until=Lifted(object="box"))
     assert warned(run, at_once) == [ALREADY]
+    touched = make_run(contact_forces={("left_finger", "box"): force(200, (20, 60))})
+    for hold, expected in ((0.1, [ALREADY]), (0.5, [])):
+        free = Until(predicate=Upright(object="box"), until=Released(object="box"), **{"for": hold})
+        assert warned(touched, free) == expected, "it was free for 0.2 s at first"
     late = replace(run, steps=(*run.steps, step("late", 10, 200)))
     [warning] = verdict(late, at_once, "late").warnings
     assert "`released` held at t=0.100 s, the first sample" in warning.message
