@@ -144,7 +144,6 @@ class _Progress:
 def _show(
     arguments: argparse.Namespace, found: SearchResult, written: Sequence[WrittenFailure]
 ) -> None:
-    from harness.failure_search.rate import failure_rate
     from harness.failure_search.write import search_folder
     from harness.reporting.suite.cause import cause_of
     from harness.reporting.suite.write import PAGE
@@ -159,8 +158,8 @@ def _show(
         return
     names = ", ".join(each.path for each in found.space.parameters)
     say(f"{found.request.file}: {len(exploration.samples)} runs over {names}")
-    if exploration.start:
-        say(failure_rate(exploration.start).sentence)
+    if exploration.rate is not None:
+        say(exploration.rate.sentence)
     if found.uncounted:
         say(f"{found.uncounted} runs are invalid or begin with an overlap, and do not count")
     if not written:

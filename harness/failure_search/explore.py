@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -21,10 +22,46 @@ from harness.failure_search.space import Point, SearchSpace
 STEP_SIZE = 0.15
 """First standard deviation of the optimiser, as a share of each range."""
 
+CONFIDENCE = 0.95
+"""The confidence of the interval of the rate."""
+
 PATIENCE = 6
 """Generations without a nearer run, after which the optimiser starts somewhere else."""
 
 Evaluate = Callable[[Sequence[Point]], list[Sample]]
+
+
+@dataclass(frozen=True)
+class FailureRate:
+    """The share of the ranges in which the scenario fails.
+
+    Attributes:
+        failed: The number of `total` that failed.
+        total: The low-discrepancy samples; samples of the optimiser would count failures twice.
+        low: Lower end of the interval of Clopper and Pearson [1].
+        high: The upper end; where none failed, the one-sided bound.
+        confidence: The confidence of the interval.
+
+    References:
+        [1] C. J. Clopper, E. S. Pearson, "The Use of Confidence or Fiducial Limits Illustrated in
+            the Case of the Binomial", Biometrika 26(4), 1934.
+    """
+
+    failed: int
+    total: int
+    low: float
+    high: float
+    confidence: float
+
+    @property
+    def sentence(self) -> str:
+        """The rate in one sentence."""
+        where = f"{self.failed} of {self.total} low-discrepancy samples failed"
+        sure = f"with {self.confidence:.0%} confidence"
+        if not self.failed:
+            return f"{where}: {sure}, at most {self.high:.2%} of the ranges fails"
+        share = self.failed / self.total
+        return f"{where}: {share:.2%} of the ranges fails, {sure} {self.low:.2%} to {self.high:.2%}"
 
 
 @dataclass(frozen=True)
@@ -42,6 +79,18 @@ class Exploration:
     samples: tuple[Sample, ...]
     kinds: dict[str, tuple[Sample, ...]]
     first_failure: int
+
+    @cached_property
+    def rate(self) -> FailureRate | None:
+        """The rate that the samples of the start show; None without any."""
+        from scipy.stats import binomtest
+
+        total, failed = len(self.start), sum(map(_failed, self.start))
+        if not total:
+            return None
+        test = binomtest(failed, total, alternative="two-sided" if failed else "less")
+        interval = test.proportion_ci(CONFIDENCE, method="exact")
+        return FailureRate(failed, total, float(interval.low), float(interval.high), CONFIDENCE)
 
 
 def explore(

@@ -9,7 +9,7 @@ from pathlib import Path
 from harness.core.errors import HarnessError
 from harness.core.printable import printable
 from harness.failure_search.evaluator import Sample
-from harness.failure_search.rate import FailureRate, failure_rate
+from harness.failure_search.explore import FailureRate
 from harness.failure_search.search import Failure, SearchResult
 from harness.language.reading.load import load_scenario
 from harness.language.reading.resolve import resolved_text
@@ -119,8 +119,8 @@ def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder:
     ]
     cases = [SuiteCase(result, found.space.values(point)) for result, point in runs]
     outcome = "failed" if is_failing(found) else "passed"
-    start = found.exploration.start
-    rates = [_sampled(found, failure_rate(start))] if start else []
+    rate = found.exploration.rate
+    rates = [] if rate is None else [_sampled(found, rate)]
     with writing(folder), replaced(folder / NUMBERS) as file:
         file.write(json_text(search_document(found, written)).encode())
     return write_suite_page(folder, SuiteRecord(outcome, cases, rates))
@@ -173,7 +173,7 @@ def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> d
         "runs": len(exploration.samples),
         "uncounted": found.uncounted,
         "first_failure": exploration.first_failure or None,
-        "rate": failure_rate(exploration.start) if exploration.start else None,
+        "rate": exploration.rate,
         "failures": [
             {
                 "kind": each.failure.kind,
