@@ -26,8 +26,9 @@ from harness.assertions.temporal import episodes
 from harness.assertions.window import Window, window_of
 from harness.core.types import FloatArray
 from harness.language.reading.load import load_scenario
-from harness.recording.run import Measure, Run, Verdict
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure, Verdict
 from harness.session.rejudge import expectations_of
 from tests.running import run_case
 

@@ -53,8 +53,9 @@ little carries a named warning. `harness run --strict`, `harness judge --strict`
 | --- | --- |
 | already true at the start | `eventually`, `lifted`, `displaced`, the second part of `until`, \
 or what a formula awaits, holds at the first sample of its window; `placed`, `released` and `in` \
-at the end, where the robot never touched the object and it moved by no more than 5 mm, or was \
-in the container since the run began |
+at the end, where the robot never touched the object and it moved by no more than 5 mm (for \
+`placed` in the world, in the frame of `pose`, or on what carries it), or was in the container \
+since the run began |
 | premise never held | the left side of an `implies` holds at no sample of the window |
 | hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples \
 at most, as an object that the next step adds, or over a step that takes no time |

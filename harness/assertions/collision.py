@@ -92,14 +92,13 @@ def why_not_excused(run: Run, pair: Pair) -> str:
         beyond = np.where(_gripping(run, link, things[0]), force - limits, 0.0)
     for held, other in permutations(things, 2):
         limit = _held_limit(run, held)
-        for first, last, is_excused in _contacts_in_hand(run, held, other):
-            if not is_excused:
+        for span, moved in _contacts_in_hand(run, held, other):
+            if moved is None:
                 continue
-            moved = dragged(run, held, other, first, last)
             if moved.max() >= DRAG:
                 return f"dragged along it by {amount(float(moved.max()), 'm')}"
-            beyond[first:last] = (force - limit)[first:last]
-            limits[first:last] = limit[first:last]
+            beyond[span] = (force - limit)[span]
+            limits[span] = limit[span]
     worst = int(np.argmax(beyond))
     if beyond[worst] <= 0:
         return ""
@@ -183,29 +182,32 @@ def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:
     if not contacts:
         return guilty
     presses = mean_force(run, held, other) > _held_limit(run, held)
-    for first, last, is_excused in contacts:
-        if is_excused:
-            guilty[first:last] |= presses[first:last]
-            guilty[first:last] |= dragged(run, held, other, first, last) >= DRAG
-        else:
-            guilty[first:last] = True
+    for span, moved in contacts:
+        guilty[span] |= True if moved is None else presses[span] | (moved >= DRAG)
     return guilty
 
 
-def _contacts_in_hand(run: Run, held: str, other: str) -> list[tuple[int, int, bool]]:
-    """Contacts of an object in the hand with another: first sample, one past the last, excused?
+def _contacts_in_hand(run: Run, held: str, other: str) -> list[tuple[slice, FloatArray | None]]:
+    """Contacts of an object in the hand with another: samples, and how far it is dragged [m].
 
-    They are excused where the object leaves what it touched before, or is put down on it.
+    They are excused where the object leaves what it touched before, or is put down on it; others
+    have no distance. Along one contact the distances of several holds add up: letting go on the way
+    makes no new one.
     """
     if run.robot.gripper is None:
         return []
     holds = episodes(_holds(run, held))
     contacts = bridged(run.signals.times, episodes(force_between(run, {held}, {other}) > 0))
-    found: list[tuple[int, int, bool]] = []
-    for hold_start, hold_stop in holds:
-        for start, stop in contacts:
-            if start < hold_stop and stop > hold_start:
-                put_down = stop > hold_stop and bool(is_below(run, other, held)[hold_stop - 1])
-                span = max(start, hold_start), min(stop, hold_stop)
-                found.append((*span, start <= hold_start or put_down))
+    found: list[tuple[slice, FloatArray | None]] = []
+    for start, stop in contacts:
+        before = 0.0
+        for hold_start, hold_stop in holds:
+            if start >= hold_stop or stop <= hold_start:
+                continue
+            first, last = max(start, hold_start), min(stop, hold_stop)
+            moved = before + dragged(run, held, other, first, last)
+            before = float(moved[-1])
+            put_down = stop > hold_stop and bool(is_below(run, other, held)[hold_stop - 1])
+            is_excused = start <= hold_start or put_down
+            found.append((slice(first, last), moved if is_excused else None))
     return found

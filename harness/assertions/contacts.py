@@ -17,7 +17,9 @@ from harness.assertions.window import NotObservable
 from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
 from harness.language.step import step_class
-from harness.recording.run import GripperRecord, Run, VerdictWarning
+from harness.recording.robot_record import GripperRecord
+from harness.recording.run import Run
+from harness.recording.verdict import VerdictWarning
 
 TOUCH_FORCE = 1e-3
 """A tenth of the weight of one gram; less is no support and no grip [N]."""

@@ -19,7 +19,8 @@ from harness.core.pose_arrays import (
 from harness.core.symmetry import ANY, equal_turns
 from harness.core.types import BoolArray, FloatArray
 from harness.language.step import step_class
-from harness.recording.run import AttachmentRecord, Run, is_nested
+from harness.recording.run import AttachmentRecord, Run
+from harness.recording.step_record import is_nested
 
 
 def released_at(run: Run, record: AttachmentRecord) -> float:

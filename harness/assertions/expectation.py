@@ -33,7 +33,8 @@ from harness.language.expectation import (
     TemporalFields,
 )
 from harness.language.plugin_field import PluginField
-from harness.recording.run import Measure, Run, Verdict, VerdictWarning
+from harness.recording.run import Run
+from harness.recording.verdict import Measure, Verdict, VerdictWarning
 
 SPECIAL_BODIES = ("robot", "gripper", "any")
 """Words that stand for several bodies where two bodies are named."""

@@ -46,7 +46,7 @@ from harness.language.formula.formula import (
     text_of,
 )
 from harness.language.formula.parser import parse_formula
-from harness.recording.run import Measure, Observed, Verdict, VerdictStatus, VerdictWarning
+from harness.recording.verdict import Measure, Observed, Verdict, VerdictStatus, VerdictWarning
 
 PLOTS = {
     "position": "position",

@@ -14,7 +14,7 @@ from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
 from harness.language.formula.formula import Arithmetic, Const, Number, Signal
-from harness.recording.run import JointRecord
+from harness.recording.robot_record import JointRecord
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,9 @@ from harness.assertions.window import NotObservable, Window
 from harness.cell.scope import At
 from harness.core.types import FloatArray
 from harness.language.expectation import Quantity
-from harness.recording.run import JointRecord, Measure, Run
+from harness.recording.robot_record import JointRecord
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 SLIDING_TOLERANCE = 0.002
 """[m]"""

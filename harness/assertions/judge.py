@@ -13,7 +13,8 @@ from harness.assertions.facts import remembered_facts
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.recorded import guard_unrecorded
 from harness.assertions.window import NotObservable, NotReached
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 
 
 def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:

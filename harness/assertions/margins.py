@@ -12,7 +12,7 @@ import numpy as np
 from harness.assertions.window import Window
 from harness.core.types import BoolArray, FloatArray
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, VerdictWarning
+from harness.recording.verdict import Measure, VerdictWarning
 
 Comparison = Literal["<=", ">=", "=="]
 Margin = FloatArray

@@ -10,7 +10,8 @@ from harness.assertions.recorded import Unreadable
 from harness.core.errors import HarnessError
 from harness.core.types import FloatArray
 from harness.recording.looks import PictureKind
-from harness.recording.run import CaptureRecord, Run, Signals
+from harness.recording.run import Run
+from harness.recording.signals import CaptureRecord, Signals
 
 CLEARANCE_CUTOFF = 0.15
 """Distances that every run records are exact up to here [m]."""

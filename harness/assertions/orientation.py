@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 
 def against(measures: Sequence[Measure], *, is_passed: bool) -> tuple[Measure, ...]:

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any, NoReturn, cast
 
 from harness.assertions.window import NotObservable
-from harness.recording.run import AttachmentRecord, Run, Signals
+from harness.recording.run import AttachmentRecord, Run
+from harness.recording.signals import Signals
 
 WORDS = {
     "joint_velocities": "the velocities of the joints",

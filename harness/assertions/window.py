@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.recording.run import ObjectRecord, Run, StepRecord
+from harness.recording.run import ObjectRecord, Run
+from harness.recording.step_record import StepRecord
 
 D = TypeVar("D", bound=np.dtype[Any])
 

@@ -16,7 +16,7 @@ from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.expectation import PredicateFields, TemporalFields
-from harness.recording.run import Observed, Verdict, VerdictStatus, VerdictWarning
+from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning
 
 ALREADY_TRUE = "already true at the start"
 """The name of the warning that nothing had to change for an expectation to pass."""

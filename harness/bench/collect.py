@@ -17,7 +17,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.search.find_pipeline import with_planner
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.session.prepare import Prepared, prepare
 
 OnMotion = Callable[["MotionTrials"], None]

@@ -25,7 +25,8 @@ from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.arrays import write_npz
 from harness.recording.looks import Look
-from harness.recording.run import CaptureRecord, Run
+from harness.recording.run import Run
+from harness.recording.signals import CaptureRecord
 from harness.robot.description import RobotDescription
 
 FOLDER = "cameras"

@@ -16,7 +16,8 @@ from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.explanation import NearestState, recorded_explanation
-from harness.recording.run import Run, StepRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import robot_poses
 

@@ -9,7 +9,8 @@ import numpy as np
 from harness.core.geometry import Plane
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
-from harness.recording.run import Run, StepRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SceneChange
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import robot_poses

@@ -14,7 +14,8 @@ from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
 from harness.recording.film import SUFFIX, encoded_film, film_size
-from harness.recording.run import Finding, Run, VideoRecord
+from harness.recording.run import Finding, Run
+from harness.recording.signals import VideoRecord
 from harness.robot.description import RobotDescription
 
 MOST_FRAMES = 1500

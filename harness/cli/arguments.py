@@ -119,6 +119,11 @@ def positive_number(what: str) -> Callable[[str], float]:
 seconds = positive_number("seconds")
 
 
+def start_time(text: str) -> float:
+    """A time of a run [s]: 0, or later."""
+    return 0.0 if text in ("0", "0.0") else seconds(text)
+
+
 def share_of_one(text: str) -> float:
     """A share above 0, at most 1."""
     number = positive_number("a share")(text)

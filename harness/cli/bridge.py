@@ -74,7 +74,7 @@ def bridge_request(
         adapter=arguments.adapter,
         nodes=named_commands(arguments.nodes),
         factor=arguments.pace,
-        say=complain,
+        say=note,
     )
 
 
@@ -99,8 +99,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 def show_remarks(result: BridgeResult) -> None:
     """What is said of wall time, names and the launched program."""
-    for remark in result.remarks():
-        complain(f"note: {remark}")
+    for remark in result.remarks:
+        note(remark)
+
+
+def note(text: str) -> None:
+    """Print a note that no result depends on."""
+    complain(f"note: {text}")
 
 
 def show_case(case: CaseResult, request: RunRequest) -> None:

@@ -22,7 +22,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Compare two runs' folders; exit code 1 when they are not the same."""
     folders = [run_folder(arguments.first), run_folder(arguments.second)]
     from harness.recording.compare import compare
-    from harness.recording.store import blames_changes, read_run
+    from harness.recording.read_run import read_run
+    from harness.recording.stored_run import blames_changes
     from harness.reporting.comparison import comparison_lines
     from harness.reporting.terminal import Style
 

@@ -14,7 +14,7 @@ from harness.cli.output import say
 from harness.suite.discovery import UsageError
 
 if TYPE_CHECKING:
-    from harness.recording.store import StoredRun
+    from harness.recording.stored_run import StoredRun
     from harness.reporting.rosbag.write import BagOptions
 
 METADATA = "metadata.yaml"
@@ -46,7 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     targets = [Path(name) for name in (arguments.bag, arguments.urdf) if name]
     for target in targets:
         _refuse_taken(target, is_forced=arguments.force)
-    from harness.recording.store import blames_changes, read_run
+    from harness.recording.read_run import read_run
+    from harness.recording.stored_run import blames_changes
 
     stored = read_run(folder)
     with blames_changes(folder, stored):

@@ -23,7 +23,7 @@ from harness.suite.outcome import EXIT_CODES
 if TYPE_CHECKING:
     from harness.grading.grade import Grade, Graded
 
-DOUBTS = ("publishers", "tf", "frames", "steps", "velocities")
+DOUBTS = ("publishers", "tf", "frames", "steps", "velocities", "jumps", "once")
 EXAMPLE = "red_box=/red_box/pose"
 
 
@@ -111,7 +111,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
 
     from harness.cli.bridge import bridge_request, show_case, show_remarks
     from harness.grading.grade import Grade, graded
-    from harness.recording.store import read_run
+    from harness.recording.read_run import read_run
     from harness.ros.bridge import run_bridge
     from harness.ros.domain import domain_of_user, free_domain
 

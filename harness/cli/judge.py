@@ -10,7 +10,7 @@ from pathlib import Path
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import STRICT, add_json, add_plugin
-from harness.recording.run import ContactRecord
+from harness.recording.signals import ContactRecord
 from harness.reporting.terminal import PLAIN, Style
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
@@ -34,7 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     folder = run_folder(arguments.folder)
     from harness.cli.judge import contact_lines
     from harness.observation.contacts import contact_records
-    from harness.recording.store import blames_changes, read_run
+    from harness.recording.read_run import read_run
+    from harness.recording.stored_run import blames_changes
     from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.rejudge import judge_stored
 

@@ -78,7 +78,8 @@ class ProgressLines:
         for note in result.notes:
             if note not in self._noted:
                 self._noted.add(note)
-                self._line(index, f"  {self._style.quiet(f'note: {note}')}")
+                for line in f"note: {note}".splitlines():
+                    self._line(index, f"  {self._style.quiet(line)}")
         is_last = self._done == len(self._cases)
         self._output.status(None if is_last else self._status(None, index))
 

@@ -25,7 +25,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     Raises:
         UsageError: There is more than one scenario, or the user cannot confirm.
     """
-    from harness.cli.bridge import show_case
+    from harness.cli.bridge import note, show_case
     from harness.ros.bridge import open_graph
     from harness.ros.domain import domain_of_user
     from harness.ros.remote import RemoteOptions, run_on_robot
@@ -52,7 +52,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
         domain,
         node="armharness",
         is_local=not arguments.network,
-        say=complain,
+        say=note,
     )
     try:
         options = RemoteOptions(arguments.velocity_scaling, confirmation)

@@ -24,7 +24,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run a recorded command stream again; exit code 1 when the digest differs."""
     folder = run_folder(arguments.run)
-    from harness.recording.store import read_run
+    from harness.recording.read_run import read_run
     from harness.ros.replay import replay
 
     target = Path(arguments.report_dir) if arguments.report_dir else None

@@ -6,7 +6,7 @@ import argparse
 import threading
 from pathlib import Path
 
-from harness.cli.arguments import port_number, seconds
+from harness.cli.arguments import port_number, start_time
 from harness.cli.output import complain, say
 from harness.cli.robot_options import ROBOT
 from harness.cli.shared_options import add_plugin
@@ -22,7 +22,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     text = f"{ROBOT}; a scenario; a run's folder (default: open_manipulator_x)"
     add("target", metavar="ROBOT|SCENARIO|RUN", nargs="?", default="open_manipulator_x", help=text)
     text = "with a run: continue by hand from this time (default: 0)"
-    add("--at", metavar="SECONDS", type=seconds, default=None, help=text)
+    add("--at", metavar="SECONDS", type=start_time, default=None, help=text)
     text = "put the robot into this bundled world or world file"
     add("--world", metavar="WORLD", default="", help=text)
     text = "mount this bundled gripper on the robot"
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     if studio.problems and not files.path.exists():  # what the command line names is the mistake
         said = (": ".join(filter(None, (each.message, each.hint))) for each in studio.problems)
         raise UsageError("; ".join(said))
-    if time is not None:
+    if time:
         say(f"going on to t={time:g} s, as the run did")
         studio.cell.run_until(time)
     host = arguments.host or LOOPBACK[0]
@@ -98,7 +98,7 @@ def refuse_missing_extra() -> None:
 
 def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
     """The file that the studio saves to, the text with which it begins, and the time to go to."""
-    from harness.recording.store import RESOLVED, RUN
+    from harness.recording.stored_run import RESOLVED, RUN
 
     word: str = arguments.target
     if (Path(word) / RUN).is_file():

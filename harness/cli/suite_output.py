@@ -35,7 +35,7 @@ def write_suite_files(
     if not has_page(arguments, suite):
         return None, None
     from harness.reporting.suite.history import history_of
-    from harness.suite.write import write_results
+    from harness.suite.conditions import write_results
 
     history = history_of(Path(arguments.history)) if arguments.history else {}
     return write_results(suite, Path(arguments.report_dir), history)

@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _page(path: Path, *, is_rebuilt: bool) -> Path:
     """A run's page, or the page of a folder of many runs."""
-    from harness.recording.store import PAGE, RUN
+    from harness.recording.stored_run import PAGE, RUN
     from harness.reporting.suite import write as suite
 
     folder = path if path.is_dir() else path.parent

@@ -8,3 +8,6 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
+Floats = tuple[float, ...]
+Pair = tuple[str, str]
+"""The names of two bodies."""

@@ -19,7 +19,8 @@ from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
 from harness.ports.motions import FreeMotion, JointMotion
 from harness.ports.simulation import GripperResult
-from harness.recording.run import Signals, StepRecord
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
 

@@ -18,7 +18,8 @@ from harness.ports.scene import PlanningScene
 from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.explanation import Explanation
-from harness.recording.run import AttachmentRecord, ObjectRecord, StepRecord, StepStatus
+from harness.recording.run import AttachmentRecord, ObjectRecord
+from harness.recording.step_record import StepRecord, StepStatus
 
 TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
 
@@ -58,7 +59,7 @@ class _RunEndedError(Exception):
 class _Runner:
     cell: Cell
     on_step: OnStep
-    keep_going: bool = False
+    keep_going: bool
     records: list[StepRecord] = field(default_factory=list[StepRecord])
     depth: int = 0
 

@@ -12,7 +12,7 @@ from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
 from harness.language.expectation import ExpectationFields
 from harness.ports.motion_planning import PlanningOptions
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
 Describe = Callable[[ExpectationFields], str]

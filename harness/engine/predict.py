@@ -12,7 +12,7 @@ from harness.engine.execute import execute_program
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import MotionPlanner
 from harness.ports.scene import PlanningScene, Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 
 
 def predict(

@@ -60,7 +60,7 @@ class Clearance(Predicate):
     @model_validator(mode="after")
     def _one(self) -> Clearance:
         if self.at_least is None and self.max_below_plan is None:
-            raise ValueError("`at_least`, `max_below_plan`, or both")
+            raise ValueError("`clearance` needs `at_least`, `max_below_plan` or both")
         return self
 
     def check(self, at: At) -> None:

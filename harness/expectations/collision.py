@@ -21,7 +21,8 @@ from harness.cell.scope import At
 from harness.core.types import FloatArray
 from harness.language.base import Flag, Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 LEAST_DISTANCE = 1e-6
 """A recorded distance of zero without contact is still none [m]."""
@@ -47,7 +48,8 @@ class Collision(Predicate):
     twice the weight of the object and of what rests on it, plus the grip that the gripper's motor
     exerts where a link of the hand presses or the gripper moves, plus 1 N (a tenth of a millimetre
     of position error). An average is an impulse: a blow of a millisecond may peak higher. And the
-    object is dragged along the other body by less than 2 cm. Beyond that it is a collision.
+    object is dragged along the other body by less than 2 cm; along one contact the distances of
+    several holds add up. Beyond that it is a collision.
 
     Planner and physics leave out the contact of links that the SRDF excludes. Those that are apart
     with every joint at zero, and overlap by more than 1 mm during the run (convex hulls are not

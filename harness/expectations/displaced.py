@@ -12,7 +12,7 @@ from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.language.base import PositiveLength
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 DISTANCE = Quantity("distance from the start", "m", "at least `at_least`")
 

@@ -11,7 +11,7 @@ from harness.assertions.window import NotReached, Window
 from harness.core.quantity import distinct
 from harness.language.base import Duration
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 DURATION = Quantity("duration", "s", "at most `at_most`, at least `at_least`")
 
@@ -33,7 +33,7 @@ class DurationCheck(Predicate):
     @model_validator(mode="after")
     def _one(self) -> DurationCheck:
         if self.at_most is None and self.at_least is None:
-            raise ValueError("`at_most`, `at_least`, or both")
+            raise ValueError("`duration` needs `at_most`, `at_least` or both")
         return self
 
     def signal(self, window: Window) -> MarginSignal:

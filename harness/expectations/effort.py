@@ -14,7 +14,7 @@ from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.window import NotObservable, Window
 from harness.language.base import Share
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 EFFORT = Quantity("effort", "1", "at most `max_fraction`, for each joint", "effort")
 

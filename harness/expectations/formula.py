@@ -22,7 +22,8 @@ from harness.language.formula.formula import (
     signals_of,
 )
 from harness.language.formula.parser import parse_formula, readable
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 
 LARGEST_CUTOFF = 2.0
 """Distances are recorded up to here, however far a formula compares one [m]."""

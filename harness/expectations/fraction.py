@@ -13,8 +13,8 @@ from harness.assertions.text import percentages
 from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
 from harness.language.base import Share
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
 from harness.recording.step_results import CartesianPathResult
+from harness.recording.verdict import Measure
 
 FRACTION = Quantity("fraction", "1", "at least `at_least`, for each path")
 

@@ -27,7 +27,8 @@ from harness.cell.scope import At
 from harness.core.pose_arrays import conjugate, quat_product, relative, rotation_angle
 from harness.language.base import AngleBetween, Force, PositiveLength
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 FINGERS = Quantity("finger force", "N", "at least `min_force` on every side", "contact")
 BETWEEN = Quantity("between the fingers", "1", "pressed from opposite sides by fingers that close")

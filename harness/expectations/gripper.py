@@ -27,7 +27,7 @@ from harness.cell.scope import At
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
 from harness.language.expectation import Quantity
 from harness.recording.execution_failures import GripperOutcome
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 GAP = Quantity("gap error", "m", "with `width`: at most `tolerance`, 2 mm if not given")
 STALLED = Quantity("stalled", "1", "as `stalled` says")

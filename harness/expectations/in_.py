@@ -20,7 +20,8 @@ from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.language.base import AngleBetween, Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, ObjectRecord
+from harness.recording.run import ObjectRecord
+from harness.recording.verdict import Measure
 
 PARALLEL = 1e-9
 """A direction with a smaller part along an axis runs parallel to the planes across it."""

@@ -25,7 +25,7 @@ from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.language.base import Force, Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "contact")
 

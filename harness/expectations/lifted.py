@@ -37,7 +37,8 @@ from harness.cell.scope import At
 from harness.core.types import BoolArray
 from harness.language.base import Flag, PositiveLength
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 HEIGHT = Quantity(
     "height gained", "m", "at least `above`; counts for nothing where another fails", "height"

@@ -16,7 +16,7 @@ from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.language.base import Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 SUPPORT = Quantity("support from below", "N", "at least half of its weight")
 

@@ -11,7 +11,7 @@ from harness.assertions.text import amounts
 from harness.assertions.window import Window
 from harness.language.base import PositiveLength
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 LENGTH = Quantity("path length", "m", "at most `at_most`, at least `at_least`", "tcp")
 
@@ -32,7 +32,7 @@ class PathLength(Predicate):
     @model_validator(mode="after")
     def _one(self) -> PathLength:
         if self.at_most is None and self.at_least is None:
-            raise ValueError("`at_most`, `at_least`, or both")
+            raise ValueError("`path_length` needs `at_most`, `at_least` or both")
         return self
 
     def signal(self, window: Window) -> MarginSignal:

@@ -33,6 +33,7 @@ from harness.core.pose_arrays import (
     compose,
     conjugate,
     quat_product,
+    relative,
     rotate,
     rotation_vector,
 )
@@ -42,7 +43,8 @@ from harness.core.types import BoolArray, FloatArray
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose, PoseTolerance
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 PLACE_POSITION = 0.01
 """Tolerance of `placed` with a pose and no tolerance [m]."""
@@ -149,9 +151,18 @@ class Placed(ObjectPredicate):
 
     def unchanged(self, window: Window) -> str:
         run, name = window.run, self.object
-        if was_in_robot(run, name, window.stop) or _moved(run, name, window.stop) > JUMP:
+        if was_in_robot(run, name, window.stop):
             return ""
-        return f"the robot never touched {name}, and it stands where it stood when the run began"
+        carriers = [body for body, force in supports(run, name).items() if force[window.stop - 1]]
+        frame = "world" if self.pose is None else self.pose.frame
+        for base in dict.fromkeys(("world", frame, *carriers)):
+            if _moved(run, name, base, window.stop) <= JUMP:
+                on = "" if base == "world" else f" on {base}"
+                return (
+                    f"the robot never touched {name}, and it stands where it stood{on} when the run"
+                    " began"
+                )
+        return ""
 
     def _at_pose(self, window: Window) -> list[Part]:
         if self.pose is None:
@@ -187,9 +198,9 @@ def _is_carried(run: Run, body: str) -> BoolArray:
     return in_hand(run, body)
 
 
-def _moved(run: Run, name: str, stop: int) -> float:
-    """The largest distance of an object from its first known place before a sample [m]."""
-    places = object_poses(run, name)[:stop, :3]
+def _moved(run: Run, name: str, base: str, stop: int) -> float:
+    """The largest distance of an object from its first place in a frame, before a sample [m]."""
+    places = relative(frame_poses(run, base), object_poses(run, name))[:stop, :3]
     known = places[~np.isnan(places[:, 0])]
     return float(np.linalg.norm(known - known[0], axis=1).max()) if len(known) else 0.0
 

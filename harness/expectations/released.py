@@ -10,7 +10,7 @@ from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 CONTACT = Quantity("contact with the robot", "N", "at most 0.001 N", "contact")
 ATTACHED = Quantity("attached in the planning scene", "1", "not attached")

@@ -21,7 +21,8 @@ from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
 from harness.language.expectation import Quantity
 from harness.language.markers import MarkerName
 from harness.recording.looks import PictureKind
-from harness.recording.run import CaptureRecord, Measure
+from harness.recording.signals import CaptureRecord
+from harness.recording.verdict import Measure
 
 ColorName = Literal["red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink"]
 HUES: dict[ColorName, tuple[float, float]] = {
@@ -66,7 +67,7 @@ class HueRange(SpecModel):
     @model_validator(mode="after")
     def _one(self) -> HueRange:
         if (self.named is None) == (self.hue is None):
-            raise ValueError("exactly one of `named` and `hue`")
+            raise ValueError("`color` needs exactly one of `named` and `hue`")
         return self
 
     def degrees(self) -> tuple[float, float]:
@@ -116,9 +117,9 @@ class Sees(Predicate):
     def _one(self) -> Sees:
         given = [key for key in ("object", "color", "marker") if getattr(self, key) is not None]
         if len(given) != 1:
-            raise ValueError("`sees` is of exactly one of object, color, marker")
+            raise ValueError("`sees` needs exactly one of `object`, `color` and `marker`")
         if "min_visible" in self.model_fields_set and self.object is None:
-            raise ValueError("`min_visible` is of an object; say `min_area` here")
+            raise ValueError("`min_visible` goes with `object`; write `min_area` here")
         return self
 
     def check(self, at: At) -> None:

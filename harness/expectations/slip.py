@@ -14,7 +14,7 @@ from harness.assertions.window import Window
 from harness.cell.scope import At
 from harness.language.base import AngleBetween, PositiveLength
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 SLIP = Quantity("slip against the planner", "m", "at most `max_distance`", "slip")
 TURN = Quantity("turn against the planner", "rad", "at most `max_rotation`")

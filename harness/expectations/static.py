@@ -15,7 +15,8 @@ from harness.assertions.window import NotReached, Window
 from harness.cell.scope import At
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure, Run
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
 
 SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
 TURNING = Quantity(

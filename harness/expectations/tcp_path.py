@@ -19,7 +19,7 @@ from harness.language.expectation import Quantity
 from harness.language.poses import Pose
 from harness.language.step import step_class
 from harness.recording.link_poses import replayed_link_poses as placed_links
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 SHORTEST = 1e-6
 """Points nearer than this are one [m]."""
@@ -70,7 +70,9 @@ class TcpPath(Predicate):
     @model_validator(mode="after")
     def _one(self) -> TcpPath:
         if self.line is not None and self.arc is not None:
-            raise ValueError("`line`, or `arc`, or neither for the step's own path: not both")
+            raise ValueError(
+                "`tcp_path` takes `line` or `arc`, not both; without them it is the step's own path"
+            )
         return self
 
     def corners(self) -> list[tuple[tuple[str, str], Pose]]:

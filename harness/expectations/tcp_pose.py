@@ -18,7 +18,7 @@ from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_
 from harness.language.base import Flag, Name
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose, PoseTolerance
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 POSITION = Quantity("position error", "m", "at most the tolerance's `position`", "tcp")
 ORIENTATION = Quantity(

@@ -15,7 +15,7 @@ from harness.assertions.window import NotObservable, Window
 from harness.core.types import BoolArray, FloatArray
 from harness.language.base import JointValue
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 ERROR = Quantity("tracking error", "rad or m", "at most `max`, for each joint", "tracking")
 

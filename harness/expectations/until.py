@@ -17,7 +17,8 @@ from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached, Window, window_of
 from harness.assertions.words import ALREADY_TRUE, one_step
 from harness.core.types import FloatArray
-from harness.recording.run import Observed, Run, Verdict, VerdictStatus, VerdictWarning
+from harness.recording.run import Run
+from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning
 
 
 class Until(TemporalWord):

@@ -14,7 +14,7 @@ from harness.assertions.window import Window
 from harness.core.pose_arrays import angle_between, rotate
 from harness.language.base import AngleBetween
 from harness.language.expectation import Quantity
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 LEAN = Quantity("lean", "rad", "at most `tolerance`")
 

@@ -22,7 +22,8 @@ from harness.assertions.window import NotObservable, Window
 from harness.core.types import FloatArray
 from harness.language.base import Flag
 from harness.language.expectation import Quantity
-from harness.recording.run import JointRecord, Measure
+from harness.recording.robot_record import JointRecord
+from harness.recording.verdict import Measure
 
 STOP_SOFTNESS = 0.02
 """Share of its range by which a joint that rests on its stop may sink into it."""

@@ -14,7 +14,8 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.grading.bag.content import BagTopics
 from harness.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import robot_record
 

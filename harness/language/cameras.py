@@ -117,9 +117,9 @@ class CameraSpec(CameraFields):
         if self.look_at is None:
             return self
         if self.pose.has_rotation:
-            raise ValueError("`look_at`, or a rotation in `pose`: not both")
+            raise ValueError("a camera takes `look_at` or a rotation in `pose`, not both")
         if sum((a - b) ** 2 for a, b in zip(self.look_at, self.pose.xyz, strict=True)) < 1e-12:
-            raise ValueError("`look_at` is where the camera is")
+            raise ValueError("`look_at` must not be where the camera is")
         return self
 
     def resolved(self) -> Camera:

@@ -145,5 +145,5 @@ class ArcFields(LineFields):
     @model_validator(mode="after")
     def _one_auxiliary(self) -> ArcFields:
         if (self.interim is None) == (self.center is None):
-            raise ValueError("an arc has exactly one of `interim` and `center`")
+            raise ValueError("an arc needs exactly one of `interim` and `center`")
         return self

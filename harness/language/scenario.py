@@ -177,7 +177,10 @@ class RobotSpec(SpecModel):
             key for key in ("model", "urdf", "xacro", "mjcf") if getattr(self, key) is not None
         ]
         if len(given) != 1 and not (not given and self.gripper):
-            raise ValueError("exactly one of model, urdf, xacro, mjcf (or a gripper alone)")
+            raise ValueError(
+                "`robot` needs exactly one of `model`, `urdf`, `xacro` and `mjcf`, or `gripper`"
+                " alone"
+            )
         return self
 
 
@@ -293,19 +296,19 @@ class Scenario(SpecModel):
     @model_validator(mode="after")
     def _rate_of_samples(self) -> Scenario:
         if self.expect_rate is not None and self.samples is None and self.randomize is None:
-            raise ValueError("`expect_rate` is of `samples`: say how many, or what is random")
+            raise ValueError("`expect_rate` needs more than one run; add `samples` or `randomize`")
         return self
 
     @model_validator(mode="after")
     def _redraws_of_random_values(self) -> Scenario:
         if self.redraw_overlaps and self.randomize is None:
-            raise ValueError("`redraw_overlaps` draws the values of `randomize`: nothing is random")
+            raise ValueError("`redraw_overlaps` redraws the values of `randomize`; add `randomize`")
         return self
 
     @model_validator(mode="after")
     def _search_of_random_values(self) -> Scenario:
         if self.search is not None and self.randomize is None:
-            raise ValueError("`search` is in the ranges of `randomize`: nothing is random")
+            raise ValueError("`search` looks within the ranges of `randomize`; add `randomize`")
         return self
 
     def expectation_names(self) -> list[str]:

@@ -44,9 +44,9 @@ class Normal(SpecModel):
         mean, std = split_quantity(self.mean), split_quantity(self.std)
         bounds = [split_quantity(each) for each in (self.low, self.high) if each is not None]
         if any(unit != mean[1] for _, unit in (std, *bounds)):
-            raise ValueError("mean, std, low and high are in one unit")
+            raise ValueError("`mean`, `std`, `low` and `high` must be in one unit")
         if std[0] <= 0:
-            raise ValueError("`std` is above 0")
+            raise ValueError("`std` must be more than 0")
         low = -math.inf if self.low is None else split_quantity(self.low)[0]
         high = math.inf if self.high is None else split_quantity(self.high)[0]
         if high - low < 0.1 * std[0] or low > mean[0] + 3 * std[0] or high < mean[0] - 3 * std[0]:
@@ -69,13 +69,13 @@ class Distribution(SpecModel):
     @model_validator(mode="after")
     def _one(self) -> Distribution:
         if sum(each is not None for each in (self.uniform, self.normal, self.choice)) != 1:
-            raise ValueError("exactly one of uniform, normal, choice")
+            raise ValueError("a random value needs exactly one of `uniform`, `normal` and `choice`")
         if self.uniform is not None:
             (low, unit), (high, other) = (split_quantity(each) for each in self.uniform)
             if unit != other:
-                raise ValueError("both ends are in one unit")
+                raise ValueError("both ends must be in one unit")
             if low >= high:
-                raise ValueError("the first end is below the second")
+                raise ValueError("the first end must be below the second")
         return self
 
 
@@ -141,7 +141,7 @@ def _grid_or_cases(value: object) -> object:
             )
     names = [case["id"] for case in cases if "id" in case]
     if any(not isinstance(name, str) for name in names):
-        raise ValueError("an `id` is text")
+        raise ValueError("an `id` must be text")
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"two cases are called `{name}`")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from harness.core.geometry import Shape
 from harness.core.sharing import shared
-from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.observation.body_tracks import (
     BodyTrack,
     carried_track,
@@ -39,7 +39,8 @@ from harness.observation.sampled_clearance import (
 )
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.motion import Motion
-from harness.recording.run import AttachmentRecord, ObjectRecord, Pair, Signals
+from harness.recording.run import AttachmentRecord, ObjectRecord
+from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 
@@ -145,9 +146,10 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
-    ) -> Mapping[tuple[str, str], FloatArray]:
-        """Distances at every given sample, by pair as in `Signals.clearances`."""
-        return self._measured(motion, objects, attachments, cutoff).distances
+        pairs: Collection[Pair] | None = None,
+    ) -> Mapping[Pair, FloatArray]:
+        """Distances of all pairs, or of some, at every given sample, as in `Signals.clearances`."""
+        return self._measured(motion, objects, attachments, cutoff, pairs).distances
 
     def _measured(
         self,
@@ -155,13 +157,14 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
+        only: Collection[Pair] | None = None,
     ) -> MeasuredClearance:
-        """Distances at every given sample."""
+        """Distances at every given sample; None measures all pairs."""
         links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
             record.name: object_track(record, attachments, motion, links) for record in objects
         }
-        found = MeasuredClearance(len(motion.times))
+        found = MeasuredClearance(len(motion.times), only=only)
         self._robot_to_itself(found, links, motion, cutoff)
         for record in objects:
             there = tracks[record.name].present & ~_held(record.name, attachments, motion)
@@ -271,6 +274,8 @@ class CoalClearance:
         cutoff: float,
     ) -> None:
         """Distances of two bodies, measured here or by a case in which they moved alike."""
+        if found.only is not None and key not in found.only:
+            return
 
         def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
             every = list(pairs())

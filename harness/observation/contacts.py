@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.assertions.collision import colliding
-from harness.recording.run import ContactRecord, Run
+from harness.recording.run import Run
+from harness.recording.signals import ContactRecord
 
 
 def contact_records(run: Run) -> tuple[ContactRecord, ...]:

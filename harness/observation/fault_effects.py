@@ -10,7 +10,10 @@ import numpy as np
 
 from harness.core.types import BoolArray
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
-from harness.recording.run import Finding, ObjectRecord, RobotRecord, Signals, StepRecord
+from harness.recording.robot_record import RobotRecord
+from harness.recording.run import Finding, ObjectRecord
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 
 MOVING = 1e-3
 """A body faster than this moves [m/s]."""
@@ -119,7 +122,8 @@ class _Record:
         last = len(self.signals.times) if set_again is None else max(set_again, first + 1)
         rows = slice(first, last)
         if fault.fault == "push":
-            rows = slice(step.start_index, max(step.end_index, step.start_index + 1))
+            after = 2 if step.end_index > step.start_index else 0  # what it did shows one later
+            rows = slice(max(step.start_index - 1, 0), step.end_index + after)
         effect = self._effects[fault.fault](fault, rows)
         return replace(
             fault,
@@ -163,7 +167,7 @@ class _Record:
 
     def _push(self, fault: InjectedFault, rows: slice) -> Effect:
         speed = self._speed(fault.target, rows)
-        before, fastest = float(speed[0]), float(speed.max())
+        before, fastest = float(speed[0]) if rows.start else 0.0, float(speed.max())
         if fastest - before <= MOVING:
             return Effect(False, "it did not move: friction or a hand held it")
         return Effect(True, f"it reached {fastest:.3g} m/s")

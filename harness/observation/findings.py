@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from harness.cell.program import Program
 from harness.core.errors import Problem
-from harness.core.geometry import Box, Capsule, Cylinder, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Sphere, bounding_radius
 from harness.core.world import WorldObject
 from harness.ports.scene import Touch
 from harness.recording.explanation import lowered_margins_of
-from harness.recording.run import Finding, StepRecord
+from harness.recording.run import Finding
+from harness.recording.step_record import StepRecord
 
 LARGE = 5.0
 """Size from which a movable object is probably given in millimetres [m]."""
@@ -30,6 +33,7 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
     """
     found = [Finding("note", noted(problem)) for problem in notes]
     found += [Finding("note", text) for obj in _added(program) if (text := _too_large(obj))]
+    found += [Finding("note", text) for obj in _added(program) if (text := _too_inert(obj))]
     expects_errors = any(step.spec.expect_error for step in program.all_steps())
     if not program.expectations and not expects_errors:
         found.append(Finding("nothing_expected", NOTHING_EXPECTED))
@@ -54,6 +58,21 @@ def _too_large(obj: WorldObject) -> str:
     return (
         f"'{obj.name}' measures {largest:g} m: a number without a unit is in metres, "
         f"write `{largest:g} mm` for millimetres"
+    )
+
+
+def _too_inert(obj: WorldObject) -> str:
+    """A remark on an inertia beyond that of the whole mass at the far end of the shapes."""
+    if obj.is_static:
+        return ""
+    radius = max(map(bounding_radius, obj.shapes), default=np.inf)
+    most = obj.mass * (radius + float(np.linalg.norm(obj.center_of_mass))) ** 2
+    moment = float(np.linalg.eigvalsh(obj.inertia).max())
+    if moment <= most:
+        return ""
+    return (
+        f"'{obj.name}' has an inertia of {moment:.3g} kg m^2, and its mass within its shapes has"
+        f" {most:.3g} kg m^2 at most: it tips and turns so slowly that it seems to rest"
     )
 
 

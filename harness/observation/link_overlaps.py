@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, Pair
 from harness.observation.body_tracks import (
     TrackedShape,
     link_track,
@@ -17,7 +17,8 @@ from harness.observation.body_tracks import (
 from harness.observation.nearest import ShapePair, pairs_between, smallest_distances
 from harness.observation.sampled_clearance import between, knots
 from harness.planning.model.robot_model import RobotModel
-from harness.recording.run import Finding, Pair, Run, Signals
+from harness.recording.run import Finding, Run
+from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.recording.run import Pair
+from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 
 
 @dataclass(eq=False)
@@ -21,12 +20,14 @@ class MeasuredClearance:
         links: Index of the nearest link, -1 where there is none, shape (count,).
         travels: The most that the bodies moved against each other since the sample before [m],
             shape (count,).
+        only: The pairs that are measured; None measures all.
     """
 
     count: int
     distances: dict[Pair, FloatArray] = field(default_factory=dict[Pair, FloatArray])
     links: dict[Pair, IntArray] = field(default_factory=dict[Pair, IntArray])
     travels: dict[Pair, FloatArray] = field(default_factory=dict[Pair, FloatArray])
+    only: Collection[Pair] | None = None
 
     @classmethod
     def joined(cls, parts: Sequence[MeasuredClearance]) -> MeasuredClearance:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -13,10 +13,12 @@ from harness.assertions.joints import gripper_joints
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, NotReached
 from harness.core.pose_arrays import compose
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, Pair
 from harness.ports.kinematics import Kinematics
 from harness.recording.motion import Motion
-from harness.recording.run import AttachmentRecord, Finding, Pair, Run, Signals, StepRecord
+from harness.recording.run import AttachmentRecord, Finding, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.recording.step_results import AllowedCollisions
 
 LOST = 0.003
@@ -28,7 +30,7 @@ GRIP_GAP = 0.05
 DIFFERENT = 1e-3
 """Planned and actual clearance that differ by more are reported step by step [m]."""
 
-Distances = Callable[[Motion], Mapping[Pair, FloatArray]]
+Distances = Callable[[Motion, Collection[Pair]], Mapping[Pair, FloatArray]]
 
 
 def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
@@ -37,7 +39,7 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
     Args:
         run: The run, with its clearances observed.
         planned: The run's signals `as_commanded`.
-        distances: Measures clearances at every sample it is given.
+        distances: Measures the clearances of some pairs at every sample it is given.
     """
     held = [found for record in run.attachments if (found := held_finding(run, record)) is not None]
     near = _clearances(run, planned, distances)
@@ -137,7 +139,8 @@ def _clearances(run: Run, planned: Signals, distances: Distances) -> tuple[Findi
     if not moves:
         return ()
     rows = np.array([row for _, (row, _) in moves], dtype=np.int64)
-    expectations = distances(Motion.of(planned).at(rows))
+    pairs = {pair for _, (_, pair) in moves}
+    expectations = distances(Motion.of(planned).at(rows), pairs)
     found: list[Finding] = []
     compared: list[tuple[float, Finding]] = []
     for place, (step, (row, pair)) in enumerate(moves):

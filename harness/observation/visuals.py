@@ -8,7 +8,8 @@ import numpy as np
 
 from harness.cameras.meshes import mesh_parts
 from harness.core.geometry import Mesh, Shape
-from harness.recording.run import MeshRecord, Run
+from harness.recording.robot_record import MeshRecord
+from harness.recording.run import Run
 
 
 def mesh_records(run: Run) -> tuple[MeshRecord, ...]:

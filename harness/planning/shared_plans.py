@@ -51,7 +51,7 @@ def sharing_plans(kind: str) -> Callable[[Method[P, R]], Method[P, R]]:
         def planning(self: P, request: MotionRequest) -> R:
             answer = shared(
                 kind,
-                lambda: (method.__qualname__, *planning_inputs(self.scene), request),
+                lambda: (method.__qualname__, self.scene.key, request),
                 lambda: _answer(method, self, request),
             )
             if answer.refusal is not None:
@@ -62,26 +62,6 @@ def sharing_plans(kind: str) -> Callable[[Method[P, R]], Method[P, R]]:
         return planning
 
     return decorated
-
-
-def planning_inputs(scene: CoalScene) -> tuple[object, ...]:
-    """What a plan follows from besides its request: the robot, and the scene without its surfaces.
-
-    The mass of an object counts while the robot carries it.
-    """
-    state = scene.snapshot()
-    objects = [
-        (
-            name,
-            [(shape.geometry, shape.pose) for shape in each.shapes],
-            each.pose,
-            each.link,
-            each.touch_links,
-            None if each.link is None else (each.mass, each.center_of_mass, each.inertia),
-        )
-        for name, each in state.objects.items()
-    ]
-    return scene.description.key, objects, state.allowed, state.unpadded
 
 
 def _answer(

@@ -9,7 +9,7 @@ from typing import Protocol
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 
 LONGEST_RUN = 600.0
 """Simulated time of one run at most [s]: a file cannot fill the machine's memory or its day."""

@@ -17,7 +17,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from harness.recording.run import Pair, Signals
+from harness.core.types import Pair
+from harness.recording.signals import Signals
 
 Array = np.ndarray[Any, Any]
 BY_NAME = ("frames", "object_poses")

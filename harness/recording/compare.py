@@ -13,8 +13,10 @@ import numpy as np
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import arrays_of
-from harness.recording.run import Run, StepRecord, Verdict
-from harness.recording.store import StoredRun
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict
 
 DERIVED = ("clearance", "planned_clearances")
 """Distances are measured at some samples and drawn between: they part a little too early."""

@@ -11,7 +11,10 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import BY_NAME, BY_PAIR
 from harness.recording.npz_file import ArrayHeader
-from harness.recording.run import MeshRecord, RobotRecord, Run, Signals, StepRecord
+from harness.recording.robot_record import MeshRecord, RobotRecord
+from harness.recording.run import Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 
 Inconsistency = tuple[str, str]
 """Key, and what is wrong there."""

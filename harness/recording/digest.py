@@ -12,7 +12,8 @@ import numpy as np
 
 from harness.core.trajectory import JointTrajectory
 from harness.recording.arrays import arrays_of
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 
 VERSION = b"armharness-digest/1"
 

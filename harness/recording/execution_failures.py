@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from harness.core.details import Detail
-from harness.recording.run import Pair
+from harness.core.types import Pair
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from harness.core.details import Detail
+from harness.core.types import Floats, Pair
 from harness.recording.goal_failures import TouchRecord
 from harness.recording.plain import PlainError, from_plain
-from harness.recording.run import Floats, Pair
 
 StageName = Literal["reach", "inverse kinematics", "start state", "path", "time parameterisation"]
 StageStatus = Literal["passed", "failed", "skipped"]

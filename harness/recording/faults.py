@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from harness.core.details import Detail
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 
 FaultKind = Literal[
     "friction", "gripper_effort", "joint_stall", "sensor_noise", "command_latency", "push"

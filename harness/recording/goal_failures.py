@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.core.details import Detail
-from harness.recording.run import Floats, Pair
+from harness.core.types import Floats, Pair
 
 
 @dataclass(frozen=True)

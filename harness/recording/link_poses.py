@@ -8,7 +8,9 @@ import numpy as np
 
 from harness.core.pose_arrays import IDENTITY, compose
 from harness.core.types import FloatArray
-from harness.recording.run import LinkPlacement, RobotRecord, Run, StepRecord
+from harness.recording.robot_record import LinkPlacement, RobotRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 
 
 def replayed_link_poses(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.core.details import Detail
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 
 PictureKind = Literal["color", "depth", "segmentation"]
 

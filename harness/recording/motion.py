@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 
 
 @dataclass(frozen=True, eq=False)

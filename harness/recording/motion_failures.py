@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from harness.core.details import Detail
+from harness.core.types import Floats
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
-from harness.recording.run import Floats
 
 BrokenRule = Literal[
     "timing",

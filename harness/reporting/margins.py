@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from harness.recording.run import Measure, Verdict
+from harness.recording.verdict import Measure, Verdict
 
 SMALL = 0.05
 """A margin that is a smaller share than this is worth a look before it is gone."""
@@ -32,7 +32,9 @@ def margin_share(verdict: Verdict) -> float:
 def worst(verdicts: Sequence[Verdict]) -> Verdict | None:
     """The verdict nearest to failing, or farthest beyond; None where none has a margin."""
     with_margin = [each for each in verdicts if not math.isnan(each.margin)]
-    return min(with_margin, key=margin_share, default=None)
+    if len(with_margin) < 2:
+        return with_margin[0] if with_margin else None
+    return min(with_margin, key=margin_share)
 
 
 def _deciding(verdict: Verdict) -> list[Measure]:

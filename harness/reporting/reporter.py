@@ -10,7 +10,7 @@ from typing import ClassVar
 from harness.core.activity import Activity, unobserved
 from harness.core.errors import HarnessError
 from harness.core.registry import Plugin, described, raised, registry
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 
 
 class Reporter(Plugin, ABC):

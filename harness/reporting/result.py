@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from harness.core.errors import Problem
-from harness.recording.run import Outcome, StepRecord, StepStatus, Verdict
+from harness.recording.run import Outcome
+from harness.recording.step_record import StepRecord, StepStatus
+from harness.recording.verdict import Verdict
 from harness.reporting.explanation import explanation_lines
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from harness.recording.run import JointRecord
+from harness.recording.robot_record import JointRecord
 from harness.reporting.terminal import Style
 
 

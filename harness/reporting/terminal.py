@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TextIO
 
 from harness.core.printable import ESC, printable, printable_lines
-from harness.recording.run import Measure, Verdict, is_nested
+from harness.recording.step_record import is_nested
+from harness.recording.verdict import Measure, Verdict
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 
 OUTCOMES = ("error", "invalid", "failed", "passed")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Collection, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -71,6 +71,16 @@ def read_bundled(names: Collection[str]) -> None:
             _bundled(name, ())
 
 
+def load_ahead(spec: RobotSpec, collision: CollisionMode | None) -> None:
+    """Load a robot without files of the user in advance, for this process and its forks.
+
+    Raises:
+        RobotError: An option does not fit the robot.
+    """
+    if _is_bundled(spec):
+        _ = load_robot(spec, collision=collision).key
+
+
 def gripper_names() -> tuple[str, ...]:
     """Names of the grippers that `gripper` accepts: bundled, then installed ones."""
     return tuple(name for name, (_, facts) in _every_model().items() if facts.kind == "gripper")
@@ -89,6 +99,30 @@ def load_robot(
     Raises:
         RobotError: The robot is unknown, its files cannot be used, or an option does not fit it.
     """
+    if _is_bundled(spec):
+        return _loaded_once(_Bundled(spec.model_dump_json(), spec), collision)
+    return _loaded(spec, base_dir, collision)
+
+
+def _is_bundled(spec: RobotSpec) -> bool:
+    """Whether a robot follows from its specification alone, without files of the user."""
+    files = spec.urdf or spec.xacro or spec.mjcf or spec.kinematics or spec.args
+    names = {name for name in (spec.model, spec.gripper) if name is not None}
+    return not files and names <= _catalogue().keys() and spec.moveit == type(spec.moveit)()
+
+
+@dataclass(frozen=True)
+class _Bundled:
+    text: str
+    spec: RobotSpec = field(compare=False)
+
+
+@lru_cache(maxsize=8)
+def _loaded_once(bundled: _Bundled, collision: CollisionMode | None) -> RobotDescription:
+    return _loaded(bundled.spec, Path(), collision)
+
+
+def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotDescription:
     if spec.base.frame != "world":
         raise RobotOptionError(
             "base", f"it is a pose in the frame 'world', not in '{spec.base.frame}'"
@@ -162,7 +196,8 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Robot
         known = did_you_mean(name, gripper_names(), "grippers")
     else:
         known = did_you_mean(name, robot_names(), "robots")
-    hints = [known, *broken_plugins()]
+    own = "a robot of your own is named by its file: `robot: {urdf: FILE}`"
+    hints = [known, *[own] * (key == "model"), *broken_plugins()]
     if "/" in name or name.startswith(".") or folder.is_dir():
         hints.insert(0, f"{folder} has no robot.yaml")
     raise RobotOptionError(key, f"'{name}' is not known; {'; '.join(hints)}")

@@ -1,4 +1,4 @@
-"""Action servers and clients from services and topics, as rcl_action makes them."""
+"""An action server from services and topics, as rcl_action makes them."""
 
 from __future__ import annotations
 
@@ -46,14 +46,6 @@ class _Goal:
     result: Any = None
     waiting: list[Reply] = field(default_factory=list[Reply])
 
-    @property
-    def status(self) -> Status:
-        return Status(self.entry.status)
-
-    @status.setter
-    def status(self, status: Status) -> None:
-        self.entry.status = int(status)
-
 
 class ActionServer:
     """Serves one action; the caller decides about goals, and reports their end."""
@@ -99,14 +91,14 @@ class ActionServer:
         kind = f"{self.kind}_FeedbackMessage"
         self._feedback.publish(message(kind, goal_id=uuid_of(goal), feedback=content))
 
-    def finish(self, goal: str, status: Status, result: Any) -> None:
+    def finish(self, goal: str, has_succeeded: bool, result: Any) -> None:
         """End a goal; who requested its result gets it."""
         known = self._goals[goal]
         known.result = result
-        if known.status is Status.CANCELING:
-            status = Status.CANCELED
-        if known.status is not Status.UNKNOWN:
-            known.status = status
+        if known.entry.status == Status.CANCELING:
+            known.entry.status = Status.CANCELED
+        elif known.entry.status != Status.UNKNOWN:  # which a rejected goal keeps
+            known.entry.status = Status.SUCCEEDED if has_succeeded else Status.ABORTED
         for reply in known.waiting:
             reply(self._response(known))
         known.waiting.clear()
@@ -123,7 +115,7 @@ class ActionServer:
             known = self._goals[goal] = _Goal(message("action_msgs/msg/GoalStatus", goal_info=info))
             accepted = self._on_goal(goal, request.goal)
             if accepted:
-                known.status = Status.EXECUTING
+                known.entry.status = Status.EXECUTING
             elif known.result is None:
                 del self._goals[goal]
         kind = f"{self.kind}_SendGoal_Response"
@@ -157,23 +149,23 @@ class ActionServer:
             code = CancelCode.TERMINATED
         canceling: list[str] = []
         for each in running:
-            self._goals[each].status = Status.CANCELING
+            self._goals[each].entry.status = Status.CANCELING
             if self._on_cancel(each):
                 canceling.append(each)
             else:
-                self._goals[each].status = Status.EXECUTING
+                self._goals[each].entry.status = Status.EXECUTING
                 code = CancelCode.REJECTED
         infos = [self._goals[each].entry.goal_info for each in canceling]
         reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=infos))
 
     def _response(self, known: _Goal | None) -> Any:
-        kind = f"{self.kind}_GetResult_Response"
-        if known is None:
-            return message(kind, status=int(Status.UNKNOWN))
-        return message(kind, status=int(known.status), result=known.result)
+        fields = {"status": known.entry.status, "result": known.result} if known else {}
+        return message(f"{self.kind}_GetResult_Response", **fields)
 
     def _publish_status(self) -> None:
-        states = [each.entry for each in self._goals.values() if each.status is not Status.UNKNOWN]
+        states = [
+            each.entry for each in self._goals.values() if each.entry.status != Status.UNKNOWN
+        ]
         self._status.publish(message("action_msgs/msg/GoalStatusArray", status_list=states))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from textwrap import indent
 
 from harness.core.errors import Problem, SpecError
 from harness.ports.simulation import LONGEST_RUN
@@ -12,9 +11,11 @@ from harness.reporting.result import CaseResult
 from harness.ros.domain import free_domain
 from harness.ros.graph import Graph
 from harness.ros.live import BridgeRequest, LiveControl, Say
+from harness.session.prepare import Prepared
 from harness.session.progress import Notify
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
+from harness.session.timed_simulator import TimedSimulator
 
 NODE = "bridge"
 DISCOVERY = 0.5
@@ -27,39 +28,31 @@ class BridgeResult:
 
     Attributes:
         case: The result, as of any run.
-        pace: One sentence about simulated and wall time.
-        output: The end of what the launched program printed.
         commands: Number of commands that arrived.
         names: Sentences on names that nodes use and that are not served.
-        exit_code: The exit code of the launched program; None where it was ended here.
+        remarks: What is said of wall time, names and the launched program.
     """
 
     case: CaseResult
-    pace: str = ""
-    output: str = ""
     commands: int = 0
     names: tuple[str, ...] = ()
-    exit_code: int | None = None
-
-    def remarks(self) -> list[str]:
-        """What is said of wall time, names and the launched program; nothing of it is judged."""
-        has_passed = self.case.outcome == "passed"
-        said = [f"{self.commands} commands; {self.pace}"] if self.pace else []
-        said += self.names
-        if self.exit_code and has_passed:
-            said.append(f"the launched program ended with exit code {self.exit_code}")
-        if self.output and (self.exit_code or not has_passed):
-            said.append(f"the launched program printed:\n{indent(self.output, '  ')}")
-        return said
+    remarks: tuple[str, ...] = ()
 
 
 def open_graph(
     adapter: str, domain: int, *, node: str, is_local: bool = True, say: Say = lambda _: None
 ) -> Graph:
-    """Join a domain; notes on what cannot be published are given to `say`.
+    """Join a domain.
+
+    Args:
+        adapter: `rtps`, or `rclpy` of a ROS 2 installation.
+        domain: The number of the ROS domain.
+        node: The name of the node.
+        is_local: Whether it talks to this machine alone.
+        say: Receives a note for each topic that cannot be published.
 
     Raises:
-        SpecError: There is no such domain, or the adapter is not installed.
+        SpecError: The adapter, or a message package that it needs, is not installed.
         NetworkError: The domain cannot be joined.
     """
     if adapter == "rclpy":
@@ -83,7 +76,7 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     )
     made: list[LiveControl] = []
 
-    def session(prepared: object, simulator: object) -> LiveControl:
+    def session(prepared: Prepared, simulator: TimedSimulator) -> LiveControl:
         made.append(LiveControl(prepared, simulator, graph, request))
         return made[0]
 
@@ -95,25 +88,25 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     if not made:
         return BridgeResult(case)
     commands = sum(command.kind != "end" for command in made[0].commands)
-    control = made[0]
-    return BridgeResult(
-        case, control.pace.text(), control.output, commands, control.names, control.exit_code
-    )
+    remarks = made[0].remarks(has_passed=case.outcome == "passed")
+    return BridgeResult(case, commands, made[0].names, remarks)
 
 
 def _refuse_other_robot(graph: Graph, domain: int) -> None:
     """Raise where a robot or another simulator is in the domain: both would obey a command."""
     graph.spin(time.monotonic() + DISCOVERY)
-    if "/joint_states" in graph.names()[1].published:
+    if any(use.publishes and use.topic == "/joint_states" for use in graph.uses()[1]):
         said = "another robot or simulator publishes /joint_states; use another --domain"
         raise SpecError([Problem(f"ROS domain {domain}", 0, 0, said)])
 
 
 def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
     """Run a case whose steps may start the request's nodes, in a domain of its own."""
+    said: list[str] = []
     with free_domain() as domain:
-        result = run_bridge(BridgeRequest(request, domain, nodes=request.nodes), notify)
-    return replace(result.case, notes=(*result.case.notes, *result.remarks()))
+        bridge = BridgeRequest(request, domain, nodes=request.nodes, say=said.append)
+        result = run_bridge(bridge, notify)
+    return replace(result.case, notes=(*result.case.notes, *said, *result.remarks))
 
 
 def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:

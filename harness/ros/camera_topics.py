@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, partial
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -12,84 +11,62 @@ from typing import Any
 
 import numpy as np
 
+from harness.cell.program import Program
 from harness.core.camera import Camera
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
 from harness.robot.description import RobotDescription
-from harness.ros.graph import Graph, Publisher
-from harness.ros.interfaces import message, stamp
+from harness.ros.graph import Graph
+from harness.ros.interfaces import header
+
+IMAGE, COMPRESSED, INFO = (
+    f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "CameraInfo")
+)
 
 Drawn = tuple[np.ndarray, bytes]
 """A picture as the camera delivers it, and as a JPEG."""
 
 
-@dataclass(frozen=True)
 class _Topics:
     """What one camera publishes, named as the course's Gazebo does."""
 
-    camera: Camera
-    raw: Publisher
-    compressed: Publisher
-    infos: tuple[Publisher, ...]
-
-    @classmethod
-    def of(cls, graph: Graph, camera: Camera) -> _Topics:
-        base, kind = f"/{camera.name}", "sensor_msgs/msg/CameraInfo"
-        infos = f"{base}/camera_info", f"{base}/image/camera_info"
-        return cls(
-            camera,
-            graph.advertise(f"{base}/image", "sensor_msgs/msg/Image", depth=1),
-            graph.advertise(f"{base}/image/compressed", "sensor_msgs/msg/CompressedImage", depth=1),
-            tuple(graph.advertise(info, kind) for info in infos),
-        )
+    def __init__(self, graph: Graph, camera: Camera) -> None:
+        base, self.camera = f"/{camera.name}", camera
+        self._raw = graph.advertise(f"{base}/image", IMAGE, depth=1)
+        self._compressed = graph.advertise(f"{base}/image/compressed", COMPRESSED, depth=1)
+        names = f"{base}/camera_info", f"{base}/image/camera_info"
+        self._infos = [graph.advertise(name, INFO) for name in names]
+        self.due = 0.0
 
     @property
     def are_watched(self) -> bool:
-        return bool(self.raw.subscribers or self.compressed.subscribers)
+        return bool(self._raw.subscribers or self._compressed.subscribers)
 
     def publish_info(self, time: float) -> None:
-        for info in self.infos:
-            if info.subscribers:
-                info.publish(camera_info(self.camera, time))
+        if any(info.subscribers for info in self._infos):
+            content = camera_info(self.camera, self._header(time))
+            for info in self._infos:
+                info.publish(content)
 
     def publish(self, time: float, drawn: Drawn) -> None:
         picture, jpeg = drawn
-        header, is_grey = _header(self.camera, time), self.camera.is_grey
-        if self.raw.subscribers:
-            height, width = picture.shape[:2]
-            self.raw.publish(
-                message(
-                    "sensor_msgs/msg/Image",
-                    header=header,
-                    height=height,
-                    width=width,
-                    encoding="mono8" if is_grey else "rgb8",
-                    step=picture.size // height,
-                    data=picture.reshape(-1),
-                )
-            )
-        if self.compressed.subscribers:
-            kind = "mono8; jpeg compressed mono8" if is_grey else "rgb8; jpeg compressed bgr8"
-            data = np.frombuffer(jpeg, np.uint8)
-            self.compressed.publish(
-                message("sensor_msgs/msg/CompressedImage", header=header, format=kind, data=data)
-            )
+        self._raw.publish(image(picture, self._header(time)))
+        self._compressed.publish(compressed_image(jpeg, self.camera, self._header(time)))
+
+    def _header(self, time: float) -> Any:
+        frame = self.camera.optical_frame_id or f"{self.camera.name}_optical_frame"
+        return header(time, frame)
 
 
 class CameraTopics:
     """Publishes pictures while someone subscribes to them; a slow machine sends fewer."""
 
-    def __init__(
-        self,
-        graph: Graph,
-        cameras: Sequence[Camera],
-        description: RobotDescription,
-        objects: Sequence[WorldObject],
-        seed: int,
-    ) -> None:
-        self._topics = [_Topics.of(graph, camera) for camera in cameras]
-        self._scene = tuple(cameras), description, tuple(objects), seed
-        self._next = [0.0] * len(cameras)
+    def __init__(self, graph: Graph, program: Program) -> None:
+        cameras = tuple(program.cameras.values())
+        self._topics = [_Topics(graph, camera) for camera in cameras]
+        self._scene = cameras, program.description, program.all_objects(), program.seed
         self._painter: tuple[BaseProcess, Connection] | None = None
         self._pending: tuple[_Topics, float] | None = None
 
@@ -97,8 +74,8 @@ class CameraTopics:
         self,
         time: float,
         sample: int,
-        positions: np.ndarray,
-        poses: Callable[[], Mapping[str, np.ndarray]],
+        positions: FloatArray,
+        poses: Callable[[], Mapping[str, FloatArray]],
     ) -> None:
         """Publish what is due at a simulated time.
 
@@ -110,10 +87,10 @@ class CameraTopics:
                 (7,) each.
         """
         self._send_finished()
-        for number, topics in enumerate(self._topics):
-            if time < self._next[number] - 1e-9:
+        for topics in self._topics:
+            if time < topics.due - 1e-9:
                 continue
-            self._next[number] = time + 1.0 / topics.camera.update_rate
+            topics.due = time + 1.0 / topics.camera.update_rate
             topics.publish_info(time)
             if topics.are_watched and self._pending is None:
                 self._pending = topics, time
@@ -151,27 +128,6 @@ class CameraTopics:
             return
         if drawn is not None:
             topics.publish(time, drawn)
-
-
-def camera_info(camera: Camera, time: float) -> Any:
-    """The calibration of a pinhole without distortion."""
-    projection = np.hstack([camera.matrix, np.zeros((3, 1))])
-    return message(
-        "sensor_msgs/msg/CameraInfo",
-        header=_header(camera, time),
-        height=camera.height,
-        width=camera.width,
-        distortion_model="plumb_bob",
-        d=np.zeros(5),
-        k=camera.matrix.reshape(-1),
-        r=np.eye(3).reshape(-1),
-        p=projection.reshape(-1),
-    )
-
-
-def _header(camera: Camera, time: float) -> Any:
-    frame = camera.optical_frame_id or f"{camera.name}_optical_frame"
-    return message("std_msgs/msg/Header", stamp=stamp(time), frame_id=frame)
 
 
 def _paint(

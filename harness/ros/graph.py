@@ -3,26 +3,44 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
-from harness.ros.names import Names
+from harness.ros.interfaces import encoded
+from harness.ros.names import Use
 
 Reply = Callable[[Any], None]
 """Sends the response of a service; at once or later."""
 
+OnMessage = Callable[[Any], None]
 
-class Publisher(Protocol):
-    """Publishes messages of one topic."""
+
+@dataclass(frozen=True)
+class Publisher:
+    """Publishes messages of one topic.
+
+    Attributes:
+        kind: The type of its messages.
+        send: Sends a serialised message.
+        count: The number of matched subscribers.
+        is_latched: Whether subscribers that come later get the last message.
+    """
+
+    kind: str
+    send: Callable[[bytes], object]
+    count: Callable[[], int]
+    is_latched: bool = False
 
     @property
     def subscribers(self) -> int:
-        """Number of matched subscribers."""
-        ...
+        """The number of matched subscribers."""
+        return self.count()
 
     def publish(self, message: Any) -> None:
         """Send a message of the topic's type to every subscriber."""
-        ...
+        if self.is_latched or self.subscribers:
+            self.send(encoded(message, self.kind))
 
 
 class ServiceClient(Protocol):
@@ -33,7 +51,7 @@ class ServiceClient(Protocol):
         """Whether a server is there."""
         ...
 
-    def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
+    def call(self, request: Any, on_response: OnMessage) -> None:
         """Send a request; the response arrives during a later `spin`."""
         ...
 
@@ -46,12 +64,7 @@ class Graph(Protocol):
     """
 
     def advertise(
-        self,
-        topic: str,
-        kind: str,
-        *,
-        latched: bool = False,
-        depth: int = 10,
+        self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
     ) -> Publisher:
         """A publisher of a topic; lost messages are sent again."""
         ...
@@ -60,7 +73,7 @@ class Graph(Protocol):
         self,
         topic: str,
         kind: str,
-        on_message: Callable[[Any], None],
+        on_message: OnMessage,
         *,
         latched: bool = False,
         reliable: bool = True,
@@ -79,8 +92,8 @@ class Graph(Protocol):
         """A client of a service."""
         ...
 
-    def names(self) -> tuple[Names, Names]:
-        """The topics of this node, and those of all other nodes that are known."""
+    def uses(self) -> tuple[Sequence[Use], Sequence[Use]]:
+        """How this node uses topics, and how all other nodes that are known do."""
         ...
 
     def spin(self, until: float) -> None:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import replace
 
 import numpy as np
 
+from harness.assertions.judge import judge
+from harness.assertions.placed import PlacedExpectation
 from harness.cell.cell import Presence
 from harness.engine.execute import object_record
+from harness.language.expectation import ExpectationFields
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 from harness.ros.control.cell import ExternalCell, controller_names
-from harness.ros.watch import Watch
 from harness.session.prepare import Prepared
 from harness.session.record import robot_record
 from harness.simulation.mujoco_simulator import MujocoSimulator
@@ -20,11 +24,11 @@ from harness.simulation.mujoco_simulator import MujocoSimulator
 GRACE = 1.0
 """Simulated time that a step goes on after its program has ended and the arm stands [s]."""
 
-LATE_ENDS = ("timeout", "exit")
-"""Ends of a step before `until` holds, by time or by the program's end."""
+LOOK_EVERY, LOOK_SHARE = 0.5, 0.05
+"""Simulated time between two looks at `until` [s], and at least this share of the step's time: a
+look reads the whole record. Wall time has no part in it, so that a replay ends alike."""
 
 
-@dataclass
 class HandOver:
     """What commands the robot between two ticks, and what is done after each.
 
@@ -33,15 +37,12 @@ class HandOver:
         simulator: The physics of the run.
     """
 
-    prepared: Prepared
-    simulator: MujocoSimulator
-    cell: ExternalCell = field(init=False)
-
-    def __post_init__(self) -> None:
-        description = self.prepared.program.description
-        names = controller_names(description, self.prepared.loaded.scenario.ros2)
-        self.cell = ExternalCell(self.simulator, names)
-        self.robot = robot_record(description, self.prepared.kinematics)
+    def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
+        description = prepared.program.description
+        self.prepared, self.simulator = prepared, simulator
+        names = controller_names(description, prepared.loaded.scenario.ros2)
+        self.cell = ExternalCell(simulator, names)
+        self.robot = robot_record(description, prepared.kinematics)
 
     @property
     def commands(self) -> tuple[CommandRecord, ...]:
@@ -62,14 +63,10 @@ class HandOver:
             feed: Lets commands take effect before a tick.
             after: Called after each tick.
         """
-        cell = self.cell
+        cell, begin = self.cell, self.simulator.time
         before = seen = len(cell.commands)
         cell.hold_commanded(self.simulator.commanded_positions())
-        objects = tuple(
-            object_record(Presence(obj, obj.pose, [[0.0, np.inf]]), np.inf)
-            for obj in self.prepared.program.world.objects
-        )
-        watch = Watch(request, self.simulator, self.robot, objects)
+        record, look_at = self._record(request), LOOK_EVERY
         end: CommandRecord | None = None
         ended_at, ended_by = np.inf, ""
         while not ended_by:
@@ -83,22 +80,66 @@ class HandOver:
             after()
             if end is not None and (ended_at == np.inf or not cell.is_idle):
                 ended_at = cell.time
-            if watch.holds():
+            elapsed, holds = cell.time - begin, False
+            if elapsed >= look_at - 1e-9:
+                look_at = elapsed + max(LOOK_EVERY, LOOK_SHARE * elapsed)
+                holds = self._holds(request, record)
+            if holds:
                 ended_by = "until"
-            elif watch.elapsed >= request.timeout - 1e-9:
+            elif elapsed >= request.timeout - 1e-9:
                 ended_by = "timeout"
             elif cell.time >= ended_at + GRACE:
                 ended_by = "exit"
         count = sum(command.kind != "end" for command in cell.commands[before:])
         cell.finish()
         after()
-        return ExternalResult(ended_by, count, _said(end) if ended_by in LATE_ENDS else "")
+        detail = _said(end) if end is not None and ended_by in ("timeout", "exit") else ""
+        return ExternalResult(ended_by, count, detail)
+
+    def _record(self, request: ExternalRequest) -> Run:
+        """The record of a step that begins now; what its end decides is filled in by a look."""
+        step = StepRecord(
+            id=request.step,
+            path=request.step,
+            verb="",
+            summary="",
+            line=request.line,
+            status="passed",
+            start_time=self.simulator.time,
+            end_time=self.simulator.time,
+            start_index=max(0, self.simulator.sample_count - 1),
+            end_index=self.simulator.sample_count,
+        )
+        return Run(
+            scenario="",
+            file="",
+            case="",
+            seed=0,
+            robot=self.robot,
+            objects=tuple(
+                object_record(Presence(obj, obj.pose, [[0.0, np.inf]]), np.inf)
+                for obj in self.prepared.program.world.objects
+            ),
+            attachments=(),
+            steps=(step,),
+            signals=self.simulator.finish(),
+            unrecorded=("clearances", "planned_clearances"),
+        )
+
+    def _holds(self, request: ExternalRequest, record: Run) -> bool:
+        """Whether the expectation passes now that ends the step."""
+        until, simulator = request.until, self.simulator
+        if not isinstance(until, ExpectationFields):
+            return False
+        [step] = record.steps
+        step = replace(step, end_time=simulator.time, end_index=simulator.sample_count)
+        run = replace(record, steps=(step,), signals=simulator.finish())
+        placed = PlacedExpectation.of(until, request.step, request.line)
+        return judge(run, [placed])[0].status == "passed"
 
 
-def _said(end: CommandRecord | None) -> str:
+def _said(end: CommandRecord) -> str:
     """What is said of a program that ended."""
-    if end is None:
-        return ""
     code = end.content.get("code")
     how = "without an error" if code == 0 else f"with exit code {code}"
     return f"the launched program ended {how} at t={end.time:.2f} s"

@@ -17,7 +17,7 @@ CANCEL = "action_msgs/action/CancelGoal"
 """The service action_msgs/srv/CancelGoal; rosbags takes no messages of the folder `srv`."""
 
 UUID = "unique_identifier_msgs/msg/UUID"
-_POINT = "trajectory_msgs/msg/JointTrajectoryPoint"
+POINT = "trajectory_msgs/msg/JointTrajectoryPoint"
 _MULTI_POINT = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
 _RESULT = "float64 position\nfloat64 effort\nbool stalled\nbool reached_goal"
 
@@ -32,7 +32,7 @@ ACTIONS = {
         "builtin_interfaces/msg/Duration goal_time_tolerance",
         "int32 error_code\nstring error_string",
         "std_msgs/msg/Header header\nstring[] joint_names\n"
-        f"{_POINT} desired\n{_POINT} actual\n{_POINT} error\n"
+        f"{POINT} desired\n{POINT} actual\n{POINT} error\n"
         "string[] multi_dof_joint_names\n"
         f"{_MULTI_POINT} multi_dof_desired\n{_MULTI_POINT} multi_dof_actual\n"
         f"{_MULTI_POINT} multi_dof_error",
@@ -130,14 +130,17 @@ def prepare(kind: str) -> None:
 
 
 def stamp(seconds: float, kind: str = "Time") -> Any:
-    """A simulated time as a stamp; the clock of the bridge begins at 0, as that of Gazebo."""
+    """A simulated time as a Time, or a span as a Duration.
+
+    The clock of the bridge begins at 0, as that of Gazebo.
+    """
     whole, rest = divmod(round(seconds * 1e9), 10**9)
     return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
 
 
-def span(seconds: float) -> Any:
-    """A length of time as a Duration."""
-    return stamp(seconds, "Duration")
+def header(seconds: float, frame_id: str = "") -> Any:
+    """A simulated time, and the frame that the content is in."""
+    return message("std_msgs/msg/Header", stamp=stamp(seconds), frame_id=frame_id)
 
 
 def seconds(moment: Any) -> float:

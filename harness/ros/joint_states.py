@@ -55,10 +55,9 @@ class JointStates:
     def record(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Times (N,) on the grid, and positions, velocities and efforts at them, (N, n) each."""
         times = np.arange(self.sample_count, dtype=np.float64) * GRID
-        positions, velocities, efforts = (
-            np.column_stack([np.interp(times, self._times, column) for column in part.T])
-            for part in (np.array([row[index] for row in self._rows]) for index in range(3))
-        )
+        columns = np.array(self._rows).reshape(len(self._rows), -1).T
+        even = np.array([np.interp(times, self._times, column) for column in columns])
+        positions, velocities, efforts = np.swapaxes(even.reshape(3, -1, len(times)), 1, 2)
         return times, positions, velocities, efforts
 
     def _take(self, state: Any) -> None:

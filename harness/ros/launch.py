@@ -9,7 +9,7 @@ import signal
 import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from typing import NoReturn
 
 from harness.core.errors import Problem, SpecError, StepFailed
 
@@ -37,40 +37,21 @@ def named_commands(given: Iterable[str]) -> dict[str, str]:
     return commands
 
 
-@dataclass(frozen=True)
-class Allowed:
-    """Commands by name; a scenario can start nothing else.
+def start_program(commands: Mapping[str, str], name: str, domain: int) -> Program | None:
+    """Start one of the allowed commands in a domain; None where none is named or allowed.
 
-    Attributes:
-        commands: Command lines; `node` is the name of one that the user gave none.
-        domain: The ROS_DOMAIN_ID of the programs.
+    Raises:
+        StepFailed: COMMUNICATION_FAILURE; the user gave no such command, or it cannot start.
     """
-
-    commands: Mapping[str, str]
-    domain: int
-
-    def start(self, name: str) -> Program | None:
-        """Start a command; None where the step names none and none was given.
-
-        Raises:
-            StepFailed: COMMUNICATION_FAILURE; the user gave no such command, or it cannot start.
-        """
-        if not name and not self.commands:
-            return None
-        if not name and len(self.commands) > 1:
-            raise StepFailed(
-                "COMMUNICATION_FAILURE",
-                f"several commands are allowed ({', '.join(self.commands)}); name one with"
-                " `launch`",
-            )
-        name = name or next(iter(self.commands))
-        if name not in self.commands:
-            known = f"; allowed: {', '.join(self.commands)}" if self.commands else ""
-            raise StepFailed(
-                "COMMUNICATION_FAILURE",
-                f"the command '{name}' is not allowed: give it with --node '{name}=COMMAND'{known}",
-            )
-        return Program(self.commands[name], self.domain)
+    known = ", ".join(commands)
+    if not name and len(commands) > 1:
+        _refuse(f"several commands are allowed ({known}); name one with `launch`")
+    if name and name not in commands:
+        allowed = f"; allowed: {known}" if commands else ""
+        _refuse(
+            f"the command '{name}' is not allowed: give it with --node '{name}=COMMAND'{allowed}"
+        )
+    return Program(commands[name or known], domain) if commands else None
 
 
 class Program:
@@ -101,9 +82,7 @@ class Program:
         except (OSError, ValueError) as error:
             self._output.close()
             reason = error.strerror if isinstance(error, OSError) else error
-            raise StepFailed(
-                "COMMUNICATION_FAILURE", f"`{command}` cannot be started: {reason}"
-            ) from error
+            _refuse(f"`{command}` cannot be started: {reason}", error)
 
     @property
     def exit_code(self) -> int | None:
@@ -127,3 +106,7 @@ class Program:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)  # what it started and left running
         self._output.close()
+
+
+def _refuse(why: str, cause: Exception | None = None) -> NoReturn:
+    raise StepFailed("COMMUNICATION_FAILURE", why) from cause

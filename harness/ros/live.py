@@ -6,8 +6,9 @@ import signal
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from textwrap import indent
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,17 +17,24 @@ from harness.recording.commands import CommandRecord
 from harness.ros.camera_topics import CameraTopics
 from harness.ros.graph import Graph
 from harness.ros.handover import HandOver
-from harness.ros.launch import Allowed, Program
-from harness.ros.names import unserved
+from harness.ros.launch import Program, start_program
+from harness.ros.names import mismatched, unserved
 from harness.ros.pacing import Pace
 from harness.ros.state_topics import StateTopics
 from harness.ros.wiring import Wiring
+from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
+
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 Say = Callable[[str], None]
 
-NAMES_EVERY = 100
-"""Ticks between two looks at the names that nodes use."""
+LOOK_EVERY = 50
+"""Ticks between two looks at how nodes use topics."""
+
+MOST_NOTES = 50
+"""Notes that are given of a run while it goes on."""
 
 
 @dataclass(frozen=True)
@@ -57,98 +65,113 @@ class BridgeRequest:
 
 
 class LiveControl(HandOver):
-    """Serves the robot on a graph while a step hands it over."""
+    """Serves the robot on a graph while a step hands it over.
 
-    def __init__(self, prepared: Any, simulator: Any, graph: Graph, request: BridgeRequest) -> None:
+    Attributes:
+        names: Sentences on names that are not served, where the last step did not end with `until`.
+    """
+
+    def __init__(
+        self, prepared: Prepared, simulator: MujocoSimulator, graph: Graph, request: BridgeRequest
+    ) -> None:
         super().__init__(prepared, simulator)
-        self.pace = Pace(request.factor)
+        self.names: tuple[str, ...] = ()
         self._graph, self._request = graph, request
-        self._allowed = Allowed(request.nodes, request.domain)
+        self._pace = Pace(request.factor)
         self._states = StateTopics(graph, self.robot)
         self._wiring = Wiring(graph, self.cell, self._note)
-        program = self.prepared.program
-        self._cameras = CameraTopics(
-            graph,
-            tuple(program.cameras.values()),
-            program.description,
-            program.all_objects(),
-            program.seed,
-        )
+        self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None
+        self._exit_code: int | None = None
+        self._output = ""
         self._is_stopped = False
         self._said: set[str] = set()
-        self.output = ""
-        self.names: tuple[str, ...] = ()
-        """Sentences on names that are not served, where the last step did not end with `until`."""
-        self.exit_code: int | None = None
-        """The exit code of the last program, where it ended by itself."""
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Serve the robot until the request's end; start the program that it names."""
-        self._program = self._allowed.start(request.launch)
+        self._program = start_program(self._request.nodes, request.launch, self._request.domain)
         self._wiring.is_open = True
-        self.pace.start()
+        self._pace.start()
         try:
             with self._interruptible():
                 result = self.drive(request, self._feed, self._after)
-            self._look_for_names()
+            self._look_at_names()
             if result.ended_by == "until":
                 self.names = ()
             return result
         finally:
             self._wiring.is_open = False
             self._cameras.close()
-            if self._program is not None:
-                self.output = self._program.output()
-                self._program.stop()
-                self._program = None
+            self._end_program()
 
     def refusal(self) -> str:
         """Why a run that did not pass says nothing about the nodes; empty where it does."""
-        if not self.pace.is_slow:
-            return ""
-        return f"this machine is too slow to judge the nodes: {self.pace.text()}"
+        slow = f"this machine is too slow to judge the nodes: {self._pace.text()}"
+        return slow if self._pace.is_slow else ""
+
+    def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
+        """What is said of wall time, names and the launched program; nothing of it is judged."""
+        count = sum(command.kind != "end" for command in self.cell.commands)
+        commands = f"{count} command{'' if count == 1 else 's'}"
+        said = [f"{commands}; {self._pace.text()}", *self.names]
+        if self._exit_code and has_passed:
+            said.append(f"the launched program ended with exit code {self._exit_code}")
+        if self._output and (self._exit_code or not has_passed):
+            said.append(f"the launched program printed:\n{indent(self._output, '  ')}")
+        return tuple(said)
 
     def _feed(self) -> None:
         """Receive until the next tick is due."""
-        self._graph.spin(self.pace.next())
-        self.pace.tick()
-        if self.pace.ticks % NAMES_EVERY == 0:
-            self._look_for_names()
+        self._graph.spin(self._pace.next())
+        self._pace.tick()
+        if self._pace.ticks % LOOK_EVERY == 0:
+            self._look_at_names()
         if self._is_stopped or self._request.should_end():
             self._is_stopped = False
             self.cell.receive("end", content={"reason": "stopped"})
-        program = self._program
-        if program is not None and program.exit_code is not None:
-            self.exit_code = program.exit_code
-            self.cell.receive("end", content={"reason": "exit", "code": self.exit_code})
-            self.output = program.output()
-            program.stop()
-            self._program = None
+        if self._program is not None and self._program.exit_code is not None:
+            self._exit_code = self._program.exit_code
+            self.cell.receive("end", content={"reason": "exit", "code": self._exit_code})
+            self._end_program()
 
     def _after(self) -> None:
         simulator = self.simulator
-        positions, velocities = simulator.measured(simulator.sample_count - 1)
-        efforts = np.zeros(len(simulator.description.joint_names))
+        sample = simulator.sample_count - 1
+        positions, velocities = (part[-1] for part in simulator.measured(sample))
+        efforts = np.zeros(len(positions))
         efforts[simulator.physics.actuated] = simulator.efforts()
         self._wiring.after_tick()
-        self._states.publish(simulator.time, positions[-1], velocities[-1], efforts)
-        sample = simulator.sample_count - 1
-        self._cameras.publish(simulator.time, sample, positions[-1], simulator.objects_now)
+        self._states.publish(simulator.time, positions, velocities, efforts)
+        self._cameras.publish(simulator.time, sample, positions, simulator.objects_now)
 
-    def _look_for_names(self) -> None:
-        """Keep the names that are not served; a node that has ended uses none any more."""
-        self.names = tuple(unserved(*self._graph.names())) or self.names
+    def _end_program(self) -> None:
+        if self._program is not None:
+            self._output = self._program.output()
+            self._program.stop()
+            self._program = None
+
+    def _look_at_names(self) -> None:
+        """Note wrong types at once, and names that are not served where a step fails.
+
+        A node that has ended uses none any more, so the last ones that were found are kept.
+        """
+        uses = self._graph.uses()
+        for note in mismatched(*uses):
+            self._say_once(note, note)
+        self.names = tuple(unserved(*uses)) or self.names
 
     def _note(self, record: CommandRecord) -> None:
         """A command took effect; say it, where it did not."""
-        self.pace.command()
-        if record.answer != "accepted" and record.answer not in self._said:
-            self._said.add(record.answer)
-            self._request.say(
-                f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
-            )
+        self._pace.command()
+        if record.answer != "accepted":
+            what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
+            self._say_once(record.answer, what)
         self._wiring.report()
+
+    def _say_once(self, key: str, note: str) -> None:
+        if key not in self._said and len(self._said) < MOST_NOTES:
+            self._said.add(key)
+            self._request.say(note)
 
     @contextmanager
     def _interruptible(self) -> Generator[None]:

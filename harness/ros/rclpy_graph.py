@@ -11,31 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.core.errors import Problem, SpecError
-from harness.ros.graph import Publisher, Reply, ServiceClient
+from harness.ros.graph import OnMessage, Publisher, Reply
 from harness.ros.interfaces import CANCEL, decoded, encoded
-from harness.ros.names import Names
-
-
-class _Silent:
-    """Takes the place of a publisher whose message package is not installed."""
-
-    subscribers = 0
-
-    def publish(self, message: Any) -> None:
-        """Publish nothing."""
-
-
-@dataclass
-class _Publisher:
-    publisher: Any
-    kind: str
-
-    @property
-    def subscribers(self) -> int:
-        return self.publisher.get_subscription_count()
-
-    def publish(self, message: Any) -> None:
-        self.publisher.publish(encoded(message, self.kind))
+from harness.ros.names import Use
 
 
 @dataclass
@@ -47,7 +25,7 @@ class _Client:
     def is_ready(self) -> bool:
         return self.client.service_is_ready()
 
-    def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
+    def call(self, request: Any, on_response: OnMessage) -> None:
         ros_type = self.client.srv_type.Request
         future = self.client.call_async(_to_ros(request, f"{self.kind}_Request", ros_type))
         future.add_done_callback(
@@ -59,24 +37,9 @@ class RclpyGraph:
     """A node of rclpy; callbacks run inside `spin`."""
 
     def __init__(
-        self,
-        domain: int,
-        *,
-        node: str,
-        is_local: bool = True,
-        say: Callable[[str], None] = lambda _: None,
+        self, domain: int, *, node: str, is_local: bool = True, say: Callable[[str], None]
     ) -> None:
-        """Join a domain.
-
-        Args:
-            domain: The number of the ROS domain.
-            node: The name of the node.
-            is_local: Whether it talks to this machine alone.
-            say: Receives a note for each topic that cannot be published.
-
-        Raises:
-            SpecError: rclpy or a message package cannot be imported.
-        """
+        """Join a domain, as `open_graph` says."""
         if is_local:
             os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         try:
@@ -88,8 +51,6 @@ class RclpyGraph:
             said = f"rclpy cannot be imported: {error}"
             raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
         self._say = say
-        self._published: set[str] = set()
-        self._subscribed: set[str] = set()
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node(node, context=self._context)
@@ -101,29 +62,27 @@ class RclpyGraph:
     ) -> Publisher:
         package, folder, _ = kind.split("/")
         if folder == "msg" and importlib.util.find_spec(package) is None:
-            self._say(f"note: --adapter rclpy: {topic} is not published: {_advice(package)}")
-            return _Silent()
-        self._published.add(topic)
+            self._say(f"--adapter rclpy: {topic} is not published: {_advice(package)}")
+            return Publisher(kind, lambda _: None, lambda: 0)
         profile = self._profile(latched, True, depth)
-        return _Publisher(self._node.create_publisher(_message_type(kind), topic, profile), kind)
+        made = self._node.create_publisher(_message_type(kind), topic, profile)
+        return Publisher(kind, made.publish, made.get_subscription_count, latched)
 
     def subscribe(
         self,
         topic: str,
         kind: str,
-        on_message: Callable[[Any], None],
+        on_message: OnMessage,
         *,
         latched: bool = False,
         reliable: bool = True,
     ) -> None:
-        self._subscribed.add(topic)
-        profile = self._profile(latched, reliable, 10)
-
         def take(payload: bytes) -> None:
             content = decoded(payload, kind)
             if content is not None:
                 on_message(content)
 
+        profile = self._profile(latched, reliable, 10)
         self._node.create_subscription(_message_type(kind), topic, take, profile, raw=True)
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
@@ -136,15 +95,29 @@ class RclpyGraph:
 
         self._node.create_service(service, name, answer)
 
-    def client(self, name: str, kind: str) -> ServiceClient:
+    def client(self, name: str, kind: str) -> _Client:
         return _Client(self._node.create_client(_service_type(kind), name), kind)
 
-    def names(self) -> tuple[Names, Names]:
-        node, own = self._node, Names.of(self._published, self._subscribed)
-        topics = [name for name, _ in node.get_topic_names_and_types()]
-        published = [n for n in topics if node.count_publishers(n) > (n in own.published)]
-        subscribed = [n for n in topics if node.count_subscribers(n) > (n in own.subscribed)]
-        return own, Names.of(published, subscribed)
+    def uses(self) -> tuple[list[Use], list[Use]]:
+        node, qos = self._node, self._qos
+        own: list[Use] = []
+        others: list[Use] = []
+        for topic, _ in node.get_topic_names_and_types():
+            for publishes, known in (
+                (True, node.get_publishers_info_by_topic(topic)),
+                (False, node.get_subscriptions_info_by_topic(topic)),
+            ):
+                for each in known:
+                    profile = each.qos_profile
+                    use = Use(
+                        topic,
+                        each.topic_type,
+                        publishes,
+                        profile.reliability == qos.ReliabilityPolicy.RELIABLE,
+                        profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL,
+                    )
+                    (own if each.node_name == node.get_name() else others).append(use)
+        return own, others
 
     def spin(self, until: float) -> None:
         self._executor.spin_once(timeout_sec=0.0)

@@ -15,16 +15,16 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.reporting.result import CaseResult
 from harness.ros.action_client import ActionClient, ClientGoal
 from harness.ros.action_server import Status
-from harness.ros.contents import POINT
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message, span
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, stamp
 from harness.ros.joint_states import GRID, JointStates
+from harness.ros.names import actions
 from harness.session.prepare import Prepared, prepare
 from harness.session.progress import Notify
 from harness.session.run_case import run_case
@@ -62,7 +62,7 @@ START_TOLERANCE = 0.01
 
 @dataclass(frozen=True)
 class RemoteOptions:
-    """How a robot is reached, and how fast it may move.
+    """How a robot is moved.
 
     Attributes:
         velocity_scaling: Share of the planned speed, (0, 1].
@@ -84,20 +84,22 @@ def run_on_robot(
         StepFailed: COMMUNICATION_FAILURE; the robot cannot be reached.
     """
 
-    def start(request: RunRequest, clock: Clock) -> Start:
-        del clock
+    def start(request: RunRequest, _: Clock) -> Start:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
         return Start(prepared, cast("TimedSimulator", RemoteArm(graph, prepared, options)), 0)
 
     return run_case(request, notify, start=start)
 
 
-class RemoteArm:
-    """Sends trajectories to the servers of a robot's controllers, one after the other.
+def _refuses(why: str) -> Callable[..., NoReturn]:
+    def refuse(*_: object) -> NoReturn:
+        raise StepFailed("ABORT", why)
 
-    Attributes:
-        overlaps_at_start: Nothing is known of overlaps.
-    """
+    return refuse
+
+
+class RemoteArm:
+    """Sends trajectories to the servers of a robot's controllers, one after the other."""
 
     overlaps_at_start = ()
     unrecorded = UNRECORDED
@@ -116,24 +118,19 @@ class RemoteArm:
         self._command: FloatArray | None = None
         names = controller_names(self.description, prepared.loaded.scenario.ros2)
         self._states = JointStates(graph, self.description)
-        self._arms = {
-            name: ActionClient(graph, f"/{name}/follow_joint_trajectory", FOLLOW)
-            for name in names.arm
-        }
+        actions_of_arm = [f"/{name}/follow_joint_trajectory" for name in names.arm]
+        arms = [ActionClient(graph, name, FOLLOW) for name in actions_of_arm]
         self._gripper = None
         if names.gripper:
             self._gripper = ActionClient(graph, f"/{names.gripper}/gripper_cmd", GRIPPER)
-        found = self._wait(lambda: any(a.is_ready for a in self._arms.values()), PATIENCE)
-        if not found:
-            required = " or ".join(f"/{name}/follow_joint_trajectory" for name in self._arms)
-            served = ", ".join(graph.names()[1].actions) or "no action"
+        if not self._wait(lambda: any(arm.is_ready for arm in arms), PATIENCE):
+            served = ", ".join(actions(graph.uses()[1])) or "no action"
+            required = " or ".join(actions_of_arm)
             _unreachable(f"{required} is not served in this domain; served are: {served}")
-        self._arm = next(arm for arm in self._arms.values() if arm.is_ready)
+        self._arm = next(arm for arm in arms if arm.is_ready)
         if not self._wait(lambda: self._states.time >= 0, PATIENCE):
-            _unreachable(
-                "/joint_states brings no message with all joints:"
-                f" {', '.join(self.description.joint_names)}"
-            )
+            joints = ", ".join(self.description.joint_names)
+            _unreachable(f"/joint_states brings no message with all joints: {joints}")
 
     # -- where things are ---------------------------------------------------------------------
 
@@ -144,7 +141,6 @@ class RemoteArm:
 
     @property
     def sample_count(self) -> int:
-        """Samples on the grid so far."""
         return self._states.sample_count
 
     @property
@@ -178,13 +174,12 @@ class RemoteArm:
         self._refuse_other_start(trajectory)
         if not self._options.confirm(trajectory):
             raise StepFailed("PREEMPTED", "the motion was not confirmed, so nothing moved")
-        scaled = slowed(trajectory, self._options.velocity_scaling)
-        client = self._arm
-        goal = client.send(_goal(scaled))
-        self._follow(client, goal, 10.0 * scaled.duration + PATIENCE)
+        share, client = self._options.velocity_scaling, self._arm
+        goal = client.send(_goal(trajectory, share))
+        self._follow(client, goal, 10.0 * trajectory.duration / share + PATIENCE)
         self._refuse_failure(goal, client)
         end = self.commanded_positions()
-        for name, position in zip(scaled.joint_names, scaled.positions[-1], strict=True):
+        for name, position in zip(trajectory.joint_names, trajectory.positions[-1], strict=True):
             end[self.description.joint_index[name]] = position
         self._command = self.description.with_mimics(end)
 
@@ -203,20 +198,16 @@ class RemoteArm:
         if goal.is_accepted is False:
             raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
         objects = [obj for obj in self._program.all_objects() if obj.in_simulation]
-        held = tuple(o.name for o in objects if goal.result.stalled and not o.is_static)
+        result = goal.result
+        held = tuple(o.name for o in objects if result.stalled and not o.is_static)
         return GripperResult(
-            position=goal.result.position,
-            effort=goal.result.effort,
-            stalled=goal.result.stalled,
-            reached_goal=goal.result.reached_goal,
+            position=result.position,
+            effort=result.effort,
+            stalled=result.stalled,
+            reached_goal=result.reached_goal,
             contacts=dict.fromkeys(gripper.sides, held),
             between=held,
         )
-
-    def start_gripper(self, position: float, max_effort: float) -> None:
-        """Refuse: motions of arm and gripper are sent one after the other."""
-        del position, max_effort
-        raise StepFailed("ABORT", "arm and gripper of a ROS 2 robot do not move in parallel here")
 
     def hold(self, duration: float) -> None:
         """Let the robot's time pass [s]."""
@@ -237,22 +228,13 @@ class RemoteArm:
             raise StepFailed("TIMED_OUT", f"the robot still moves after {timeout:g} s")
         return True
 
-    # -- objects: a program does not change those of a real cell --------------------------------
+    # -- what a program does not do to a real cell ----------------------------------------------
 
-    def add_object(self, name: str, pose: SE3) -> None:
-        del pose
-        raise StepFailed("ABORT", f"'{name}' would have to appear in the real cell: `in: planning`")
-
-    def remove_object(self, name: str) -> None:
-        raise StepFailed("ABORT", f"'{name}' cannot be taken out of the real cell by a program")
-
-    def move_object(self, name: str, pose: SE3) -> None:
-        del pose
-        raise StepFailed("ABORT", f"'{name}' cannot be moved in the real cell by a program")
-
-    def weld(self, name: str, link: str) -> None:
-        del link
-        raise StepFailed("ABORT", f"'{name}' cannot be welded to the gripper of a real robot")
+    start_gripper = _refuses("arm and gripper of a ROS 2 robot do not move in parallel here")
+    add_object = _refuses("an object would have to appear in the real cell; add it `in: planning`")
+    remove_object = _refuses("an object cannot be taken out of the real cell by a program")
+    move_object = _refuses("an object cannot be moved in the real cell by a program")
+    weld = _refuses("an object cannot be welded to the gripper of a real robot")
 
     def unweld(self, name: str) -> None:
         del name
@@ -359,27 +341,19 @@ class RemoteArm:
         raise StepFailed("CONTROL_FAILED", f"{client.name} {how}{reason}")
 
 
-def slowed(trajectory: JointTrajectory, share: float) -> JointTrajectory:
-    """The same path at a share of the speed."""
-    return JointTrajectory(
-        trajectory.joint_names,
+def _goal(trajectory: JointTrajectory, share: float) -> Any:
+    """The goal of a trajectory at a share of its speed, which ends at rest."""
+    rows = zip(
         trajectory.times / share,
         trajectory.positions,
         trajectory.velocities * share,
         trajectory.accelerations * share**2,
-    )
-
-
-def _goal(trajectory: JointTrajectory) -> Any:
-    rows = zip(
-        trajectory.times,
-        trajectory.positions,
-        trajectory.velocities,
-        trajectory.accelerations,
         strict=True,
     )
     points = [
-        message(POINT, positions=p, velocities=v, accelerations=a, time_from_start=span(t))
+        message(
+            POINT, positions=p, velocities=v, accelerations=a, time_from_start=stamp(t, "Duration")
+        )
         for t, p, v, a in rows
     ]
     points[-1].velocities = np.zeros_like(points[-1].velocities)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from harness.core.errors import HarnessError
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
-from harness.recording.store import RESOLVED, read_run
+from harness.recording.read_run import read_run
+from harness.recording.stored_run import RESOLVED
 from harness.reporting.result import CaseResult
 from harness.ros.handover import HandOver
 from harness.session.prepare import Prepared

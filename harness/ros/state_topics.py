@@ -8,10 +8,12 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.link_poses import placement_poses
-from harness.recording.run import RobotRecord
+from harness.recording.robot_record import RobotRecord
+from harness.reporting.rosbag.messages import TransformStamped, transform
 from harness.ros.graph import Graph
-from harness.ros.interfaces import message, stamp
+from harness.ros.interfaces import header, message, stamp
 
+TF = "tf2_msgs/msg/TFMessage"
 TF_EVERY = 2
 """Ticks between two messages of frames: 50 Hz."""
 
@@ -20,17 +22,17 @@ class StateTopics:
     """Publishes the state of the robot after every tick."""
 
     def __init__(self, graph: Graph, robot: RobotRecord) -> None:
-        self._robot = robot
-        self._names = [joint.name for joint in robot.joints]
+        names = [joint.name for joint in robot.joints]
         self._moved = [placement for placement in robot.placements if placement.joint]
+        self._columns = [names.index(placement.joint) for placement in self._moved]
         self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", depth=1)
         self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
-        self._state = message("sensor_msgs/msg/JointState", name=self._names)
-        self._tf = graph.advertise("/tf", "tf2_msgs/msg/TFMessage", depth=100)
-        static = graph.advertise("/tf_static", "tf2_msgs/msg/TFMessage", latched=True, depth=1)
+        self._state = message("sensor_msgs/msg/JointState", name=names)
+        self._tf = graph.advertise("/tf", TF, depth=100)
+        static = graph.advertise("/tf_static", TF, latched=True, depth=1)
         fixed = [placement for placement in robot.placements if not placement.joint]
         transforms = [_stamped(0.0, each.parent, each.link, np.array(each.pose)) for each in fixed]
-        static.publish(message("tf2_msgs/msg/TFMessage", transforms=transforms))
+        static.publish(message(TF, transforms=transforms))
         description = graph.advertise(
             "/robot_description", "std_msgs/msg/String", latched=True, depth=1
         )
@@ -59,29 +61,15 @@ class StateTopics:
             self._publish_frames(time, positions)
 
     def _publish_frames(self, time: float, positions: FloatArray) -> None:
-        columns = {name: column for column, name in enumerate(self._names)}
         transforms = [
-            _stamped(
-                time,
-                each.parent,
-                each.link,
-                placement_poses(each, positions[[columns[each.joint]]])[0],
-            )
-            for each in self._moved
+            _stamped(time, each.parent, each.link, placement_poses(each, position)[0])
+            for each, position in zip(self._moved, positions[self._columns, None], strict=True)
         ]
-        self._tf.publish(message("tf2_msgs/msg/TFMessage", transforms=transforms))
+        self._tf.publish(message(TF, transforms=transforms))
 
 
 def _stamped(time: float, parent: str, child: str, pose: FloatArray) -> Any:
     """A pose (xyz, quaternion wxyz) as a TransformStamped."""
-    x, y, z, qw, qx, qy, qz = map(float, pose)
-    return message(
-        "geometry_msgs/msg/TransformStamped",
-        header=message("std_msgs/msg/Header", stamp=stamp(time), frame_id=parent),
-        child_frame_id=child,
-        transform=message(
-            "geometry_msgs/msg/Transform",
-            translation=message("geometry_msgs/msg/Vector3", x=x, y=y, z=z),
-            rotation=message("geometry_msgs/msg/Quaternion", x=qx, y=qy, z=qz, w=qw),
-        ),
+    return TransformStamped(
+        header=header(time, parent), child_frame_id=child, transform=transform(pose.tolist())
     )

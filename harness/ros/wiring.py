@@ -6,24 +6,21 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+import numpy as np
+
+from harness.core.types import FloatArray
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.ros.action_server import ActionServer
-from harness.ros.contents import (
-    follow_content,
-    follow_feedback,
-    follow_result,
-    gripper_content,
-    gripper_result,
-    trajectory_content,
-)
 from harness.ros.control.cell import ExternalCell
-from harness.ros.control.gripper import Gripped
-from harness.ros.control.trajectory import Finished
+from harness.ros.control.controller import Window
 from harness.ros.graph import Graph
-from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, message, seconds
 
 FEEDBACK_EVERY = 5
 """Ticks between two messages of feedback: 20 Hz, as controllers are set by default."""
+
+Content = dict[str, Any]
+"""The values of a command as they are recorded."""
 
 
 class Wiring:
@@ -38,15 +35,16 @@ class Wiring:
     ) -> None:
         self.is_open = False
         self._cell, self._on_command, self._ticks = cell, on_command, 0
+        serve = partial(self._serve, graph)
         self._servers: list[ActionServer] = []
         for name in cell.trajectories:
-            self._serve(
-                graph, f"/{name}/follow_joint_trajectory", FOLLOW, partial(self._follow, name)
-            )
+            action = f"/{name}/follow_joint_trajectory"
+            self._servers.append(serve("trajectory", name, action, FOLLOW, follow_content))
             graph.subscribe(f"/{name}/joint_trajectory", TRAJECTORY, partial(self._topic, name))
         if cell.gripper is not None:
-            name = f"/{cell.gripper.name}/gripper_cmd"
-            self._serve(graph, name, GRIPPER, self._grip)
+            name = cell.gripper.name
+            action = f"/{name}/gripper_cmd"
+            self._servers.append(serve("gripper", name, action, GRIPPER, grip_content))
 
     def after_tick(self) -> None:
         """Report what ended, and how far the others are."""
@@ -54,58 +52,99 @@ class Wiring:
         self._ticks += 1
         if self._ticks % FEEDBACK_EVERY:
             return
-        for tracking in self._cell.tracking():
+        for controller, window in self._cell.tracking():
             for server in self._servers:
-                if server.owns(tracking.goal):
-                    names = self._cell.trajectories[server.name.split("/")[1]].joint_names
-                    server.feedback(tracking.goal, follow_feedback(tracking, names))
+                if server.owns(controller.goal):
+                    content = follow_feedback(controller.joint_names, window)
+                    server.feedback(controller.goal, content)
 
     def report(self) -> None:
-        """Send the results of goals that ended."""
+        """Send the results of goals that ended; a trajectory from a topic has none."""
         outcomes, self._cell.outcomes = self._cell.outcomes, []
         for outcome in outcomes:
-            server = next((each for each in self._servers if each.owns(outcome.goal)), None)
-            if server is None:  # a trajectory from a topic has no result
-                continue
-            if isinstance(outcome, Gripped):
-                server.finish(outcome.goal, *gripper_result(outcome))
-            elif isinstance(outcome, Finished):
-                server.finish(outcome.goal, *follow_result(outcome))
+            for server in self._servers:
+                if server.owns(outcome.goal):
+                    server.finish(outcome.goal, outcome.has_succeeded, outcome.result)
 
     def _serve(
-        self, graph: Graph, name: str, kind: str, on_goal: Callable[[str, Any], bool]
-    ) -> None:
-        controller = name.split("/")[1]
-        self._servers.append(
-            ActionServer(
-                graph,
-                name,
-                kind,
-                clock=lambda: self._cell.time,
-                on_goal=on_goal,
-                on_cancel=partial(self._cancel, controller),
-            )
+        self,
+        graph: Graph,
+        kind: CommandKind,
+        controller: str,
+        action: str,
+        action_type: str,
+        content: Callable[[Any], Content],
+    ) -> ActionServer:
+        return ActionServer(
+            graph,
+            action,
+            action_type,
+            clock=lambda: self._cell.time,
+            on_goal=lambda goal, sent: self._take(kind, controller, goal, content(sent)),
+            on_cancel=lambda goal: self._take("cancel", controller, goal, {}),
         )
 
-    def _follow(self, name: str, goal: str, content: Any) -> bool:
+    def _topic(self, name: str, sent: Any) -> None:
+        self._take("trajectory", name, "", trajectory_content(sent))
+
+    def _take(self, kind: CommandKind, name: str, goal: str, content: Content) -> bool:
+        """Let a command take effect; whether it was accepted."""
         if not self.is_open:
             return False
-        return self._take("trajectory", name, goal, follow_content(content))
-
-    def _grip(self, goal: str, content: Any) -> bool:
-        if not self.is_open or self._cell.gripper is None:
-            return False
-        return self._take("gripper", self._cell.gripper.name, goal, gripper_content(content))
-
-    def _cancel(self, name: str, goal: str) -> bool:
-        return self._take("cancel", name, goal, {})
-
-    def _topic(self, name: str, content: Any) -> None:
-        if self.is_open:
-            self._take("trajectory", name, "", trajectory_content(content))
-
-    def _take(self, kind: CommandKind, name: str, goal: str, content: dict[str, Any]) -> bool:
-        """Let a command take effect; whether it was accepted."""
         record = self._cell.receive(kind, name, goal, content)
         self._on_command(record)
         return record.answer == "accepted"
+
+
+def trajectory_content(trajectory: Any) -> Content:
+    """The content of a JointTrajectory."""
+    return {
+        "joint_names": [str(name) for name in trajectory.joint_names],
+        "stamp": seconds(trajectory.header.stamp),
+        "points": [
+            {
+                "time": seconds(point.time_from_start),
+                "positions": point.positions.tolist(),
+                "velocities": point.velocities.tolist(),
+                "accelerations": point.accelerations.tolist(),
+            }
+            for point in trajectory.points
+        ],
+    }
+
+
+def follow_content(goal: Any) -> Content:
+    """The content of a goal of FollowJointTrajectory."""
+    path, end = (
+        [{"name": str(t.name), "position": t.position, "velocity": t.velocity} for t in tolerances]
+        for tolerances in (goal.path_tolerance, goal.goal_tolerance)
+    )
+    return {
+        **trajectory_content(goal.trajectory),
+        "path_tolerance": path,
+        "goal_tolerance": end,
+        "goal_time": seconds(goal.goal_time_tolerance),
+    }
+
+
+def grip_content(goal: Any) -> Content:
+    """The content of a goal of GripperCommand."""
+    return {"position": goal.command.position, "max_effort": goal.command.max_effort}
+
+
+def follow_feedback(names: tuple[str, ...], window: Window) -> Any:
+    """Feedback of a trajectory that is followed."""
+
+    def point(motion: FloatArray) -> Any:
+        positions, velocities = np.ascontiguousarray(motion)
+        return message(POINT, positions=positions, velocities=velocities)
+
+    desired, actual = window.desired[:2, -1], window.measured[:, -1]
+    return message(
+        f"{FOLLOW}_Feedback",
+        header=header(float(window.times[-1])),
+        joint_names=list(names),
+        desired=point(desired),
+        actual=point(actual),
+        error=point(desired - actual),
+    )

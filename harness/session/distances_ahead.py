@@ -51,12 +51,13 @@ class DistancesAhead:
     def look(self, execution: ProgramExecution, simulator: Simulator) -> None:
         """Begin to measure the parts that are complete by now, unless others are being measured.
 
-        Only the record of the physics is complete at once; that of a robot arrives later.
+        Only the record of the physics is complete at once; that of a robot arrives later. Where
+        another case has computed the same physics, its distances are known too.
         """
         from harness.observation.sampled_clearance import complete_parts
         from harness.simulation.mujoco_simulator import MujocoSimulator
 
-        if not isinstance(simulator, MujocoSimulator):
+        if not isinstance(simulator, MujocoSimulator) or sharing.is_repeating("physics"):
             return
         if self._background is not None and not self._background.has_message():
             return

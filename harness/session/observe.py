@@ -12,10 +12,12 @@ from harness.observation.beliefs import believed_poses
 from harness.observation.contacts import contact_records
 from harness.observation.couplings import coupling_findings
 from harness.observation.tracking import as_commanded, plan_against_physics
-from harness.recording.run import Finding, Run, Signals
+from harness.recording.run import Finding, Run
+from harness.recording.signals import Signals
 from harness.session.prepare import Prepared
 
 if TYPE_CHECKING:
+    from harness.observation.clearance import CoalClearance
     from harness.observation.measured_clearance import MeasuredClearance
 
 
@@ -43,7 +45,8 @@ def observed_run(
     from harness.observation.looks_differ import looks_differ
 
     description = prepared.program.description
-    signals = CoalClearance(description).observe(
+    observer = CoalClearance(description)
+    signals = observer.observe(
         executed.signals,
         executed.objects,
         executed.attachments,
@@ -51,7 +54,7 @@ def observed_run(
         measured,
     )
     run = replace(executed, signals=with_link_overlaps(signals, description))
-    signals, findings = _compared_with_plan(prepared, run)
+    signals, findings = _compared_with_plan(prepared, run, observer)
     return replace(
         run,
         signals=signals,
@@ -65,17 +68,18 @@ def observed_run(
     )
 
 
-def _compared_with_plan(prepared: Prepared, run: Run) -> tuple[Signals, tuple[Finding, ...]]:
+def _compared_with_plan(
+    prepared: Prepared, run: Run, observer: CoalClearance
+) -> tuple[Signals, tuple[Finding, ...]]:
     """Where planner and physics disagreed; the signals with distances as planned where needed."""
-    from harness.observation.clearance import CoalClearance
-
-    observer = CoalClearance(prepared.program.description)
     cutoff = run.signals.clearance_cutoff
     planned = as_commanded(run, prepared.kinematics)
     findings = plan_against_physics(
         run,
         planned,
-        lambda motion: observer.distances(motion, run.objects, run.attachments, cutoff),
+        lambda motion, pairs: observer.distances(
+            motion, run.objects, run.attachments, cutoff, pairs
+        ),
     )
     findings = (*findings, *coupling_findings(run, prepared.program.description))
     if not prepared.observations.planned_clearances:

@@ -11,7 +11,10 @@ from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
 from harness.recording.explanation import recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
-from harness.recording.run import CaptureRecord, Finding, MeshRecord, Run, StepRecord, VideoRecord
+from harness.recording.robot_record import MeshRecord
+from harness.recording.run import Finding, Run
+from harness.recording.signals import CaptureRecord, VideoRecord
+from harness.recording.step_record import StepRecord
 from harness.session.background import Background
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest

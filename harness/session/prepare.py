@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -81,8 +81,12 @@ def prepare(
     overrides: Mapping[str, str] | None = None,
     seed: int | None = None,
     text: str | None = None,
+    inspect: Callable[[LoadedScenario], None] | None = None,
 ) -> Prepared:
     """Load and compile a scenario; its text may be given instead of read.
+
+    Args:
+        inspect: Called with the scenario before its robot, world and meshes are read.
 
     Raises:
         SpecError: With every problem of the file, robot and world included.
@@ -90,6 +94,8 @@ def prepare(
     reading = read_scenario(path, overrides, seed, text)
     if reading.loaded is None:
         raise SpecError(reading.problems)
+    if inspect is not None:
+        inspect(reading.loaded)
     try:
         prepared = _prepared(reading.loaded, reading)
     except SpecError as error:

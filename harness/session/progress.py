@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from harness.cell.program import Program, ProgramStep
 from harness.engine.execute import StepEvent
 from harness.ports.simulation import Simulator
-from harness.recording.run import StepRecord
-from harness.recording.store import StoredRun
+from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import StoredRun
 from harness.reporting.result import CaseResult, ProgressEvent
 
 Notify = Callable[[ProgressEvent], None]

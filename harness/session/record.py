@@ -12,14 +12,9 @@ from harness.observation.fault_effects import with_receipts
 from harness.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.ports.kinematics import Kinematics
 from harness.ports.scene import Touch
-from harness.recording.run import (
-    GripperRecord,
-    JointRecord,
-    LinkPlacement,
-    RobotRecord,
-    Run,
-    Signals,
-)
+from harness.recording.robot_record import GripperRecord, JointRecord, LinkPlacement, RobotRecord
+from harness.recording.run import Run
+from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest

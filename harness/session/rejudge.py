@@ -11,8 +11,9 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.language.reading.load import LoadedScenario, load_scenario
 from harness.language.step import Block
-from harness.recording.run import Verdict
-from harness.recording.store import RESOLVED, StoredRun, read_run
+from harness.recording.read_run import read_run
+from harness.recording.stored_run import RESOLVED, StoredRun
+from harness.recording.verdict import Verdict
 
 
 def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:

@@ -16,8 +16,10 @@ from harness.engine.execute import ProgramExecution, StepEvent
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
 from harness.recording.files import write_files
-from harness.recording.run import Run, StepRecord
-from harness.recording.store import PAGE, StoredRun, write_run
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import PAGE, StoredRun
+from harness.recording.write_run import write_run
 from harness.reporting.reporter import write_with
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings

@@ -17,7 +17,7 @@ from harness.core.world import WorldObject
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ContactForce, ControlFailure, UnrestFailure
 from harness.recording.motion import Motion
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.simulation.contact_record import BodyPair
 from harness.simulation.faults import MujocoFaults
@@ -111,7 +111,7 @@ class MujocoSimulator:
     def _first_control(self) -> FloatArray:
         """Inputs of the motors at the start."""
         try:
-            return self._controls(self._still(self._command))[0]
+            return self.controls(self._still(self._command))[0]
         except StepFailed as failed:
             refresh(self._model, self._data)
             self._refuse_unusable_start()  # the cause, if forces at the start are infinite
@@ -172,12 +172,11 @@ class MujocoSimulator:
         whole = self.whole(points, columns)
         if self._gripper is not None:
             whole = self._gripper.join(whole)
-        controls = self._controls(whole)
+        controls = self.controls(whole)
         for begin in range(0, len(whole) - 1, CHECK_EVERY):
             end = min(begin + CHECK_EVERY, len(whole) - 1)
             first = self._recording.count
-            self._advance(whole.part(begin, end), controls[begin : end + 1])
-            self._command = whole.positions[end]
+            self.follow(whole, controls, begin, end)
             self._refuse_lag(first, whole.positions[begin + 1 : end + 1, columns], columns)
         self.command(whole.positions[-1])
         self._wait_for_goal(whole.positions[-1, columns], columns)
@@ -279,7 +278,7 @@ class MujocoSimulator:
     def command(self, positions: FloatArray) -> None:
         """Set the servos to hold actuated joints at positions, shape (m,)."""
         self._command = np.array(positions)
-        self._control = self._controls(self._still(self._command))[0]
+        self._control = self.controls(self._still(self._command))[0]
 
     def hold_samples(self, count: int) -> None:
         """Hold the last commands for a number of samples."""
@@ -303,11 +302,14 @@ class MujocoSimulator:
         if self._grip is not None:
             self.limit_grip(*self._grip)
 
-    def follow(self, whole: SetPoints, begin: int, end: int) -> None:
-        """Advance along set points of all actuated joints from row `begin` to row `end`."""
-        part = whole.part(begin, end)
-        self._advance(part, self._controls(part))
-        self._command = part.positions[-1]
+    def follow(self, whole: SetPoints, controls: FloatArray, begin: int, end: int) -> None:
+        """Advance along set points of all actuated joints from row `begin` to row `end`.
+
+        Args:
+            controls: The `controls` of the whole.
+        """
+        self._advance(whole.part(begin, end), controls[begin : end + 1])
+        self._command = whole.positions[end]
 
     @property
     def timestep(self) -> float:
@@ -331,7 +333,7 @@ class MujocoSimulator:
         points = SetPoints(*rows)
         self._recording.refuse_beyond(len(points) - 1)
         self.renew_grip_limit()
-        self.follow(points, 0, len(points) - 1)
+        self.follow(points, self.controls(points), 0, len(points) - 1)
 
     def measured(self, first: int) -> tuple[FloatArray, FloatArray]:
         """Positions and velocities from a sample on, description order, shape (N, n) each."""
@@ -385,7 +387,7 @@ class MujocoSimulator:
         still = np.zeros((1, len(command)))
         return SetPoints(command[None], still, still)
 
-    def _controls(self, points: SetPoints) -> FloatArray:
+    def controls(self, points: SetPoints) -> FloatArray:
         """Inputs of the motors; those of a controller that measures are not known beforehand."""
         if self._drive.cycle is not None:
             return np.zeros_like(points.positions)

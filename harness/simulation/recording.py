@@ -14,7 +14,7 @@ from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.types import FloatArray, IntArray
 from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.simulation.contact_record import (
     BYTES,
     ROWS,

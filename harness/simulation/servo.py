@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from harness.core.sharing import shared
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model
@@ -30,6 +31,9 @@ accelerate its own rotor faster than 1000 rad/s^2.
 
 GRIPPER_SATURATION = 0.0025
 """Lag of a gripper's joint at its default grip effort, as a share of its range."""
+
+SHORTEST = 64
+"""Samples of a motion whose efforts are worth looking up."""
 
 GRIPPER_BANDWIDTH_PER_STEP = 0.5
 """BANDWIDTH_PER_STEP of a gripper; its saturation gives the stiffness, and so its rotor inertia."""
@@ -111,6 +115,7 @@ class FeedForward:
     def __init__(
         self, description: RobotDescription, servos: Servos, gravity: tuple[float, float, float]
     ) -> None:
+        self._description, self._facts = description, (vars(servos), gravity)
         spec = bare_robot(description)
         spec.option.gravity = gravity
         spec.option.disableflags = (
@@ -136,6 +141,19 @@ class FeedForward:
             velocities: Joint velocities, shape (N, n).
             accelerations: Joint accelerations, shape (N, n).
         """
+        rows = positions, velocities, accelerations
+        if len(positions) < SHORTEST:
+            return self._efforts(*rows)
+        return shared(
+            "efforts",
+            lambda: (self._description.key, self._facts, *rows),
+            lambda: self._efforts(*rows),
+            is_often_needed=False,
+        )
+
+    def _efforts(
+        self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
+    ) -> FloatArray:
         model, data = self._model, self._data
         efforts = np.empty((len(positions), model.nv))
         qpos, qvel, qacc = (np.empty((len(positions), model.nv)) for _ in range(3))

@@ -49,21 +49,21 @@ class MoveRelative(Step):
     @model_validator(mode="after")
     def _one_amount(self) -> MoveRelative:
         if (self.direction is None) == (self.rotation is None):
-            raise ValueError("exactly one of `direction` and `rotation`")
+            raise ValueError("`move_relative` needs exactly one of `direction` and `rotation`")
         if self.rotation is not None:
             if self.angle is None:
-                raise ValueError("a `rotation` has an `angle`")
+                raise ValueError("a `rotation` needs an `angle`")
             if any((self.distance, self.min_distance, self.max_distance)):
-                raise ValueError("a `rotation` has an `angle`, a `direction` has a distance")
+                raise ValueError("a `rotation` takes an `angle` and no distance")
             return self
         if self.angle is not None:
             raise ValueError("an `angle` goes with `rotation`")
         if self.distance is not None and (self.min_distance or self.max_distance):
-            raise ValueError("either `distance`, or `min_distance` and `max_distance`")
+            raise ValueError("a `direction` takes `distance`, or `min_distance` and `max_distance`")
         if self.distance is None and self.max_distance is None:
-            raise ValueError("a `direction` has a `distance`, or a `max_distance`")
+            raise ValueError("a `direction` needs a `distance` or a `max_distance`")
         if self.min_distance and self.max_distance and self.min_distance > self.max_distance:
-            raise ValueError("`min_distance` is more than `max_distance`")
+            raise ValueError("`min_distance` must not be more than `max_distance`")
         return self
 
     def summary(self) -> str:

@@ -102,20 +102,24 @@ class Document:
 
     def step_keys(self) -> list[str]:
         """Text by which equal steps are recognised, one for each step at the top level."""
-        plain = self.root.plain()
-        assert isinstance(plain, dict)
+        plain = self._plain
         shared = {key: plain.get(key) for key in ("seed", "planning", "params")}
         return [
             json.dumps([index, _executed(step), shared], sort_keys=True, default=str)
-            for index, step in enumerate(_items_of(plain.get("steps")))
+            for index, step in enumerate(plain.get("steps") or ())
         ]
 
     def base_key(self) -> str:
         """Text that changes when the cell has to be built again, for other reasons than steps."""
-        plain = self.root.plain()
-        assert isinstance(plain, dict)
+        plain = self._plain
         keys = ("robot", "world", "objects", "cameras", "params")
         return json.dumps([plain.get(key) for key in keys], sort_keys=True, default=str)
+
+    @property
+    def _plain(self) -> dict[str, Plain]:
+        plain = self.root.plain()
+        assert isinstance(plain, dict)
+        return plain
 
     def with_step(self, step: str, index: int) -> Document:
         """The document with one more step, given as `verb: keys` on one line or several."""
@@ -209,7 +213,8 @@ class Document:
 
     def _first_line(self, key: str, index: int) -> int:
         """The line of an item's dash; a step's place is its first key."""
-        return _first_place(self._items(key)[index])
+        item = self._items(key)[index]
+        return min([item.place.line, *(entry.key.line for entry in item.mapping().values())])
 
     def _extent(self, key: str, index: int) -> tuple[int, int]:
         """First and last line of an item, from 1."""
@@ -267,17 +272,6 @@ def _item_lines(item: str, margin: str) -> list[str]:
     return [f"{margin}- {first}", *(f"{margin}  {line}" for line in rest)]
 
 
-def _first_place(item: Located) -> int:
-    """The first line in which something of an item stands."""
-    lines = [item.place.line]
-    lines += [entry.key.line for entry in item.mapping().values()]
-    return min(lines)
-
-
 def _executed(step: Plain) -> Plain:
     """What of a step decides its execution: expectations are judged afterwards."""
     return {k: v for k, v in step.items() if k != "expect"} if isinstance(step, dict) else step
-
-
-def _items_of(value: Plain) -> list[Plain]:
-    return value if isinstance(value, list) else []

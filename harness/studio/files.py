@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from harness.core.errors import HarnessError, Problem, SpecError
-from harness.studio.document import Document
+from harness.core.errors import HarnessError, SpecError
+from harness.language.files.source import Located, walk
+from harness.language.reading.load import WORLD_SUFFIXES, LoadedScenario, load_world
 
 SUFFIX = ".scenario.yaml"
 UNSAVED = ".unsaved"
-TEXTS = ("scenario", "description", "name", "text", "verifies", "title")
-"""Keys whose values are for people, whatever they look like."""
+TEXTS = (("scenario",), ("description",), ("text",), ("verifies",), ("title",))
+"""Ends of the paths of values that are for people, whatever they look like."""
 
 
 class OutsideError(HarnessError):
@@ -36,6 +36,11 @@ class StudioFiles:
         self.given = frozenset(each.resolve() for each in given)
 
     @property
+    def name(self) -> str:
+        """The file as a page names it, from the folder."""
+        return os.path.relpath(self.path, self.root)
+
+    @property
     def unsaved(self) -> Path:
         """The copy of work that was not saved."""
         return self.path.with_name(f".{self.path.name}{UNSAVED}")
@@ -55,21 +60,19 @@ class StudioFiles:
             raise OutsideError(f"there is no folder '{path.parent}'")
         return path
 
-    def save(self, name: str, text: str) -> Path:
-        """Write the scenario, and forget the unsaved copy.
+    def save(self, path: Path, text: str) -> None:
+        """Write the scenario to a path of `named`, and forget the unsaved copy.
 
         Raises:
-            HarnessError: The file cannot be written, or may not be.
+            HarnessError: The file cannot be written.
         """
-        path = self.named(name)
         try:
             _write(path, text)
         except OSError as error:
-            raise HarnessError(f"'{name}' cannot be written: {error.strerror}") from error
+            raise HarnessError(f"'{path.name}' cannot be written: {error.strerror}") from error
         with contextlib.suppress(OSError):
             self.unsaved.unlink(missing_ok=True)
         self.path = path
-        return path
 
     def keep_unsaved(self, text: str) -> str:
         """Keep a copy of the text that a crash leaves; returns why that is not possible."""
@@ -88,40 +91,51 @@ class StudioFiles:
         except (OSError, UnicodeDecodeError):
             return None
 
-    def refuse_outside(self, document: Document) -> None:
-        """See that a text names no file outside the folder.
+    def refuse_outside(self, written: Located) -> None:
+        """See that no value of a file leads out of the folder.
 
         Raises:
-            SpecError: It does.
+            SpecError: Some do, each at its place.
         """
-        folder = self.path.parent
-        problems: list[Problem] = []
-        for words in _words(document.root.plain()):
-            given = Path(words).expanduser()
-            path = (folder / given).resolve()
-            looks_like_path = words.startswith(("/", "~")) or ".." in given.parts
-            is_allowed = path.is_relative_to(self.root) or path in self.given
-            if looks_like_path and not is_allowed:
-                line = next((n for n, t in enumerate(document.lines, 1) if words in t), 1)
-                message = f"`{words}` is outside {self.root}, where the studio reads nothing"
-                problems.append(Problem(str(self.path), line, 1, message))
+        problems = [
+            item.place.problem(f"`{item.value}` is outside {self.root}, where nothing is read")
+            for loc, item in walk(written)
+            if isinstance(item.value, str) and loc[-1:] not in TEXTS and self._leads_out(item)
+        ]
         if problems:
             raise SpecError(problems)
 
+    def refuse_used_outside(self, loaded: LoadedScenario) -> None:
+        """See the same of the values as they are used: parameters filled in, the world's too.
 
-def _words(value: Any) -> Iterator[str]:
-    if isinstance(value, Mapping):
-        for key, each in value.items():
-            if key not in TEXTS or not isinstance(each, str):
-                yield from _words(each)
-    elif isinstance(value, str):
-        yield value
-    elif isinstance(value, Sequence):
-        for each in value:
-            yield from _words(each)
+        Raises:
+            SpecError: Some lead out of the folder.
+        """
+        self.refuse_outside(loaded.written)
+        world = loaded.scenario.world.name
+        if Path(world).suffix in WORLD_SUFFIXES:
+            try:
+                written = load_world(world, loaded.path.parent).written
+            except SpecError:  # whoever compiles it reports that
+                return
+            self.refuse_outside(written)
+
+    def _leads_out(self, item: Located) -> bool:
+        words = str(item.value)
+        if not words.isprintable() or not {"/", ".", "~"} & set(words):
+            return False
+        path = (Path(item.place.source.path).parent / Path(words).expanduser()).resolve()
+        if path.is_relative_to(self.root) or path in self.given:
+            return False
+        return words.startswith(("/", "~")) or ".." in Path(words).parts or path.exists()
 
 
 def _write(path: Path, text: str) -> None:
     partial = path.with_name(f"{path.name}.partial")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, path)  # noqa: PTH105 - one call that replaces the file whole
+    try:
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(path)
+    except OSError:
+        with contextlib.suppress(OSError):
+            partial.unlink()
+        raise

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
+import gc
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -17,25 +18,32 @@ from harness.studio.live_studio import LiveStudio
 from harness.studio.messages import failure_message
 from harness.studio.previews import preview
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost, Handle
+from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost, Handle, SceneView
 from harness.studio.session import Message, RefusedError
 from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
-
-MOST_GHOSTS = 4
-"""Ways that are drawn at once, nearest first."""
 
 SOLID, FAINT = 0.8, 0.2
 """Opacity of the way that continues the current posture, and of the others."""
 
 
-class GoalActions(LiveStudio):
+class GoalActions(LiveStudio, ABC):
     """What handles, goals by number and the buttons `Plan` do."""
 
     def __init__(self, files: StudioFiles, text: str, notice: str = "") -> None:
         super().__init__(files, text, notice)
         self.follows = False
+        self.server: viser.ViserServer
         self._drag: tuple[str, SE3, Handle] | None = None
         self._goal = SE3.identity()
+
+    def open(self, server: viser.ViserServer) -> None:
+        """Show the cell in a server's scene, and begin."""
+        self.server = server
+        self.view = SceneView(server, self.on_drag, self.on_choose)
+        self.show_cell()
+        gc.collect()
+        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
+        self.session.start()
 
     def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
         """Keep the newest pose for the cell's thread; poses of spectators are put back."""
@@ -54,9 +62,7 @@ class GoalActions(LiveStudio):
 
     def _controls(self, client: int) -> bool:
         """Whether the page that shows a scene is the one that controls."""
-        server: viser.ViserServer | None = self.server
-        assert server is not None
-        live = server._websock_server._live_connections  # noqa: SLF001 - viser names no page
+        live = self.server._websock_server._live_connections  # noqa: SLF001 - viser names no page
         connection = next((each for key, each in live.items() if int(key) == client), None)
         path = "" if connection is None or connection.request is None else connection.request.path
         return path.rpartition("/")[2] == self.session.controller
@@ -117,17 +123,18 @@ class GoalActions(LiveStudio):
         if self.follows and best is not None:
             self.target = best.positions
         if self.view is not None:
-            self.view.show_ghosts(
-                [
-                    Ghost(
-                        way.positions,
-                        REFUSED if way.refusal else GHOST,
-                        SOLID if way is best else FAINT,
-                        number,
-                    )
-                    for number, way in enumerate(reach.ways[:MOST_GHOSTS])
-                ]
-            )
+            ghosts = [
+                Ghost(
+                    way.positions,
+                    REFUSED if way.refusal else GHOST,
+                    SOLID if way is best else FAINT,
+                    number,
+                )
+                for number, way in enumerate(reach.ways)
+            ]
+            if reach.nearest is not None:
+                ghosts.append(Ghost(reach.nearest, REFUSED, SOLID))
+            self.view.show_ghosts(ghosts)
             self.view.show_path(None)
         shown = self.cell.cell.frame(frame).inverse() @ pose
         self.session.broadcast(

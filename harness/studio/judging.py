@@ -8,7 +8,8 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.core.activity import unobserved
 from harness.recording.digest import digest
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 from harness.session.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
 from harness.session.record import executed_run
@@ -49,14 +50,14 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     prepared = cell.prepared
     if document is not None:
         prepared = replace(prepared, expectations=cell.prepared_as(document).expectations)
-    request = RunRequest(cell.path, text=cell.document.text)
+    request = RunRequest(cell.files.path, text=cell.document.text)
     execution = cell.execution.finish()
     signals = with_believed_poses(prepared, execution, cell.simulator.finish())
-    run = executed_run(request, prepared, execution, signals, cell.overlaps_at_start)
+    run = executed_run(request, prepared, execution, signals, cell.simulator.overlaps_at_start)
     with Pictures(request, prepared, run) as pictures:
         run = pictures.captured(observed_run(prepared, run), unobserved)
     verdicts = judge(run, prepared.expectations)
-    is_over = cell.is_at_end or bool(execution.ended_early)
+    is_over = cell.steps_done >= cell.document.step_count or bool(execution.ended_early)
     is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
     return Judged(
         run,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -18,12 +17,13 @@ from harness.engine.execute import OnStep, ProgramExecution
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.scene import Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared, prepare
 from harness.session.start import start_physics
 from harness.studio.cell_state import CellState
 from harness.studio.document import Document
+from harness.studio.files import StudioFiles
 from harness.studio.live_simulator import LiveSimulator, Pace
 
 
@@ -42,19 +42,19 @@ class LiveCell:
     Not thread-safe: one thread does everything.
 
     Attributes:
-        path: The scenario's file, whether it exists or not; relative paths begin in its folder.
+        files: The scenario's file, whether it exists or not, and the folder that may be read.
         document: The text that the cell was compiled from.
         history: Snapshots: at the start, then after every step that was executed.
         is_by_hand: Whether something was moved by hand since the last snapshot.
     """
 
-    def __init__(self, path: Path, document: Document, on_step: OnStep = _no_step) -> None:
+    def __init__(self, files: StudioFiles, document: Document, on_step: OnStep = _no_step) -> None:
         """Build the cell at the scenario's start.
 
         Raises:
             SpecError: With every problem of the text.
         """
-        self.path = path
+        self.files = files
         self.on_step = on_step
         self.pace: Pace | None = None
         self.history: list[CellState] = []
@@ -127,19 +127,9 @@ class LiveCell:
         return self.history[-1].is_run and not self.is_by_hand
 
     @property
-    def is_at_end(self) -> bool:
-        """Whether every step of the file was executed."""
-        return self.steps_done >= self.document.step_count
-
-    @property
     def has_run_digest(self) -> bool:
         """Whether a run of the file would have recorded the same, and no less."""
         return self.is_run and self._has_same_links
-
-    @property
-    def overlaps_at_start(self) -> tuple[Touch, ...]:
-        """Bodies that overlap at the start, deepest first."""
-        return self.simulator.overlaps_at_start
 
     def prepared_as(self, document: Document) -> Prepared:
         """A text as it is compiled in the place of the cell's own.
@@ -147,7 +137,9 @@ class LiveCell:
         Raises:
             SpecError: With every problem of the text.
         """
-        return prepare(self.path, text=document.compiled_text())
+        self.files.refuse_outside(document.root)
+        text, inspect = document.compiled_text(), self.files.refuse_used_outside
+        return prepare(self.files.path, text=text, inspect=inspect)
 
     # -- executing steps ----------------------------------------------------------------------
 
@@ -188,7 +180,8 @@ class LiveCell:
     def go_to(self, count: int) -> None:
         """Make the state the one after some steps: forwards by executing, backwards restored."""
         if count < self.steps_done or self.is_by_hand or not self.is_run:
-            self.restore(min(count, self._last_of_run()))
+            last_of_run = max(state.steps for state in self.history if state.is_run)
+            self.restore(min(count, last_of_run))
         self.run_steps(count)
 
     def step_back(self) -> None:
@@ -312,12 +305,6 @@ class LiveCell:
         self.simulator.jog(target[actuated], share * seconds * limits[actuated])
         self.idle(seconds)
 
-    def move_object(self, name: str, pose: SE3) -> None:
-        """Put an object somewhere else, at rest."""
-        self.is_by_hand = True
-        self.cell.move_in_scene(name, pose)
-        self.simulator.idle(1)
-
     @property
     def timestep(self) -> float:
         """The physics step [s]."""
@@ -393,7 +380,3 @@ class LiveCell:
     def _restore(self, state: CellState) -> None:
         state.restore(self.execution, self.simulator, self.scene)
         self.is_by_hand = self._is_idle = False
-
-    def _last_of_run(self) -> int:
-        """The last executed step after which a run would be in the same state."""
-        return max(state.steps for state in self.history if state.is_run)

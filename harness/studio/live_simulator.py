@@ -12,9 +12,7 @@ import numpy as np
 
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
-from harness.ports.scene import Touch
 from harness.session.timed_simulator import TimedSimulator
-from harness.simulation.objects import overlaps
 from harness.simulation.recording import refresh
 from harness.simulation.set_points import SetPoints
 
@@ -83,11 +81,6 @@ class LiveSimulator(TimedSimulator):
             if force[0] > 0:
                 found[first, second] = found.get((first, second), 0.0) + float(force[0])
         return found
-
-    def current_overlaps(self) -> tuple[Touch, ...]:
-        """Pairs of an object and another body that overlap now, deepest first."""
-        refresh(self._model, self._data)
-        return overlaps(self.physics, self._data)
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:
         count = len(points) - 1

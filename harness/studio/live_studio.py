@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import gc
 import threading
 import time
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import viser
 
 from harness.core.errors import Problem, SpecError
 from harness.core.printable import printable
-from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.scene import Touch
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.studio.document import Document, robot_alone
 from harness.studio.files import StudioFiles
 from harness.studio.live_camera import LiveCamera
@@ -29,7 +25,7 @@ from harness.studio.messages import (
     robot_message,
 )
 from harness.studio.reach import Reach, ReachStudy
-from harness.studio.scene_view import Handle, SceneView
+from harness.studio.scene_view import SceneView
 from harness.studio.session import FRAME, Message, RefusedError, Session
 from harness.studio.verdict_messages import NO_VERDICTS
 
@@ -40,7 +36,7 @@ MEASURED_EVERY = 5
 """Updates of the page between two measurements of the smallest clearance."""
 
 
-class LiveStudio(ABC):
+class LiveStudio:
     """The cell's thread: physics that goes on, joints that are moved by hand, what pages see.
 
     Attributes:
@@ -63,12 +59,17 @@ class LiveStudio(ABC):
             self.do,
             self._frame,
             self._greeting,
-            {"stop": self._stop, "play": self._play, "speed": self._set_speed},
+            {
+                "stop": self._stop,
+                "play": self._play,
+                "speed": self._set_speed,
+                "recording": self._set_recording,
+            },
             self._recover,
         )
         self.view: SceneView | None = None
-        self.server: viser.ViserServer | None = None
         self.is_playing, self.speed, self.share = True, 1.0, 0.3
+        self.is_recording = True
         self.stopping = threading.Event()
         self.busy = ""
         self.target: FloatArray | None = None
@@ -145,23 +146,13 @@ class LiveStudio(ABC):
 
     def _compile(self, text: str) -> bool:
         document = Document(text, str(self.files.path))
-        self.files.refuse_outside(document)
         if self._cell is not None:
             return self._cell.load(document)
-        self._cell = LiveCell(self.files.path, document, self._on_step)
+        self._cell = LiveCell(self.files, document, self._on_step)
         self._cell.pace = self._pace
         return True
 
     # -- the server and the thread ------------------------------------------------------------
-
-    def open(self, server: viser.ViserServer) -> None:
-        """Show the cell in a server's scene, and begin."""
-        self.server = server
-        self.view = SceneView(server, self.on_drag, self.on_choose)
-        self.show_cell()
-        gc.collect()
-        gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
-        self.session.start()
 
     def close(self) -> None:
         """End; unsaved work stays in its file."""
@@ -183,6 +174,12 @@ class LiveStudio(ABC):
         self.view.move(cell.joint_positions(), cell.object_vectors())
         self.study = self.target = None
         self.clear_preview()
+        self._pause_before_overlaps()
+
+    def _pause_before_overlaps(self) -> None:
+        """Stand still at a start at which bodies overlap: physics would push them apart."""
+        if self.cell.simulator.overlaps_at_start and not self.cell.steps_done:
+            self.is_playing = False
 
     def _pace(self, samples: int) -> bool:
         """Wait as long as samples last, showing them; False where the motion is to stop."""
@@ -254,6 +251,7 @@ class LiveStudio(ABC):
 
     def working(self, what: str, action: Callable[[], None]) -> None:
         """Do something that takes simulated time, and judge where it leaves the scenario."""
+        was_playing, self.is_playing = self.is_playing, True
         self.busy, self.target = what, None
         self.stopping.clear()
         self._due = time.monotonic()
@@ -262,6 +260,7 @@ class LiveStudio(ABC):
             action()
         finally:
             self.busy = ""
+            self.is_playing &= was_playing
             self.study = None
             self._last_tick = time.monotonic()
         if self.cell.document.step_count and not self.cell.is_by_hand:
@@ -301,7 +300,7 @@ class LiveStudio(ABC):
         return {
             "type": "document",
             "text": self.text,
-            "file": str(self.files.path.name),
+            "file": self.files.name,
             "is_saved": self.text == self.saved,
             "problems": [problem_message(each, str(self.files.path)) for each in self.problems],
             "step_lines": [] if self._cell is None else self.cell.document.step_lines(),
@@ -321,6 +320,7 @@ class LiveStudio(ABC):
             "is_playing": self.is_playing,
             "speed": self.speed,
             "share": self.share,
+            "is_recording": self.is_recording,
         }
 
     def clear_preview(self) -> None:
@@ -332,14 +332,6 @@ class LiveStudio(ABC):
         self.session.broadcast(
             {"type": "reach", "pose": None, "refusal": "", "ways": [], "best": -1}
         )
-
-    @abstractmethod
-    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
-        """A handle was moved on a page; called in the server's thread."""
-
-    @abstractmethod
-    def on_choose(self, client: int, way: int) -> None:
-        """A ghost was clicked on a page; called in the server's thread."""
 
     # -- at once ------------------------------------------------------------------------------
 
@@ -357,6 +349,10 @@ class LiveStudio(ABC):
         if speed not in SPEEDS:
             raise RefusedError(f"the speed is one of {', '.join(map(str, SPEEDS))}")
         self.speed = speed
+        return {}
+
+    def _set_recording(self, message: Message) -> Message:
+        self.is_recording = bool(message["on"])
         return {}
 
     # -- moving by hand -----------------------------------------------------------------------
@@ -399,6 +395,7 @@ class LiveStudio(ABC):
         return {}
 
     def after_jump(self) -> None:
+        self._pause_before_overlaps()
         self.study = None
         self.forget_verdicts()
         self.clear_preview()

@@ -8,13 +8,13 @@ import numpy as np
 
 from harness.core.errors import Problem
 from harness.core.printable import printable
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.reporting.explanation import explanation_lines
 from harness.studio.language_help import GRIPPER_TARGET, Names
 from harness.studio.live_cell import LiveCell
 from harness.studio.object_texts import object_form
 from harness.studio.session import Message
-from harness.studio.step_texts import MOTIONS
+from harness.studio.step_texts import MOTIONS, gripper_steps
 
 MOST_CONTACTS = 8
 """Contacts that are listed, strongest first."""
@@ -48,16 +48,17 @@ def robot_message(cell: LiveCell) -> Message:
         "states": list(description.states_of(description.arm_group)),
         "gripper": None
         if gripper is None
-        else {
-            "states": list(description.states_of(gripper.group)),
-            "widest": float(gripper.widths[:, 1].max()),
-        },
-        "frames": ["world", description.base_link, *cell.cell.presence],
+        else {"steps": gripper_steps(description), "widest": float(gripper.widths[:, 1].max())},
+        "frames": list(
+            dict.fromkeys(
+                ["world", description.base_link, *cell.cell.presence, *description.link_names]
+            )
+        ),
         "objects": [object_form(spec) for spec in cell.document.object_specs()],
         "bodies": list(cell.cell.presence),
         "overlaps": [
             f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
-            for touch in cell.overlaps_at_start
+            for touch in cell.simulator.overlaps_at_start
         ],
         "worlds": bundled_worlds(),
         "planners": list(planner_names()),

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from harness.core.activity import Activity, unobserved
+from harness.core.errors import HarnessError
 from harness.session.background import Background
 
 T = TypeVar("T")
+
+LONGEST = 60.0
+"""Longest time that a value is waited for [s]: a copy of a process with threads may hang."""
 
 
 class Newest(Generic[T]):
@@ -40,11 +45,16 @@ class Newest(Generic[T]):
             wait: Whether to wait for the value that is being computed.
 
         Raises:
-            HarnessError: The process ended without a value.
+            HarnessError: The process ended without a value, or is given up.
             Exception: What the function raised.
         """
-        work = self._work
-        if work is None or not (wait or work.has_message()):
+        work, end = self._work, time.monotonic() + LONGEST
+        while wait and work is not None and not work.has_message():
+            if time.monotonic() > end:
+                self.cancel()
+                raise HarnessError(f"no answer within {LONGEST:.0f} s")
+            time.sleep(0.01)
+        if work is None or not work.has_message():
             return None
         self._work = None
         return work.result(unobserved)

@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.ports.motion_planning import MotionPlan
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
 from harness.studio.live_cell import LiveCell
 
 MOST_POINTS = 120

@@ -16,6 +16,7 @@ from harness.planning.goals.goal_study import study_goal
 from harness.planning.goals.goals import find_goals
 from harness.planning.ik.answer import IkAnswer
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.nearest_pose import nearest_pose
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.scene import Touch
@@ -47,10 +48,12 @@ class Reach:
     Attributes:
         ways: Joint positions inside the limits, nearest to where the arm stands first.
         refusal: Why the pose cannot be reached at all; empty where a way is free.
+        nearest: Joint positions nearest to a pose that no way reaches, where it was explained.
     """
 
     ways: tuple[Way, ...]
     refusal: str
+    nearest: FloatArray | None = None
 
     @property
     def best(self) -> Way | None:
@@ -98,9 +101,11 @@ class ReachStudy:
 
         study = study_goal(self._kinematics, self._space, find_touches, start, goal, 0)
         ways = tuple(
-            Way(self._space.whole(branch.positions), branch.name, touches_text(branch.touches))
-            if branch.touches
-            else Way(self._space.whole(branch.positions), branch.name, "")
+            Way(
+                self._space.whole(branch.positions),
+                branch.name,
+                touches_text(branch.touches) if branch.touches else "",
+            )
             for branch in study.branches
         )
         if any(not way.refusal for way in ways):
@@ -112,7 +117,8 @@ class ReachStudy:
         try:
             find_goals(self._kinematics, self._checker, start, goal, 0)
         except PlanningFailed as failure:
-            return Reach(ways, failure.message)
+            nearest = nearest_pose(self._space, goal, self._space.part(start), 0)
+            return Reach(ways, failure.message, self._space.whole(nearest.positions))
         return Reach(ways, "")
 
 

@@ -192,7 +192,7 @@ class Session:
         if name == "control":
             self._control(viewer, str(message.get("word", "")))
             return reply({})
-        if viewer.name != self.controller and name not in ("complete", "hover", "check"):
+        if viewer.name != self.controller and name not in ("complete", "hover"):
             return reply({"error": "another page controls the cell; request control first"})
         if name in self.at_once:
             return reply(guarded(lambda: self.at_once[name](message)))

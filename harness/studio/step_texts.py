@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
@@ -46,3 +48,23 @@ def joint_keys(description: RobotDescription, group: str, positions: FloatArray)
     index = description.joint_index
     names = description.groups[group].joint_names
     return {"joints": {name: round(float(positions[index[name]]), 5) for name in names}}
+
+
+def gripper_steps(description: RobotDescription) -> dict[str, str]:
+    """Steps that move the gripper, by the words of their buttons; `open` and `close` are there.
+
+    A gripper without named states of that kind opens and closes to the ends of its width.
+    """
+    gripper = description.gripper
+    if gripper is None:
+        return {}
+    steps = {state: f"gripper: {state}" for state in description.states_of(gripper.group)}
+    widths = gripper.widths[:, 1]
+    narrowest, widest = np.ceil(1e4 * widths.min()) / 1e4, np.floor(1e4 * widths.max()) / 1e4
+    closed = next((steps.pop(word) for word in ("closed", "close") if word in steps), None)
+    opened = steps.pop("open", None) or step_text("gripper", {"width": float(widest)})
+    return {
+        "open": opened,
+        "close": closed or step_text("gripper", {"width": float(narrowest)}),
+        **steps,
+    }

@@ -6,7 +6,8 @@ from harness.core.errors import SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.recording.run import StepRecord
+from harness.recording.step_record import StepRecord
+from harness.session.prepare import prepare
 from harness.studio.document import Document
 from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions
@@ -25,7 +26,8 @@ from harness.studio.object_texts import (
     resized,
 )
 from harness.studio.proposals import proposals
-from harness.studio.session import Message, RefusedError
+from harness.studio.session import Message, RefusedError, guarded
+from harness.studio.step_texts import step_text
 
 
 class Studio(GoalActions):
@@ -42,7 +44,7 @@ class Studio(GoalActions):
     def do_execute(self, message: Message) -> Message:
         """Execute a step; recorded, it becomes the scenario's next one."""
         text = str(message.get("step") or self.motion_text(message))
-        is_recorded = bool(message.get("record", True))
+        is_recorded = bool(message.get("record", self.is_recording))
         results: list[StepRecord] = []
 
         def action() -> None:
@@ -50,8 +52,6 @@ class Studio(GoalActions):
                 results.append(self.cell.execute(text))
                 return
             self._refuse_mistakes()
-            document = self.cell.document.with_step(text, self.cell.steps_done)
-            self.files.refuse_outside(document)
             new_text, record = self.cell.record(text)
             results.append(record)
             self._take_text(new_text)
@@ -114,13 +114,16 @@ class Studio(GoalActions):
         return form if form["kind"] else None
 
     def put_object(self, name: str, pose: SE3) -> None:
-        """Move an object: at the start in the scenario, later in the live cell alone."""
-        document = self.cell.document
-        if self.cell.steps_done or name not in document.object_names() or self.problems:
-            self.cell.move_object(name, pose)
-            self.after_jump()
+        """Move an object: at the start in the scenario's `objects`, later with a step."""
+        document, place = self.cell.document, pose_keys_of(pose)
+        if not self.cell.steps_done and name in document.object_names() and not self.problems:
+            self._replace_object({**document.object_spec(name), "pose": place})
             return
-        self._replace_object({**document.object_spec(name), "pose": pose_keys_of(pose)})
+        step = step_text("move_object", {"object": name, "pose": place})
+        reply = guarded(lambda: self.do_execute({"step": step}))
+        if "error" in reply:
+            self.say("failed", reply["error"])
+        self.show_object_handle(name)
 
     def resize_object(self, name: str, corner: FloatArray) -> None:
         """Drag the corner of an object of the scenario, before the first step."""
@@ -243,10 +246,13 @@ class Studio(GoalActions):
         if judged is not None:
             self.session.broadcast(judged)
         self._refuse_mistakes()
-        path = self.files.save(str(message.get("name") or self.files.path.name), self.text)
+        path = self.files.named(str(message.get("name") or self.files.name))
+        if path.parent.resolve() != self.files.path.parent.resolve():
+            prepare(path, text=self.text)  # relative paths begin in another folder
+        self.files.save(path, self.text)
         self.saved = self.text
         self.session.broadcast(self.document_message())
-        return {"file": path.name, "digest": self.verdicts.message["digest"]}
+        return {"file": self.files.name, "digest": self.verdicts.message["digest"]}
 
     def _refuse_mistakes(self) -> None:
         if self.problems or self.text != self.cell.document.text:
@@ -254,9 +260,7 @@ class Studio(GoalActions):
 
     def _take_text(self, text: str) -> None:
         """Make a text the scenario's, and show it on every page."""
-        document = Document(text, str(self.files.path))
-        self.files.refuse_outside(document)
-        is_new = self.cell.load(document)
+        is_new = self.cell.load(Document(text, str(self.files.path)))
         self._set_text(text)
         self.keep_unsaved(text)
         if is_new:

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from harness.core.printable import printable
-from harness.recording.run import StepRecord, Verdict
+from harness.recording.step_record import StepRecord
+from harness.recording.verdict import Verdict
 from harness.reporting.result import StepLine
 from harness.studio.session import Message
 

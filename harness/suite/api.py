@@ -10,8 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from harness.recording.run import Run, StepRecord, Verdict
-from harness.recording.store import RUN, read_run
+from harness.recording.read_run import read_run
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import RUN
+from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import causes
 from harness.session.run_request import RunRequest

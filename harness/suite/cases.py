@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
-from harness.core.errors import SpecError
+from harness.core.errors import HarnessError, SpecError
 from harness.core.interruption import is_interrupted
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
@@ -62,19 +62,26 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
     return session.run_case(job, notify)
 
 
-def read_ahead(words: Collection[str]) -> None:
+def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
     """Do once what every run does: import steps, read the robots that are named, look up versions.
 
     Args:
         words: The words of the scenarios.
+        some: Cases whose bundled robots other cases have too.
     """
     from harness.core.registry import import_built_in
-    from harness.robot.load import read_bundled
+    from harness.language.reading.load import read_scenario
+    from harness.robot.load import load_ahead, read_bundled
     from harness.session.record import library_versions
 
     library_versions()
     import_built_in(("step", "expectation"), words)
     read_bundled(words)
+    for job in some:
+        with suppress(HarnessError):  # the case itself reports the error
+            read = read_scenario(job.file, job.overrides, job.seed, job.text).loaded
+            if read is not None:
+                load_ahead(read.scenario.robot, read.scenario.collision)
 
 
 def share_results() -> None:
@@ -137,7 +144,8 @@ def run_isolated(
     waiting, upcoming = True, iter(range(len(jobs)))
     running: dict[int, _Running] = {}
     if function is run_job:
-        server.prepare(read_ahead, _words(jobs))
+        some = jobs[:1] if len(jobs) > 1 else []
+        server.prepare(read_ahead, _words(jobs), some)
         if len({job.file for job in jobs}) < len(jobs):
             server.prepare(share_results)
     try:

@@ -11,16 +11,20 @@ from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any, BinaryIO
+from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
 from harness.reporting.json_text import compact_json
+from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase
-from harness.reporting.suite.write import replaced, writing
+from harness.reporting.suite.write import History, replaced, write_suite, writing
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of
 from harness.suite.plan import PlannedCase
 from harness.suite.stream import lines_of, validator
 from harness.suite.variation import Case, as_yaml
+
+if TYPE_CHECKING:
+    from harness.suite.suite_run import SuiteRun
 
 FORMAT = "armharness-conditions/1"
 FILE = "conditions.jsonl"
@@ -176,6 +180,31 @@ class ConditionWriter:
         number = int(name.rpartition("sample")[2])
         condition = Condition(place, name, group, number, overrides, case.values)
         self._file.write(f"{compact_json(condition)}\n".encode())
+
+
+def write_results(suite: SuiteRun, folder: Path, history: History) -> tuple[Path, Columns]:
+    """Write page, JUnit XML, results, and the conditions of samples, reading the results once.
+
+    A part of a suite has conditions only where they were given to it: those of all parts are
+    written by the merge.
+
+    Returns:
+        The page, and what varies in the cases.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    has_samples = any(each.rate_key is not None for each in suite.plan)
+    if suite.is_part or not has_samples:
+        return write_suite(folder, suite.record, suite.exit_code, history)
+    indices = array("Q", suite.results)
+    with writing(folder), replaced(folder / FILE) as file:
+        conditions = ConditionWriter(file)
+
+        def add(number: int, case: SuiteCase) -> None:
+            conditions.add(suite.plan[indices[number]], case)
+
+        return write_suite(folder, suite.record, suite.exit_code, history, on_case=add)
 
 
 def read_conditions(path: Path) -> Conditions:

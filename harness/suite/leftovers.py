@@ -14,7 +14,7 @@ _TEMPORARY = re.compile(r"\.(?P<name>.+)\.(?P<kind>writing|old)\.(?P<pid>\d+)\.\
 def clean_leftovers(folder: Path) -> None:
     """Remove the temporary folders of processes that are gone next to one report's folder.
 
-    `recording.store` writes under `.NAME.writing.PID.N` and keeps the older report in
+    `recording.write_run` writes under `.NAME.writing.PID.N` and keeps the older report in
     `.NAME.old.PID.N` while it swaps the two; an older report that lost its place is put back.
     """
     _clean(folder.parent, only=folder.name)

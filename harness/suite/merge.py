@@ -44,7 +44,9 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
     suite = SuiteRun(plan, SuiteOptions())
     stream = Stream(target, name=f".{FILE}.{os.getpid()}")
     suite.read_from(stream)
-    places = {(str(each.file), each.name): index for index, each in enumerate(plan)}
+    places: dict[str, dict[str, int]] = {}
+    for index, each in enumerate(plan):
+        places.setdefault(str(each.file), {})[each.name] = index
     try:
         for folder, record in zip(folders, records, strict=True):
             _take_part(suite, stream, places, folder, Path(record.root))
@@ -66,7 +68,7 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
 def _take_part(
     suite: SuiteRun,
     stream: Stream,
-    places: Mapping[tuple[str, str], int],
+    places: Mapping[str, Mapping[str, int]],
     folder: Path,
     root: Path,
 ) -> None:
@@ -76,11 +78,11 @@ def _take_part(
     with (folder / FILE).open("rb") as file:
         for _, line in lines_of(file):
             head = head_of(line)
-            if head is None or (head.result.file, head.result.case) not in places:
+            index = None if head is None else places.get(head.result.file, {}).get(head.result.case)
+            if head is None or index is None:
                 continue
             if head.result.report_dir and root != folder and (entry := entry_of(line)):
                 line = replace(entry, result=_moved(entry.result, root, folder)).line
-            index = places[head.result.file, head.result.case]
             suite.take(index, head.result, stream.append(line))
 
 

@@ -11,7 +11,7 @@ from types import TracebackType
 
 from harness.core.errors import HarnessError
 from harness.recording.compare import first_difference
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 

@@ -78,7 +78,10 @@ class Sampling:
     def outcomes(self, results: Iterable[tuple[int, Outcome]]) -> set[Outcome]:
         """Outcomes of cases that count, with groups of samples in place of failed samples."""
         outcomes: set[Outcome] = {group.outcome for group in self.groups()}
+        are_all_sampled = all(group is not None for _, _, group in self._runs)
         for index, outcome in results:
+            if outcome in outcomes or (outcome == "passed" and are_all_sampled):
+                continue
             if outcome == "failed" and (found := self._place(index)):
                 is_alone = self._is_part and not found[0].has_required_rate
                 outcomes |= {outcome} if is_alone else set()

@@ -13,7 +13,7 @@ from harness.core.pose_arrays import relative
 from harness.grading.bag.content import BagTopics
 from harness.grading.grade import grade_bag
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.grading.recordings import (
     GAZEBO_STARTED,
     POSES,
@@ -30,6 +30,7 @@ robot: {model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}
 world: empty
 objects:
   - {name: red_box, box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [0.3, -0.2, 0.0199]}}
+  - {name: blue_box, box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [0.3, -0.26, 0.0199]}}
 steps:
   - {wait: 1 s, id: before}
   - {move_to: {joints: {joint1: 0.6, joint2: 0, joint3: 0, joint4: 0}}, id: swing}
@@ -40,6 +41,7 @@ GAZEBO = BagTopics(objects=(POSES,))
 ARRIVED = "joints: {positions: {joint1: 0.6}}"
 ALWAYS_LOW = "formula: always abs(position(joint1)) < 1"
 BOX_STANDS = "always: {upright: red_box}"
+BOX_MOVED = "displaced: {object: red_box, at_least: 5 cm}"
 
 
 def arm_positions(recording, name="joint1"):
@@ -49,9 +51,21 @@ def arm_positions(recording, name="joint1"):
 
 
 def box_poses(recording):
-    """Every recorded place of the box."""
-    moved = [m.content["transforms"] for m in recording.of(POSES)]
-    return [each["transform"]["translation"]["z"] for rows in moved for each in rows]
+    """Every recorded place of the box, shape (n, 3)."""
+    moved = [each for m in recording.of(POSES) for each in m.content["transforms"]]
+    places = [each["transform"]["translation"] for each in moved if named(each, "red_box")]
+    return np.array([[place[axis] for axis in "xyz"] for place in places])
+
+
+def named(pose, name):
+    """Whether a recorded pose is that of an object."""
+    return pose["child_frame_id"] == name
+
+
+def box_moved(recording):
+    """The last recorded place of the box is 5 cm from the first, or more."""
+    places = box_poses(recording)
+    return bool(np.linalg.norm(places[-1] - places[0]) >= 0.05)
 
 
 def without(topic, first, last, names=()):
@@ -160,6 +174,48 @@ def exchanged_names(recording, _run):
     return recording
 
 
+def renamed(names, first=0.0):
+    """From some time on objects have other names."""
+
+    def change(recording, _run):
+        for message in recording.of(POSES):
+            if message.stamp >= GAZEBO_STARTED + first:
+                for each in message.content["transforms"]:
+                    each["child_frame_id"] = names.get(
+                        each["child_frame_id"], each["child_frame_id"]
+                    )
+        return recording
+
+    return change
+
+
+def boxes_after(first, place):
+    """From some time on the red box is elsewhere: at a function of the time since then."""
+
+    def change(recording, run):
+        for message in recording.of(POSES):
+            since = message.stamp - GAZEBO_STARTED - first
+            for each in message.content["transforms"]:
+                if since > 0 and named(each, "red_box"):
+                    xyz = place(since, run)
+                    each["transform"]["translation"] = dict(zip("xyz", xyz, strict=True))
+        return recording
+
+    return change
+
+
+def with_the_hand(since, run):
+    """As far from the hand as when that began, at every moment."""
+    rows = np.searchsorted(run.signals.times, (1.0, 1.0 + since))
+    start, now = run.signals.tcp_pose[rows.clip(max=len(run.signals.times) - 1), :3]
+    return (np.array([0.3, -0.2, 0.0199]) + now - start).tolist()
+
+
+def slid(since, _run):
+    """8 cm within 0.4 s, evenly: an arm pushed it."""
+    return [0.3 + 0.08 * min(since / 0.4, 1.0), -0.2, 0.0199]
+
+
 def smoothed_velocities(recording, _run):
     """Velocities are those of 40 ms before, as a filter makes them."""
     states = [m for m in recording.of("/joint_states") if "joint1" in m.content["name"]]
@@ -193,6 +249,8 @@ class RecordingScene:
 
 
 IN_RANGE = "every recorded position of the joint is in range"
+IS_ELSEWHERE = "the box is recorded 5 cm from its start"
+EXCHANGED = {"red_box": "blue_box", "blue_box": "red_box"}
 
 
 def in_range(recording):
@@ -263,6 +321,48 @@ RECORDINGS = (
     RecordingScene(
         "joints exchanged on the way", "from 1.4 s on two joints have each other's names",
         exchanged_names, IN_RANGE, in_range, {ALWAYS_LOW: "velocities", BOX_STANDS: "velocities"},
+    ),
+    RecordingScene(
+        "boxes exchanged on the way", "from 1.4 s on two boxes have each other's names",
+        renamed(EXCHANGED, 1.4), IS_ELSEWHERE, box_moved,
+        {BOX_MOVED: "jumps", BOX_STANDS: "jumps"}, (ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "boxes exchanged there and back", "for 0.4 s two boxes have each other's names",
+        lambda whole, run: renamed(EXCHANGED, 1.8)(renamed(EXCHANGED, 1.4)(whole, run), run),
+        "every recorded pose is upright", lambda recording: len(box_poses(recording)) > 10,
+        {BOX_STANDS: "jumps"}, (ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "box put elsewhere by a program", "from 1.4 s on the box is 8 cm aside",
+        boxes_after(1.4, lambda *_: [0.38, -0.2, 0.0199]), IS_ELSEWHERE, box_moved,
+        {BOX_MOVED: "jumps"}, (ARRIVED, ALWAYS_LOW, "upright: blue_box"),
+    ),
+    RecordingScene(
+        "box that slides 8 cm", "an arm pushes it at 20 cm/s", boxes_after(1.4, slid),
+        "it moves by more than 2 cm between messages that are 0.1 s apart: too strict", box_moved,
+        {}, (BOX_MOVED, BOX_STANDS, ARRIVED),
+    ),
+    RecordingScene(
+        "box glued to the hand", "from 1 s on the box follows the hand, 10 cm away from it",
+        boxes_after(1.0, with_the_hand), "it moves with the hand and is as far from it as before",
+        box_moved,
+        {"grasped: red_box": "not observable",
+         "lifted: {object: red_box, above: 1 cm}": "not observable"},
+        (BOX_MOVED, ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "box that was seen once", "a camera's node publishes the red box at the start alone",
+        without(POSES, 0.01, 1e9), "every recorded pose is upright",
+        lambda recording: len(box_poses(recording)) == 1,
+        {BOX_STANDS: "once", "static: red_box": "once"}, (ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "box by another name", "the recorder calls the red box `crate`",
+        renamed({"red_box": "crate"}), "no recorded pose of the box is tilted",
+        lambda recording: len(box_poses(recording)) == 0,
+        {BOX_STANDS: "not observable", BOX_MOVED: "not observable"},
+        (ARRIVED, "always: {upright: blue_box}"),
     ),
     RecordingScene(
         "velocities that come 40 ms late", "a filter smooths them", smoothed_velocities,

@@ -5,18 +5,28 @@ import sys
 import tempfile
 from pathlib import Path
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
+from tests.adversarial.rules import RULES, rule_row
 from tests.adversarial.scenes import SCENES, WEIGHTLESS
+from tests.adversarial.trick_scenes import TRICK_SCENES
 from tests.adversarial.window_scenes import WINDOW_SCENES
 from tests.running import run_case
 
-ALL_SCENES = (*SCENES, *CONTACT_SCENES, *OVERLAP_SCENES, *CONTAINER_SCENES, *WINDOW_SCENES)
+ALL_SCENES = (
+    *SCENES,
+    *CONTACT_SCENES,
+    *OVERLAP_SCENES,
+    *CONTAINER_SCENES,
+    *WINDOW_SCENES,
+    *TRICK_SCENES,
+)
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
 RENEW = "python -m tests.adversarial.table"
@@ -29,6 +39,12 @@ expectations that hold in the same run, so that no scene is simply rejected as a
 rule there is a scene in which it must not fire. A naive check marked as too strict raises a false
 alarm where the expectations pass. `python -m tests.adversarial.table` writes this page from the
 runs.
+
+## Rules
+
+| rule | scenes that it refutes | scenes in which it must not fire |
+| --- | --- | --- |
+{rules}
 
 ## Scenes in the physics
 
@@ -51,6 +67,24 @@ Every key of these files is known, and a check of the keys alone accepts them.
 
 | file | result |
 | --- | --- |
+"""
+SAVED = """
+## Saved runs
+
+A run whose one expectation fails, and what was done to its folder. `harness judge` judges the
+recorded signals again, whatever run.json says.
+
+| folder | naive check: passes | `harness judge` or `harness compare` |
+| --- | --- | --- |
+"""
+STARTED = """
+## Environments
+
+`harness run` of a scenario with an arm whose files are YAML and xacro, in environments of other
+machines: nothing on standard error, and the exit code of any other run.
+
+| environment | variables | exit code |
+| --- | --- | --- |
 """
 LIMITS = """
 ## What the verdicts do not claim
@@ -169,6 +203,19 @@ def file_row(scene, problems):
     return f"| **{scene.title}**: `{line}` | {said} |"
 
 
+def folder_row(scene, text):
+    """A saved run's line of the table."""
+    said = [line for line in text.splitlines() if scene.said and scene.said in line]
+    answer = " ".join(said[0].split()) if said else "nothing was changed"
+    return f"| **{scene.title}** | {scene.naive} | {answer} |"
+
+
+def environment_row(scene, code):
+    """An environment's line of the table."""
+    words = " ".join(f"`{name}={value}`" for name, value in scene.variables.items())
+    return f"| {scene.title} | {words} | {code} |"
+
+
 def checked(scene, folder):
     """The problems of a file."""
     path = folder / "file.scenario.yaml"
@@ -178,20 +225,27 @@ def checked(scene, folder):
 
 def without_numbers(text):
     """A page without its numbers: they may differ in the last place from machine to machine."""
-    return re.sub(r"-?\d+(\.\d+)?", "#", text)
+    return re.sub(r"-?\d+(\.\d+)?", "#", re.sub(r"\b[0-9a-f]{12}\b", "#", text))
 
 
-def page(rows, recordings, files):
+def page(rows, recordings, files, folders, environments):
     """The whole page."""
-    count = len(rows) + len(recordings) + len(files)
-    tables = [HEAD.replace("{count}", str(count)), *(f"{row}\n" for row in rows), RECORDED]
+    count = sum(map(len, (rows, recordings, files, folders, environments)))
+    rules = "\n".join(map(rule_row, RULES))
+    tables = [
+        HEAD.replace("{count}", str(count)).replace("{rules}", rules),
+        *(f"{row}\n" for row in rows),
+        RECORDED,
+    ]
     tables += [*(f"{row}\n" for row in recordings), WRITTEN, *(f"{row}\n" for row in files)]
+    tables += [SAVED, *(f"{row}\n" for row in folders)]
+    tables += [STARTED, *(f"{row}\n" for row in environments)]
     return "".join([*tables, LIMITS, CORRUPTED])
 
 
 def main():
     """Run every scene and write the page."""
-    rows, recordings, files = [], [], []
+    rows, recordings = [], []
     for scene in ALL_SCENES:
         with tempfile.TemporaryDirectory() as folder:
             result, _ = run_scene(scene, Path(folder))
@@ -201,7 +255,10 @@ def main():
         for scene in RECORDINGS:
             recordings.append(recording_row(scene, graded_scene(scene, run, Path(folder))[1]))
         files = [file_row(scene, checked(scene, Path(folder))) for scene in FILES]
-    PAGE.write_text(page(rows, recordings, files), encoding="utf-8")
+        runs = {robot: saved_run(Path(folder), robot) for robot in ROBOTS}
+        folders = [folder_row(scene, report_on(scene, runs, Path(folder))[1]) for scene in FOLDERS]
+        started = [environment_row(each, each.exit_code(Path(folder))) for each in ENVIRONMENTS]
+    PAGE.write_text(page(rows, recordings, files, folders, started), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -3,13 +3,17 @@
 import pytest
 
 from tests.adversarial.file_scenes import FILES
+from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
+from tests.adversarial.rules import RULES
 from tests.adversarial.table import (
     ALL_SCENES,
     PAGE,
     RENEW,
     checked,
+    environment_row,
     file_row,
+    folder_row,
     page,
     parts_of,
     recording_parts,
@@ -80,10 +84,62 @@ def test_a_file_that_says_something_else_than_it_seems_is_refused(scene, tmp_pat
     assert all(scene.says in problem.message for problem in problems)
 
 
-def test_the_page_of_verdicts_is_current(run_of, grade_of, tmp_path):
+@pytest.fixture(scope="module")
+def said_of(tmp_path_factory):
+    """Each changed folder and what is said of it, computed once."""
+    folder, known = tmp_path_factory.mktemp("folders"), {}
+    runs = {robot: saved_run(folder, robot) for robot in ROBOTS}
+
+    def said(scene):
+        if scene.title not in known:
+            known[scene.title] = report_on(scene, runs, folder)
+        return known[scene.title]
+
+    return said
+
+
+@pytest.mark.parametrize("scene", FOLDERS, ids=lambda scene: scene.title)
+def test_a_saved_run_that_was_written_over_is_called_so(scene, said_of):
+    report, text = said_of(scene)
+    assert scene.is_fooled(report), f"the naive check would not be fooled: {scene.naive}"
+    assert scene.said in text
+    assert bool(scene.said) or "changed" not in text
+
+
+@pytest.fixture(scope="module")
+def exit_code_in(tmp_path_factory):
+    """The exit code in each environment, run once."""
+    folder, known = tmp_path_factory.mktemp("environments"), {}
+
+    def exit_code(scene):
+        if scene.title not in known:
+            known[scene.title] = scene.exit_code(folder)
+        return known[scene.title]
+
+    return exit_code
+
+
+@pytest.mark.parametrize("scene", ENVIRONMENTS, ids=lambda scene: scene.title)
+def test_a_run_goes_on_in_any_environment(scene, exit_code_in):
+    assert exit_code_in(scene) == 1, "its expectation fails"
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.title)
+def test_every_rule_has_three_scenes_and_one_in_which_it_must_not_fire(rule):
+    scenes = (*ALL_SCENES, *RECORDINGS, *FILES, *FOLDERS, *ENVIRONMENTS)
+    titles = {scene.title for scene in scenes}
+    assert {*rule.fires, *rule.silent} <= titles
+    assert not set(rule.fires) & set(rule.silent)
+    assert len(rule.fires) + len(rule.silent) >= 3
+    assert rule.silent
+
+
+def test_the_page_of_verdicts_is_current(run_of, grade_of, said_of, exit_code_in, tmp_path):
     said = page(
         [row_of(scene, run_of(scene)[0]) for scene in ALL_SCENES],
         [recording_row(scene, grade_of(scene)[1]) for scene in RECORDINGS],
         [file_row(scene, checked(scene, tmp_path)) for scene in FILES],
+        [folder_row(scene, said_of(scene)[1]) for scene in FOLDERS],
+        [environment_row(scene, exit_code_in(scene)) for scene in ENVIRONMENTS],
     )
     assert without_numbers(PAGE.read_text(encoding="utf-8")) == without_numbers(said), RENEW

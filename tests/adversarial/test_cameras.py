@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 HEAD = """

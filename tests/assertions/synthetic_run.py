@@ -15,16 +15,10 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.core.geometry import Box, Cylinder, Shape
 from harness.core.spatial import SE3
-from harness.recording.run import (
-    AttachmentRecord,
-    GripperRecord,
-    JointRecord,
-    ObjectRecord,
-    RobotRecord,
-    Run,
-    Signals,
-    StepRecord,
-)
+from harness.recording.robot_record import GripperRecord, JointRecord, RobotRecord
+from harness.recording.run import AttachmentRecord, ObjectRecord, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SavedResult
 
 DT = 0.01

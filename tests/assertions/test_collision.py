@@ -11,6 +11,7 @@ from harness.expectations.always import Always
 from harness.expectations.collision import Collision
 from harness.expectations.eventually import Eventually
 from harness.expectations.never import Never
+from harness.recording.run import Finding
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
 from tests.assertions.synthetic_run import (
@@ -52,7 +53,8 @@ def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_dura
     assert answer.reason == (
         "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
     )
-    assert answer.measures[0].detail == "arm_link and wall"
+    measure = answer.measures[0]
+    assert (measure.detail, measure.limit, measure.comparison) == ("arm_link and wall", 0.0, "<=")
     assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"
 
 
@@ -91,6 +93,9 @@ def test_no_collision_reports_the_distance_that_was_left():
     answer = verdict(run, Never(predicate=Collision(between=("robot", "wall"))))
     assert (answer.status, answer.margin, answer.unit) == ("passed", 0.03, "m")
     assert answer.time == pytest.approx(0.8)
+    assert "30.0 mm were left between robot and wall" in answer.reason
+    itself = verdict(run, Never(predicate=Collision(between=("robot", "robot"))))
+    assert "50.0 mm were left between robot and itself" in itself.reason
     assert verdict(make_run(), NEVER).unit == "1", "nothing was measured"
     eventually = verdict(run, Eventually(predicate=Collision(between=("robot", "wall"))))
     assert (eventually.status, eventually.margin) == ("failed", -0.03)
@@ -272,6 +277,52 @@ def test_a_held_object_that_is_dragged_along_a_table_is_a_collision(distance, ex
         assert "dragged along it by 21.0 mm" in verdict(run, NEVER).reason
 
 
+@pytest.mark.parametrize(("distance", "expected"), [(0.018, False), (0.022, True)])
+def test_letting_go_on_the_way_makes_no_new_drag_and_leaving_the_table_does(distance, expected):
+    """Half of the way in each of two holds; what happens between them is no drag."""
+    y = np.zeros(200)
+    y[60:100] = np.linspace(0, distance / 2, 40)
+    y[100:140] = np.linspace(distance / 2, distance / 2 + 0.05, 40)
+    y[140:] = np.linspace(y[139], y[139] + distance / 2, 60)
+    aside = np.tile([0.0, 0, 0.02, 1, 0, 0, 0], (200, 1))
+    aside[:, 1] = y
+    base = lift_run(leave=200, object_poses={"box": aside}, tcp_pose=aside)
+    spans = [(50, 100), (140, 200)]
+    forces = {
+        pair: force(200, *spans, value=1.0) if "finger" in pair[0] else values
+        for pair, values in base.signals.contact_forces.items()
+    }
+    run = changed(base, contact_forces=forces)
+    on_table = Never(predicate=Collision(between=("box", "Table")))
+    assert collides(run, on_table) is expected
+    if expected:
+        assert "dragged along it by 22.0 mm" in verdict(run, on_table).reason
+    lifted_between = {**forces, ("Table", "box"): force(200, (0, 110), (140, 200), value=1.0)}
+    assert not collides(changed(base, contact_forces=lifted_between), on_table)
+
+
+@pytest.mark.parametrize(("newton", "expected"), [(4.4, False), (6.0, True)])
+def test_a_contact_that_flickers_presses_with_its_mean(newton, expected):
+    """Every other sample, 3 or 4 of the 6 of a mean, against 2.96 N: no break begins a new one."""
+    run = held_down(newton)
+    forces = run.signals.contact_forces["Table", "box"].copy()
+    forces[101::2] = 0.0
+    every = {**run.signals.contact_forces, ("Table", "box"): forces}
+    assert collides(changed(run, contact_forces=every)) is expected
+
+
+@pytest.mark.parametrize(("distance", "expected"), [(0.019, False), (0.021, True)])
+def test_a_contact_that_flickers_is_dragged_as_one(distance, expected):
+    aside = np.tile([0.0, 0, 0.02, 1, 0, 0, 0], (200, 1))
+    aside[100:, 1] = np.linspace(0, distance, 100)
+    run = held_down(0.98, object_poses={"box": aside}, tcp_pose=aside)
+    forces = run.signals.contact_forces["Table", "box"].copy()
+    forces[110:199] = 0.0
+    forces[110:199:9] = 0.98
+    every = {**run.signals.contact_forces, ("Table", "box"): forces}
+    assert collides(changed(run, contact_forces=every)) is expected
+
+
 def test_what_rests_on_a_held_object_weighs_too():
     run = held_down(3.9)
     top = thing("top", mass=0.05)
@@ -296,6 +347,16 @@ def test_a_welded_object_is_held_though_no_finger_touches_it():
             contact_forces=hits,
         )
         assert collides(run) is expected
+
+
+def test_bodies_that_overlap_at_the_start_are_a_collision_by_their_depth():
+    overlap = Finding("overlap", "", values={"pair": ["arm_link", "wall"], "depth": 0.012})
+    run = replace(touching("arm_link", "wall", (0, 5), value=50.0), findings=(overlap,))
+    answer = verdict(run, NEVER)
+    assert (answer.status, answer.margin, answer.unit) == ("failed", -0.012, "m")
+    assert answer.reason.startswith("arm_link and wall overlap by 12.0 mm at the start")
+    [measure] = answer.measures
+    assert (measure.value, measure.limit, measure.comparison) == (-0.012, 0.0, ">=")
 
 
 def test_links_inside_each_other_that_the_srdf_excludes_count_where_allowed_pairs_do():
@@ -407,6 +468,8 @@ def shelf_poses(z):
         (((50, 55),), False),
         (((51, 55),), True),
         (((150, 190),), False),  # after it was released
+        (((151, 190),), False),
+        (((152, 190),), False),
         (((149, 190),), False),  # put down: it stays where it is
         (((148, 151),), True),  # it touched on its way: the hold lasts to sample 150
         (((148, 152),), False),
@@ -416,6 +479,24 @@ def shelf_poses(z):
 )
 def test_what_the_hand_holds_may_leave_and_be_put_down_but_hits_nothing_on_its_way(spans, expected):
     assert collides(carried(*spans)) is expected
+
+
+def test_a_contact_that_nothing_excuses_is_not_explained_by_one_that_is_excused():
+    """It leaves the shelf, which presses it with 1 N of 3 N, and hits it again."""
+    reason = verdict(carried((40, 60), (80, 85)), NEVER).reason
+    assert reason == "box and shelf collide from t=0.800 s for 0.04 s, with up to 1.0 N"
+
+
+def test_what_is_gripped_again_is_in_the_hand_again():
+    run = lift_run(grip=(10, 200), leave=150, objects=(TABLE, BOX, WALL))
+    forces = {
+        pair: force(200, (10, 40), (90, 200), value=1.0) if "finger" in pair[0] else values
+        for pair, values in run.signals.contact_forces.items()
+    }
+    again = changed(run, contact_forces=forces)
+    of_box = Never(predicate=Collision(between=("box", "wall")))
+    assert not collides(touching("box", "wall", (50, 60), run=again), of_box), "nothing holds it"
+    assert collides(touching("box", "wall", (120, 125), run=again), of_box)
 
 
 def test_the_put_down_needs_something_below():

@@ -254,6 +254,40 @@ def test_a_formula_of_every_kind_of_signal():
         assert verdict(run, Formula(formula=text)).status == "passed", text
 
 
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("z(box) / 2 < 1", "m"),
+        ("z(box) * 2 < 1", "m"),
+        ("2 * z(box) < 1", "m"),
+        ("z(box) / time < 1 or z(box) < 1", "m"),
+        ("z(box) * z(box) < 1", "1"),
+        ("z(box) / (z(box) + 1) < 1", "1"),
+        ("max(0, z(box)) < 1", "m"),
+        ("-z(box) < 1", "m"),
+    ],
+)
+def test_the_unit_of_a_calculated_signal_is_that_of_its_parts(text, unit):
+    assert verdict(make_run(), Formula(formula=text)).unit == unit
+
+
+def test_what_is_certain_is_decided_by_what_is_known_and_not_by_what_may_come():
+    """The first part may fail after the window; the second is as large, and is certain."""
+    run = run_of([1.0, 1.0], [1.0, 1.0], [0.0, 0.1])
+    formula = parse_formula("(always[0, 5] x(tcp) > 0) or y(tcp) > 0")
+    evaluation = Evaluation(window_of(run))
+    assert evaluation.bounds(formula).low[0] == 1.0
+    node, index, sign = evaluation.decider(formula, 0, at_least=True)
+    assert (node.left.name, index, sign) == ("y", 0, 1)
+
+
+def test_what_never_comes_is_worth_no_more_than_its_best_sample():
+    run = run_of([1.0, 1.0, 1.0], [-2.0, -3.0, -2.5], [0.0, 0.1, 0.2])
+    formula = parse_formula("x(tcp) > 0 until y(tcp) > 0")
+    bounds = Evaluation(window_of(run)).bounds(formula)
+    assert bounds.high.tolist() == bounds.low.tolist() == [-2.0, -2.5, -2.5]
+
+
 def test_a_window_too_short_for_a_formula_is_not_reached_and_never_a_pass():
     answer = verdict(lift_run(), Formula(formula="always[0, 5] z(box) >= 0"))
     assert answer.status == "not reached"

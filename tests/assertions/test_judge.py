@@ -2,12 +2,20 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from harness.assertions.expectation_text import describe
 from harness.assertions.judge import judge
-from harness.assertions.observations import merged
+from harness.assertions.observations import (
+    CLEARANCE_CUTOFF,
+    Observations,
+    UndeclaredObservation,
+    merged,
+    restricted,
+)
 from harness.assertions.placed import PlacedExpectation
 from harness.expectations.always import Always
 from harness.expectations.clearance import Clearance
@@ -25,7 +33,7 @@ from harness.expectations.tcp_pose import TcpPose
 from harness.expectations.until import Until
 from harness.expectations.within_limits import WithinLimits
 from harness.language.poses import Pose
-from tests.assertions.synthetic_run import lift_run
+from tests.assertions.synthetic_run import attachment, heights, lift_run, make_run
 
 
 @pytest.mark.parametrize(
@@ -90,11 +98,42 @@ def test_observations_name_frames_and_a_sufficient_cutoff():
     assert Clearance(at_least=0.01).observations().recorded_cutoff == 0.15
     far = Formula(formula="always distance(robot, box) < 40 cm")
     assert far.observations().recorded_cutoff == pytest.approx(0.45)
+    nearer = Formula(formula="always distance(robot, box) < distance(robot, cup)")
+    assert nearer.observations().clearance_cutoff == pytest.approx(0.05)
+    assert Formula(formula="always z(box) < 1").observations().clearance_cutoff is None
+
+
+def test_a_cutoff_is_at_least_that_of_every_run():
+    assert Observations().recorded_cutoff == CLEARANCE_CUTOFF == 0.15
+    assert Observations(clearance_cutoff=0.0).recorded_cutoff == 0.15
+    assert Observations(clearance_cutoff=0.2).recorded_cutoff == 0.2
+
+
+def test_a_link_is_read_where_it_is_declared_fixed_or_carries_something():
+    frames = {name: heights(np.full(20, 0.4)) for name in ("arm_link", "palm", "base_link")}
+    held = make_run(20, frames=frames, attachments=[attachment("box", 0, 20)])
+    for run, link, is_readable in (
+        (make_run(20, frames=frames), "arm_link", True),
+        (make_run(20, frames=frames), "palm", False),
+        (held, "palm", True),
+        (replace(held, unrecorded=("attachments",)), "palm", False),
+        (make_run(20, frames=frames), "base_link", True),
+    ):
+        seen = restricted(run, Observations(frozenset({"arm_link"})), "Mine").signals.frames
+        if is_readable:
+            assert link in seen
+            assert seen[link] is frames[link]
+            continue
+        with pytest.raises(UndeclaredObservation, match="reads the pose of the link 'palm'"):
+            assert link in seen
+        with pytest.raises(UndeclaredObservation):
+            assert seen[link] is None
 
 
 def test_judging_needs_neither_planner_nor_physics():
     code = (
-        "import sys, harness.assertions.judge, harness.recording.store, harness.recording.digest;"
+        "import sys, harness.assertions.judge, harness.recording.read_run;"
+        "import harness.recording.digest;"
         "heavy = {'mujoco', 'pinocchio', 'coal', 'ompl', 'toppra', 'scipy', 'cv2'};"
         "sys.exit(', '.join(heavy & set(sys.modules)) or 0)"
     )

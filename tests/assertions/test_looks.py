@@ -12,7 +12,7 @@ from harness.assertions.placed import PlacedExpectation
 from harness.assertions.window import NotObservable, window_of
 from harness.expectations.always import Always
 from harness.expectations.sees import Sees
-from harness.recording.run import CaptureRecord
+from harness.recording.signals import CaptureRecord
 from tests.assertions.synthetic_run import DT, make_run, step
 from tests.cameras.camera_runs import eye
 
@@ -88,6 +88,8 @@ def test_no_more_than_the_whole_outline_is_seen_and_nothing_of_none():
     blind = margins(capture(100, 0, outlines={}))
     assert blind.values[100] == -1.0
     assert blind.evidence(100).text == "eye does not see box"
+    bare = margins(capture(100, 5, outlines={}))
+    assert [measure.value for measure in bare.evidence(100).measures] == [0.0, 5.0]
     unlabelled = margins(capture(90, 4), capture(100, 9, labels={"cup": 1}))
     assert unlabelled.evidence(100).text == "eye does not see box"
 

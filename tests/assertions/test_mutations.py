@@ -17,7 +17,11 @@ those signals is then shifted, frozen, dropped and made NaN:
 - hole: it is not known for 0.3 s; at least one such hole must be noticed;
 - two sources: every other sample is the signal's first one, as if a publisher that hangs wrote to
   the same topic; noticed when either the odd or the even samples are;
-- swap: two signals of its kind are exchanged, as two objects with each other's names are.
+- swap: two signals of its kind are exchanged, as two objects with each other's names are;
+- swap midway: from some moment on, as by a tracker that confuses two objects; at least one moment
+  must be noticed;
+- glued: an object keeps its place in the hand from some moment on, whatever the contacts say; at
+  least one moment must be noticed.
 
 A mutant that equals the original is none, and `SAME_THING` lists those that are what the predicate
 covers: a stuck signal looks like a thing that stands still. `SHOWN_ONLY` lists what
@@ -32,12 +36,13 @@ import pytest
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
+from harness.core.pose_arrays import compose, relative
 from harness.expectations.duration import DurationCheck
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.lifted import Lifted
 from harness.expectations.until import Until
 from harness.language.language import PREDICATES
-from harness.recording.run import Signals
+from harness.recording.signals import Signals
 from harness.recording.step_results import SavedResult
 from tests.assertions.evidence import AT_ONCE, COURSES, collected
 from tests.assertions.evidence_runs import N
@@ -71,21 +76,32 @@ SAME_THING = {
     ("within_limits", "joint_command_velocities", "freeze"): "a velocity that does not change is no"
     " acceleration",
     **{
-        (word, "object_poses", "swap"): "the other object stands still, upright and low, too"
+        (word, "object_poses", kind): "the other object stands still, upright and low, too"
         for word in ("upright", "static", "formula")
+        for kind in ("swap", "swap midway")
     },
     **{
-        (word, "presses", "swap"): "where the fingers press, and not which finger presses where"
+        (word, "presses", kind): "where the fingers press, and not which finger presses where"
         for word in ("lifted", "grasped", "slip", "until")
+        for kind in ("swap", "swap midway")
     },
+    ("static", "object_poses", "glued"): "the hand stands still at the end, too",
+    (
+        "until",
+        "object_poses",
+        "glued",
+    ): "the contact says that the box left the table, wherever that is",
     ("lifted", "contact_forces", "hole"): "the hand carries the box, whatever else touches it",
     ("in_contact", "contact_forces", "hole"): "one moment of contact is enough",
-    ("in_contact", "contact_forces", "swap"): "the other pair touches at some moment, too",
+    **{
+        ("in_contact", "contact_forces", kind): "the other pair touches at some moment, too"
+        for kind in ("swap", "swap midway")
+    },
     ("formula", "object_poses", "hole"): "one moment of speed is enough",
     **{
         ("slip", signal, kind): "another sample at which both fingers hold is the reference"
         for signal in ("contact_forces", "presses")
-        for kind in ("hole", "swap")
+        for kind in ("hole", "swap", "swap midway")
     },
     **{
         (word, signal, "two sources"): "a gap of one sample in a contact is bridged, as physics"
@@ -258,6 +274,31 @@ def swapped(run, place, _):
             yield replace(run, signals=replace(run.signals, **{field: changed}))
 
 
+def swapped_midway(run, place, _):
+    field, key = place
+    if key is None:
+        return
+    mapping = getattr(run.signals, field)
+    for other, values in mapping.items():
+        for moment in MOMENTS:
+            ours, theirs = mapping[key].copy(), values.copy()
+            ours[moment:], theirs[moment:] = values[moment:], mapping[key][moment:]
+            if not np.array_equal(ours, mapping[key], equal_nan=True):
+                changed = {**mapping, key: ours, other: theirs}
+                yield replace(run, signals=replace(run.signals, **{field: changed}))
+
+
+def glued(run, place, _):
+    if place[0] != "object_poses":
+        return
+    array, tcp = array_of(run.signals, place), run.signals.tcp_pose
+    for moment in MOMENTS:
+        stuck = array.copy()
+        stuck[moment:] = compose(tcp[moment:], relative(tcp[moment], array[moment]))
+        if not np.allclose(stuck, array, atol=1e-12, equal_nan=True):
+            yield with_array(run, place, stuck)
+
+
 MUTATIONS = {
     "freeze": frozen,
     "drop": dropped,
@@ -265,6 +306,8 @@ MUTATIONS = {
     "hole": with_holes,
     "two sources": from_two_sources,
     "swap": swapped,
+    "swap midway": swapped_midway,
+    "glued": glued,
 }
 
 

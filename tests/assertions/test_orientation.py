@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.assertions.orientation import against, holds
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 numbers = st.floats(-10, 10).map(lambda value: round(value, 3))
 measures = st.lists(

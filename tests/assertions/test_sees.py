@@ -116,6 +116,14 @@ def test_hue_is_a_range_that_may_go_through_zero():
     assert seen(Sees(camera="eye", color="red"), grey).status == "failed"
 
 
+def test_a_colour_is_called_by_its_name_or_that_colour():
+    named = seen(Sees(camera="eye", color="red"), BALL)
+    assert "pixels of a blob of red" in named.reason
+    assert named.measures[0].name == "pixels of the largest red blob"
+    hues = seen(Sees(camera="eye", color={"hue": (np.radians(340), np.radians(20))}), BALL)
+    assert "pixels of a blob of that colour" in hues.reason
+
+
 def test_two_small_blobs_are_not_one_large_one():
     pair = [ball("one", (0.6, 0.08, 1.0), 0.02), ball("two", (0.6, -0.08, 1.0), 0.02)]
     one = seen(Sees(camera="eye", color="red"), pair[0]).measures[0].value
@@ -177,11 +185,11 @@ def test_a_picture_of_earlier_says_nothing_of_the_end():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({}, "exactly one of object, color, marker"),
-        ({"object": "a", "marker": 1}, "exactly one of object, color, marker"),
+        ({}, "exactly one of `object`, `color` and `marker`"),
+        ({"object": "a", "marker": 1}, "exactly one of `object`, `color` and `marker`"),
         ({"marker": 50}, "markers 0 to 49, not 50"),
         ({"color": {"min_value": 0.1}}, "exactly one of `named` and `hue`"),
-        ({"color": "red", "min_visible": 0.3}, "`min_visible` is of an object"),
+        ({"color": "red", "min_visible": 0.3}, "`min_visible` goes with `object`"),
     ],
 )
 def test_impossible_words_are_refused(words, message):

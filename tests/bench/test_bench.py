@@ -10,7 +10,7 @@ from harness.bench.collect import collect
 from harness.bench.results import document
 from harness.bench.trial import even, length, smoothness
 from harness.cli.main import main
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 PLANNERS = ["RRTConnect", "BKPIECE"]

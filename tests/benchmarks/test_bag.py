@@ -6,7 +6,7 @@ import tracemalloc
 
 import pytest
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.running import run_case
 

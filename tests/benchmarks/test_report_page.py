@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from harness.core.resources import data_folder
-from harness.recording.store import StoredRun, read_run
+from harness.recording.read_run import read_run
+from harness.recording.stored_run import StoredRun
 from harness.reporting.html.write import write_page
 from tests.assertions.synthetic_run import lift_run
 from tests.running import run_case

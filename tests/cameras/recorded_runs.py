@@ -5,14 +5,10 @@ import numpy as np
 from harness.core.geometry import Box, Plane, Shape
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
-from harness.recording.run import (
-    AttachmentRecord,
-    ObjectRecord,
-    RobotRecord,
-    Run,
-    Signals,
-    StepRecord,
-)
+from harness.recording.robot_record import RobotRecord
+from harness.recording.run import AttachmentRecord, ObjectRecord, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 
 RED, BLUE = (0.9, 0.05, 0.05, 1.0), (0.05, 0.05, 0.9, 1.0)
 

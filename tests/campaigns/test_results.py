@@ -8,7 +8,7 @@ import pytest
 
 from harness.campaigns.comparison import detectable_drop
 from harness.cli.main import main
-from harness.recording.run import Verdict
+from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.suite.stream import StreamEntry
 from tests.suite.ball import ball

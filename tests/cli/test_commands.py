@@ -11,7 +11,7 @@ from harness import __version__
 from harness.cli.main import main
 from harness.core.spatial import xyzw_from_wxyz
 from harness.language.step import STEPS
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 HEAVY = (

@@ -8,8 +8,8 @@ import pytest
 
 from harness.cli.main import main
 from harness.recording.compare import MOST, compare, line_changes
-from harness.recording.run import Verdict
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict
 from harness.reporting.comparison import comparison_lines
 from tests.assertions.synthetic_run import ROBOT, make_run
 from tests.running import run_case

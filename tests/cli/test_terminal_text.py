@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from harness.core.errors import Problem
 from harness.core.printable import terminal_text
-from harness.recording.run import Measure, Verdict
+from harness.recording.verdict import Measure, Verdict
 from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.reporting.terminal import (

@@ -63,6 +63,16 @@ def test_only_tests_that_ran_can_notice_a_mutant(tmp_path):
     assert (tmp_path / "copy/halves/half.py").read_text(encoding="utf-8").endswith("x / 2\n")
 
 
+def test_what_a_fixture_executes_is_tested_by_its_whole_file(tmp_path):
+    workshop = Workshop(tmp_path / "copy", tmp_path, ())
+    first, second, other = "tests/a.py::test_first", "tests/a.py::test_second", "tests/b.py::test"
+    workshop.durations = {first: 2.0, second: 1.0, other: 0.5}
+    workshop.executed = {"half.py": {2: [f"{first}|setup"], 3: [f"{first}|run"]}}
+    assert workshop.tests_of("half.py", 2) == [second, first]
+    assert workshop.tests_of("half.py", 3) == [first]
+    assert workshop.tests_of("half.py", 4) == [first], "it is executed at its import"
+
+
 def test_nearly_all_mutants_are_noticed(tmp_path, capsys):
     workshop = Workshop(tmp_path)
     workshop.record()

@@ -71,7 +71,7 @@ class Workshop:
                 shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
             else:
                 shutil.copy(source, folder / name)
-        (folder / "reports").mkdir()
+        (folder / "reports").mkdir(parents=True)
         self.durations: dict[str, float] = {}
         self.executed: dict[str, dict[int, list[str]]] = {}
 
@@ -94,11 +94,16 @@ class Workshop:
             self.executed[module] = data.contexts_by_lineno(path)
 
     def tests_of(self, module: str, line: int) -> list[str]:
-        """The tests that execute a line, or its module where only imports do; shortest first."""
+        """The tests that execute a line, or its module where only imports do; shortest first.
+
+        A fixture of a file runs with the first test that needs it, and serves others.
+        """
         lines = self.executed.get(module, {})
         found = contexts(lines.get(line, []))
         if not found:
             found = {name for names in lines.values() for name in contexts(names)}
+        files = {name.partition("::")[0] for name in lines.get(line, []) if name.endswith("|setup")}
+        found |= {name for name in self.durations if name.partition("::")[0] in files}
         chosen, total = [], 0.0
         for name in sorted(found, key=lambda name: (self.durations.get(name, 1.0), name)):
             total += self.durations.get(name, 1.0)

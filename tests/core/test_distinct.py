@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from harness.assertions.text import amount, amounts, percentages
 from harness.planning.collision import wording
 from harness.ports.scene import Touch
-from harness.recording.run import Measure
+from harness.recording.verdict import Measure
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False, width=64, min_value=-1e6, max_value=1e6)
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.resources import data_folder
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.damaged.front_door import assert_ends_well
 from tests.damaged.mutants import (

@@ -25,11 +25,11 @@ def test_the_table_lists_what_the_bridge_serves(tmp_path):
     file.write_text(block("yaml"))
     with bridge(file) as (node, _):
         node.ready()
-        node.wait(lambda: "/gripper_camera/camera_info" in node.graph.names()[1].published)
+        info = "/gripper_camera/camera_info"
+        node.wait(lambda: any(use.topic == info for use in node.graph.uses()[1]))
         node.sleep(0.3)
-        _, bridged = node.graph.names()
-    served = {re.sub(r"/_action/.*", "", topic) for topic in bridged.published | bridged.subscribed}
-    assert served == listed
+        _, bridged = node.graph.uses()
+    assert {re.sub(r"/_action/.*", "", use.topic) for use in bridged} == listed
 
 
 def test_the_scenario_of_the_page_is_correct(tmp_path):

@@ -2,7 +2,7 @@
 
 import textwrap
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.running import run_case
 

@@ -1,5 +1,6 @@
 """Objects whose pose is in the frame of an object that stands there before."""
 
+import numpy as np
 import pytest
 
 from tests.engine.front_door import problems, run
@@ -38,6 +39,14 @@ def test_the_frame_of_an_object_of_the_world_file(tmp_path):
     rest = objects(CUBE.format("cube").replace("name: cube", "name: b"))
     _, saved = run(tmp_path, WAIT, robot=OM, world="w.yaml", rest=rest)
     assert saved.signals.object_poses["b"][0, :3] == pytest.approx([0.5, 0.3, 0.34], abs=1e-3)
+
+
+def test_the_frame_of_a_link_is_where_the_link_starts(tmp_path):
+    cube = CUBE.format("end_effector_link").replace("{name", "{static: true, name")
+    _, saved = run(tmp_path, WAIT, robot=OM, rest=objects(cube))
+    tcp = saved.signals.tcp_pose[0, :3]
+    assert saved.objects[-1].pose[:3] == pytest.approx(np.add(tcp, (0.05, 0, 0.12)), abs=1e-4)
+    assert tcp[2] > 0.1
 
 
 @pytest.mark.parametrize("frame", ["tabl", "cube", "later"])

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.running import run_case
 

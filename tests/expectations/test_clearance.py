@@ -10,7 +10,17 @@ from harness.expectations.never import Never
 from harness.reporting.margins import margin_share
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
-from tests.assertions.synthetic_run import BOX, TABLE, attachment, changed, make_run, thing, verdict
+from tests.assertions.synthetic_run import (
+    BOX,
+    ROBOT,
+    TABLE,
+    attachment,
+    changed,
+    make_run,
+    step,
+    thing,
+    verdict,
+)
 
 
 def clearance_run(distance, cutoff=0.15, **changes):
@@ -32,6 +42,18 @@ def test_clearance_names_the_nearest_link_and_the_moment():
     assert answer.reason == "12.0 mm between arm_link and box, 10.0 mm required at t=0.700 s"
     nearer = Clearance(between=("box", "robot"), at_least=0.0121)
     assert verdict(clearance_run(distance), nearer).status == "failed"
+
+
+def test_the_nearest_link_is_that_of_the_sample_within_its_step():
+    distance = np.full(200, 0.15)
+    distance[70] = 0.012
+    run = clearance_run(distance)
+    links = np.full(200, ROBOT.link_names.index("palm"))
+    links[70] = ROBOT.link_names.index("arm_link")
+    run = changed(run, clearance_links={("robot", "box"): links})
+    run = replace(run, steps=(step("near", 60, 100),))
+    reason = verdict(run, Clearance(between=("robot", "box"), at_least=0.01), "near").reason
+    assert reason == "12.0 mm between arm_link and box, 10.0 mm required at t=0.700 s"
 
 
 def test_without_a_nearest_link_the_pair_is_named_as_it_was_recorded():
@@ -73,7 +95,9 @@ def test_clearance_is_judged_while_the_object_is_there():
     distance = np.full(200, np.nan)
     spec = Clearance(between=("robot", "box"), at_least=0.01)
     never_there = (TABLE, replace(BOX, present=()))
-    assert verdict(clearance_run(distance, objects=never_there), spec).status == "not reached"
+    absent = verdict(clearance_run(distance, objects=never_there), spec)
+    assert absent.status == "not reached"
+    assert absent.reason == "robot and box were never there together"
     distance[50:60] = 0.02
     there = clearance_run(distance, objects=(TABLE, replace(BOX, present=((0.5, 0.59),))))
     assert verdict(there, spec).status == "passed"

@@ -27,7 +27,10 @@ def test_the_gripper_by_state_position_width_and_report():
     assert verdict(run, GripperState(width=0.059)).margin == pytest.approx(0.001)
     assert verdict(run, GripperState(width=0.0601)).status == "failed"
     assert verdict(run, GripperState(stalled=True)).status == "passed"
-    assert verdict(run, GripperState(stalled=True), "open").status == "failed"
+    unstalled = verdict(run, GripperState(stalled=True), "open")
+    assert unstalled.status == "failed"
+    assert unstalled.reason.startswith("the gripper did not stall")
+    assert verdict(run, GripperState(stalled=True)).reason.startswith("the gripper stalled")
     assert verdict(run, GripperState(stalled=False), "open").status == "passed"
     assert verdict(run, GripperState(stalled=False), "never").status == "not reached"
     assert verdict(make_run(), GripperState(stalled=False)).status == "not reached"

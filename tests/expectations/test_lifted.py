@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.assertions.hold import moves_in_hand
 from harness.expectations.displaced import Displaced
 from harness.expectations.lifted import Lifted
 from tests.assertions import evidence_runs as shared
@@ -159,6 +160,22 @@ def test_height_that_the_hand_did_not_give_does_not_count():
     answer = verdict(later, Lifted(object="box", above=0.05))
     assert (answer.status, answer.margin) == ("failed", pytest.approx(-0.03)), "from sample 90 on"
     assert "the hand raised it by 20.0 mm" in answer.reason, answer
+
+
+@pytest.mark.parametrize(("limit", "which"), [("STEADY", 0), ("STEADY_TURN", 1)])
+def test_a_motion_in_the_hand_may_be_as_large_as_its_limit(limit, which, monkeypatch):
+    """The box moves and turns evenly in the hand; the limit is set to what one sample has."""
+    base = lift_run()
+    poses = base.signals.object_poses["box"].copy()
+    share = np.arange(200) ** 2 / 200**2
+    poses[:, 0] = 0.02 * share
+    poses[:, 3], poses[:, 6] = np.cos(0.2 * share), np.sin(0.2 * share)
+    run = changed(base, object_poses={"box": poses})
+    up = poses[:, 2] >= 0.07
+    least = moves_in_hand(run, "box")[which][up].min()
+    for value, expected in ((least, "passed"), (np.nextafter(least, 0), "failed")):
+        monkeypatch.setattr(f"harness.expectations.lifted.{limit}", value)
+        assert verdict(run, Lifted(object="box", above=0.05)).status == expected
 
 
 def test_an_object_that_moves_through_the_hand_is_not_lifted():

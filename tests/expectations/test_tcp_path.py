@@ -10,7 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.expectations.fraction import FractionCheck
 from harness.expectations.tcp_path import TcpPath, along_arc, along_line
-from harness.recording.run import LinkPlacement
+from harness.recording.robot_record import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
@@ -111,7 +111,7 @@ def test_an_arc_through_points_on_a_line_cannot_be_judged():
     assert verdict(make_run(), TcpPath(arc=flat)).status == "not observable"
     point = {"start": LINE["start"], "end": LINE["start"]}
     assert verdict(make_run(), TcpPath(line=point)).status == "not observable"
-    with pytest.raises(ValueError, match="`line`, or `arc`, or neither"):
+    with pytest.raises(ValueError, match="takes `line` or `arc`, not both"):
         TcpPath(line=LINE, arc=ARC)
 
 
@@ -214,6 +214,12 @@ def test_three_points_are_on_a_line_where_one_is_a_micrometre_from_the_line_of_t
     else:
         with pytest.raises(NotObservable, match="lie on a line"):
             along_arc(points, start, interim, end)
+
+
+def test_three_times_the_same_point_is_no_arc():
+    points = np.ones((4, 3))
+    with pytest.raises(NotObservable, match="lie on a line"):
+        along_arc(points, points, points, points)
 
 
 @pytest.mark.parametrize(("length", "is_judged"), [(1.1e-6, True), (0.9e-6, False)])

@@ -19,10 +19,12 @@ from harness.expectations.static import Static
 from harness.expectations.until import Until
 from harness.expectations.upright import Upright
 from harness.expectations.within_limits import WithinLimits
+from harness.language.poses import Pose
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
     at,
+    changed,
     force,
     lift_run,
     make_run,
@@ -117,6 +119,18 @@ def test_what_is_unknown_decides_nothing_that_the_known_samples_decide():
     assert verdict(run, Never(predicate=far)).status == "not observable"
 
 
+def test_the_unknown_samples_that_would_decide_are_counted_from_the_first_to_the_last():
+    poses = at(200, (0, 0, 0.02))
+    poses[[50, 70, 120]] = np.nan
+    run = make_run(object_poses={"box": poses}, steps=(step("late", 40, 200),))
+    for during in ("", "late"):
+        answer = verdict(run, Always(predicate=Upright(object="box")), during)
+        assert answer.status == "not observable"
+        assert answer.reason == (
+            "3 samples from t=0.500 s to t=1.200 s are not known, and would decide it"
+        )
+
+
 ALREADY = "already true at the start"
 
 
@@ -154,11 +168,38 @@ def test_what_stands_where_it_stood_was_not_placed():
     assert warned(pushed, Placed(object="box")) == []
 
 
+def test_what_rides_on_a_moving_support_was_not_placed():
+    """A cart moves by 10 cm with the box on it; what slides on the cart is placed there."""
+    aside = np.linspace(0, 0.1, 100)
+    for slip, expected in ((0.004, [ALREADY]), (0.006, [])):
+        box, cart = at(200, (0, 0, 0.02)), at(200, (0, 0, -0.015))
+        cart[:100, 0], cart[100:, 0] = aside, 0.1
+        box[:, 0] = cart[:, 0] + slip * np.minimum(np.arange(200) / 50, 1)
+        run = make_run(contact_forces=STANDING, object_poses={"box": box, "Table": cart})
+        assert warned(run, Placed(object="box")) == expected
+        on_table = Pose(frame="Table", xyz=(0.0, 0.0, 0.035))
+        assert warned(run, Placed(object="box", pose=on_table)) == expected
+    elsewhere = {("Table", "box"): force(200, (0, 150)), ("shelf", "box"): force(200, (150, 200))}
+    still = at(200, (0, 0, 0.02))
+    still[:, 0] = cart[:, 0]
+    shelf = thing("shelf", static=True, pose=(0.1, 0, -0.1, 1, 0, 0, 0))
+    poses = {"box": still, "Table": cart}
+    run = make_run(contact_forces=elsewhere, object_poses=poses, objects=(TABLE, BOX, shelf))
+    assert warned(run, Placed(object="box")) == [], "the cart carries it no longer"
+
+
 def test_an_until_that_comes_at_once_judges_nothing_before_it():
     run = lift_run()
     at_once = Until(predicate=Upright(object="box"), until=Released(object="box"))
     later = Until(predicate=Upright(object="box"), until=Lifted(object="box"))
     assert warned(run, at_once) == [ALREADY]
+    touched = make_run(contact_forces={("left_finger", "box"): force(200, (20, 60))})
+    for hold, expected in ((0.1, [ALREADY]), (0.5, [])):
+        free = Until(predicate=Upright(object="box"), until=Released(object="box"), **{"for": hold})
+        assert warned(touched, free) == expected, "it was free for 0.2 s at first"
+    late = replace(run, steps=(*run.steps, step("late", 10, 200)))
+    [warning] = verdict(late, at_once, "late").warnings
+    assert "`released` held at t=0.100 s, the first sample" in warning.message
     assert warned(run, later) == []
 
 
@@ -204,3 +245,17 @@ def test_contact_with_what_is_not_in_the_physics_is_not_observable():
     assert verdict(run, Formula(formula="always force(ghost, robot) < 1")).status == (
         "not observable"
     )
+
+
+@pytest.mark.parametrize(("speed", "names"), [(9.0, ["contact may be missed"]), (7.0, [])])
+def test_a_body_that_moves_by_more_than_both_widths_may_have_passed_through(speed, names):
+    """The box and the post are 4 cm thick: at 100 samples a second that is 8 m/s."""
+    poses = at(200, (0, 0, 0.02))
+    poses[60:, 0] = 0.01 * speed
+    post = thing("post", static=True, pose=(1, 0, 0, 1, 0, 0, 0))
+    run = make_run(object_poses={"box": poses}, objects=(TABLE, BOX, post))
+    pair = InContact(between=("box", "post"))
+    assert warned(run, Never(predicate=pair)) == names
+    assert warned(run, Never(predicate=Collision(between=("box", "post")))) == names
+    touch = changed(run, contact_forces={("box", "post"): force(200, (60, 90))})
+    assert warned(touch, pair) == [], "they touched: nothing was missed"

@@ -1,12 +1,14 @@
 """tracking_error: joints stay near their commands."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from harness.expectations.tracking_error import TrackingError
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import Evidence, Free, Three
-from tests.assertions.synthetic_run import changed, make_run, verdict
+from tests.assertions.synthetic_run import ROBOT, changed, make_run, verdict
 
 
 def positions(shoulder, finger=0.0):
@@ -21,6 +23,16 @@ def test_tracking_is_of_the_arm_s_joints_where_they_have_commands():
     assert verdict(run, TrackingError(max=0.048)).status == "failed"
     uncommanded = changed(run, joint_commands=np.full((200, 2), np.nan))
     assert verdict(uncommanded, TrackingError()).status == "not observable"
+
+
+def test_a_joint_that_slides_may_be_5_mm_off_or_what_the_file_says():
+    rail = replace(ROBOT.joints[1], name="rail")
+    robot = replace(ROBOT, joints=(rail, ROBOT.joints[1]), groups={"gripper": ("finger",)})
+    run = make_run(robot=robot, joint_positions=positions(0.004), joint_commands=positions(0.0))
+    assert verdict(run, TrackingError()).margin == pytest.approx(0.001)
+    assert verdict(run, TrackingError()).unit == "m"
+    assert verdict(run, TrackingError(max=0.05)).margin == pytest.approx(0.046)
+    assert verdict(run, TrackingError(max=0.003)).status == "failed"
 
 
 EVIDENCE = Evidence(

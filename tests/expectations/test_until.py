@@ -53,8 +53,33 @@ def test_one_thing_holds_until_another_comes():
     assert verdict(run, held).status == "failed"
     assert verdict(run, Until(predicate=still, until=touched), "gone").status == "not reached"
     assert verdict(absent_box(), Until(predicate=still, until=touched)).status == "not reached"
+    long = verdict(run, Until(predicate=still, until=touched, **{"for": 3.0}))
+    assert long.reason == "judged over 1.990 s, which leaves no room for 3.000 s"
     with pytest.raises(ValueError, match="no `for` and no `within`"):
         Until(predicate=Static(**{"for": 1.0}), until=touched)
+
+
+def test_a_hold_is_named_where_the_second_decides_and_not_where_the_first_does():
+    still = Static(object="box", max_velocity=0.01)
+    touched = InContact(between=("gripper", "box"))
+    for spec, said in (
+        (
+            Until(predicate=still, until=touched, **{"for": 1.5}),
+            "`in_contact` never came for 1.5 s: ",
+        ),
+        (Until(predicate=still, until=touched), "`static` held before it: "),
+        (
+            Until(predicate=Upright(object="box"),
+                  until=Lifted(object="box", above=0.05), **{"for": 0.3}),
+            "`lifted` came for 0.3 s: ",
+        ),
+        (
+            Until(predicate=On(object="box", support="Table"),
+                  until=Lifted(object="box", above=0.05), **{"for": 0.3}),
+            "`on` did not hold until then: ",
+        ),
+    ):  # fmt: skip
+        assert verdict(lift_run(), spec).reason.startswith(said), verdict(lift_run(), spec).reason
 
 
 EVIDENCE = Evidence(

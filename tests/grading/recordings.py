@@ -134,7 +134,7 @@ def students_recording(run, rate=50.0):
         moved = [
             transform("", name, poses[row])
             for name, poses in run.signals.object_poses.items()
-            if name in ("green_cylinder", "red_box", "beer_0", "coke_can_steel")
+            if name in ("green_cylinder", "red_box", "blue_box", "beer_0", "coke_can_steel")
         ]
         recording.add(POSES, "tf2_msgs/msg/TFMessage", time, {"transforms": moved})
     return recording

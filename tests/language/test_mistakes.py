@@ -69,6 +69,13 @@ def test_a_problem_shows_the_line_a_caret_and_the_nearest_word():
         ("- move_to: {pose: {xyz: §5}}", "`xyz` is a list, not `5`", ""),
         ("- move_to: {pose: {xyz: §[0, 0, 0, 1]}}", "`xyz` has at most 3 items, not 4", ""),
         ("- move_to: {position: [0, 0, §up]}", "a length is a number, not `up`", "cm"),
+        ("- move_to: {joints: §[0, -1.57]}", "`joints` is a mapping", "`{NAME: 0, ...}`"),
+        ("- move_to: {pose: {xyz: [0, 0, 1]}, §rpy: [0, 0, 0]}", "`rpy`", "`pose: {rpy: ...}`"),
+        (
+            "- move_relative: {direction: {xyz: [0, 0, 1]}, distance: 1, §objects: []}",
+            "`objects`",
+            "column 1",
+        ),
         (
             "- move_to: {pose: {quat_xyzw: §[1, 1, 0, 0]}}",
             "a quaternion has norm 1, this one 1.414",

@@ -43,6 +43,12 @@ def applied(track, point):
     return track.translations + track.rotations @ np.asarray(point, dtype=float)
 
 
+def test_a_half_turn_that_rounding_makes_a_little_more_is_a_half_turn():
+    beyond = np.diag([1.0, -1 - 1e-9, -1 - 1e-9])
+    track = BodyTrack(np.stack([np.eye(3), beyond]), np.zeros((2, 3)))
+    assert track.turns == pytest.approx([np.pi])
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_tracks_are_those_of_the_poses(seed):
     poses = random_poses(seed)
@@ -169,6 +175,7 @@ def test_the_smallest_of_all_distances_is_found_up_to_the_cutoff(seed, step, cut
     distances, which = smallest_distances(found, cutoff)
     assert distances == pytest.approx(np.minimum(every.min(axis=1), cutoff), abs=2e-6)
     assert (which >= 0).tolist() == (distances < cutoff).tolist()
+    assert (which[distances >= cutoff] == -1).all()
     rows = np.flatnonzero(which >= 0)
     assert every[rows, which[rows]] == pytest.approx(distances[rows], abs=2e-6)
     for index, pair in enumerate(found):

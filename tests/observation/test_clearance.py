@@ -10,7 +10,8 @@ from harness.core.spatial import SE3
 from harness.observation.clearance import CoalClearance
 from harness.observation.sampled_clearance import LARGEST_ERROR, complete_parts
 from harness.recording.motion import Motion
-from harness.recording.run import AttachmentRecord, ObjectRecord, Signals
+from harness.recording.run import AttachmentRecord, ObjectRecord
+from harness.recording.signals import Signals
 from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 from tests.planning.lesson import TCP, Cell, at, boxes, tables, thing, ur
 from tests.running import run_case

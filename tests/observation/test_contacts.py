@@ -7,7 +7,7 @@ import pytest
 
 from harness.cli.main import main
 from harness.observation.contacts import contact_records
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.assertions.synthetic_run import force, make_run
 from tests.engine.front_door import run
 

@@ -72,6 +72,14 @@ def test_a_push_lands_where_the_object_gains_more_than_a_millimetre_a_second(spe
     assert "0.25 m/s" in receipt(PUSH, object_poses={"box": going(0.25)}).evidence
 
 
+@pytest.mark.parametrize("start", [0, 10])
+def test_a_push_of_one_sample_shows_in_the_motion_after_it(start):
+    first = step("first", start, start + 1, "inject", result={"faults": [PUSH.plain()]})
+    run = make_run(N, object_poses={"box": going(0.5, start, 60)})
+    steps, _ = with_receipts((first,), run.signals, ROBOT, (TABLE, BOX))
+    assert faults_of(steps[0])[0].receipt == "landed"
+
+
 @pytest.mark.parametrize(("by", "landed"), [(0.00011, True), (0.00009, False)])
 def test_a_stall_lands_where_the_joint_is_commanded_to_move(by, landed):
     answer = receipt(STALL, joint_commands=ramp(0, by), joint_positions=ramp(0, 0.0))

@@ -9,6 +9,7 @@ import pytest
 from harness.cell.cell import Belief
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
+from harness.core.world import WorldObject
 from harness.observation.beliefs import believed_poses
 from harness.observation.findings import about_file, findings_of, overlap_findings
 from harness.observation.link_overlaps import link_overlap_findings
@@ -122,17 +123,48 @@ def test_links_inside_each_other_are_reported_where_they_are_deepest():
     ],
 )
 def test_an_object_as_large_as_a_house_was_probably_given_in_millimetres(geometry, static, said):
-    thing = SimpleNamespace(name="thing", is_static=static, shapes=(Shape(geometry),))
-    for world, later in (((thing,), {}), ((), {"thing": thing})):
+    found = findings_about(thing(Shape(geometry), is_static=static))
+    assert bool(found) == bool(said)
+    assert all(said in each.message for each in found)
+
+
+def thing(*shapes, is_static=False, moment=0.0, mass=1.0, center=(0, 0, 0)):
+    inertia = np.diag([moment / 2, moment, moment])
+    return WorldObject("thing", shapes, SE3.identity(), is_static, mass, np.array(center), inertia)
+
+
+def findings_about(obj):
+    """Of a program that has an object from the start on, the same as for one that a step adds."""
+    both = []
+    for world, later in (((obj,), {}), ((), {"thing": obj})):
         program = SimpleNamespace(
             world=SimpleNamespace(objects=world),
             later_objects=later,
             expectations=("something",),
             all_steps=lambda: (),
         )
-        found = about_file(program, ())
-        assert bool(found) == bool(said)
-        assert all(said in each.message for each in found)
+        both.append(about_file(program, ()))
+    assert both[0] == both[1]
+    return both[0]
+
+
+@pytest.mark.parametrize(
+    ("obj", "is_said"),
+    [
+        (thing(Shape(Sphere(0.1)), moment=0.0199, mass=2.0), False),  # 2 kg at 10 cm: 0.02 kg m^2
+        (thing(Shape(Sphere(0.1)), moment=0.0201, mass=2.0), True),
+        (thing(Shape(Sphere(0.1)), moment=0.0799, mass=2.0, center=(0, 0.1, 0)), False),
+        (thing(Shape(Sphere(0.1)), moment=0.0801, mass=2.0, center=(0, 0.1, 0)), True),
+        (thing(Shape(Sphere(0.1)), Shape(Sphere(0.2)), moment=0.0799, mass=2.0), False),
+        (thing(Shape(Sphere(0.1)), moment=100.0, is_static=True), False),
+        (thing(Shape(Mesh("a.stl", np.ones(3))), moment=100.0), False),
+        (thing(moment=100.0), False),
+    ],
+)
+def test_no_mass_within_its_shapes_turns_more_heavily_than_at_their_far_end(obj, is_said):
+    found = findings_about(obj)
+    assert bool(found) is is_said
+    assert all("so slowly that it seems to rest" in each.message for each in found)
 
 
 @pytest.mark.parametrize(

@@ -98,6 +98,8 @@ def test_distances_are_linear_between_measured_samples_and_unknown_next_to_a_mis
     assert holed[[0, 1, 2, 3, 4, 8]].tolist() == [0, 1, 2, 3, 4, 3]
     assert np.isnan(holed[5:8]).all()
     assert np.isnan(between(samples, np.full(4, NAN), 9)).all()
+    after_a_known_one = between(samples, np.array([1.0, NAN, 2.0, 3.0]), 9)
+    assert np.isnan(after_a_known_one).tolist() == [False, *[True] * 5, *[False] * 3]
     assert between(samples, np.array([NAN, NAN, 5.0, 3.0]), 9)[6:].tolist() == [5, 4, 3]
     assert between(samples[:3], np.array([1.0, 1.0, 2.0]), 9)[6:].tolist() == [2, 2, 2]
 

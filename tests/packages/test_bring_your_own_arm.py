@@ -14,7 +14,7 @@ from harness.cli.main import main
 from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec
 from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_source import RobotSource, load_source
 

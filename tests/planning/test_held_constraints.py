@@ -52,6 +52,14 @@ def test_a_constraint_holds_up_to_its_bounds(constraints, joint, low, high):
         assert held(**constraints).violation(state) is not None
 
 
+def test_a_bound_may_be_missed_by_a_nanoradian_exactly():
+    constraints = held(joints=(JointBand("two", 0.0, 0.0),))
+    for value, expected in ((1e-9, True), (-1e-9, True), (1.1e-9, False), (-1.1e-9, False)):
+        state = np.array([0.0, value])
+        assert constraints.hold(state) is expected
+        assert (constraints.violation(state) is None) is expected
+
+
 def test_what_is_broken_most_is_reported_with_its_value_and_bounds():
     both = held(**BOX, **BAND)
     found = both.violation(np.array([0.25, 0.4]))

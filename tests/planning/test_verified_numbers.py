@@ -17,6 +17,7 @@ from harness.planning.verification.verify import (
     path_collision,
     verified_resolution,
 )
+from harness.recording.motion_failures import ConstraintFailure
 
 N = 11
 TIMES = np.arange(N) * 0.1
@@ -116,6 +117,17 @@ def test_ends_may_be_a_millionth_off_and_must_be_at_rest(place):
             assert defect(velocities=((place, joint), sign * 0.9e-9)) is None
             found = defect(velocities=((place, joint), sign * 1.1e-9))
             assert found.details.plain()["broken"] == f"rest at {name}"
+
+
+@pytest.mark.parametrize(("place", "time"), [(0.2, "0.40"), (0.225, "0.45"), (0.24, None)])
+def test_a_broken_constraint_is_dated_by_its_sample_or_the_middle_of_two(place, time):
+    """The first joint is at 0.2 at 0.4 s and at 0.25 at 0.5 s; between them at 0.225."""
+    record = ConstraintFailure(place, 0.0, 0.1)
+    broken = SimpleNamespace(what="it is broken", record=record)
+    held = SimpleNamespace(violation=lambda q: broken if abs(q[0] - place) < 1e-9 else None)
+    found = find_defect(moving(), Checker(), START, END, LIMITS, held)
+    assert (found is None) is (time is None)
+    assert time is None or found.message == f"at {time} s it is broken"
 
 
 def test_time_stamps_begin_at_zero_and_rise():

@@ -73,7 +73,7 @@ def typed_result(run, library):
     """What the third step of a saved run reported, as the class of the plug-in gives it."""
     code = (
         "import sys; from pathlib import Path; from harness.core.registry import load_plugin;"
-        "load_plugin('remarks'); import remarks; from harness.recording.store import read_run;"
+        "load_plugin('remarks'); import remarks; from harness.recording.read_run import read_run;"
         "print(read_run(Path(sys.argv[1])).run.steps[2].result.find(remarks.Remarked))"
     )
     done = subprocess.run(

@@ -11,9 +11,9 @@ from harness.assertions.judge import judge
 from harness.core.trajectory import JointTrajectory
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
-from harness.recording.run import Verdict
+from harness.recording.verdict import Verdict
 from tests.assertions.synthetic_run import lift_run, make_run, step
-from tests.recording.test_store import EXPECTED, full_run
+from tests.recording.test_run_folder import EXPECTED, full_run
 
 RUN = full_run()
 VERDICTS = judge(RUN, EXPECTED)

@@ -11,8 +11,10 @@ from harness.core.details import Details
 from harness.core.registry import registry
 from harness.recording.digest import digest
 from harness.recording.execution_failures import GripperOutcome
+from harness.recording.read_run import read_run
 from harness.recording.step_results import CELL_RESULTS, CartesianPathResult, SceneChange
-from harness.recording.store import StoredRun, read_run, write_run
+from harness.recording.stored_run import StoredRun
+from harness.recording.write_run import write_run
 from tests.assertions.synthetic_run import make_run, step
 
 OUTCOME = GripperOutcome(0.01, 0.02, 3.0, True, False, {"left": ("box",), "right": ()})
@@ -65,7 +67,7 @@ def test_no_two_parts_of_a_step_have_the_same_key():
 def test_reading_a_saved_run_imports_no_step(tmp_path):
     saved(tmp_path, release=(RELEASED,))
     code = (
-        "import sys; from pathlib import Path; from harness.recording.store import read_run;"
+        "import sys; from pathlib import Path; from harness.recording.read_run import read_run;"
         f"read_run(Path({str(tmp_path / 'run')!r})).run.steps[0].result.plain();"
         "sys.exit('harness.steps' in sys.modules or 'pydantic' in sys.modules)"
     )

@@ -3,7 +3,7 @@
 import random
 
 from harness.core.errors import Problem
-from harness.recording.run import Measure, Verdict
+from harness.recording.verdict import Measure, Verdict
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.record import SuiteCase, SuiteRecord

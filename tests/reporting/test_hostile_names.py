@@ -6,8 +6,11 @@ import pytest
 
 from harness.core.camera import Camera
 from harness.core.geometry import Box
-from harness.recording.run import CaptureRecord, Finding, JointRecord, Measure, Verdict
-from harness.recording.store import StoredRun
+from harness.recording.robot_record import JointRecord
+from harness.recording.run import Finding
+from harness.recording.signals import CaptureRecord
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Measure, Verdict
 from harness.reporting.html.page import page_html
 from harness.reporting.html.summary import SummaryPicture
 from tests.assertions.synthetic_run import TABLE, lift_run, step, thing

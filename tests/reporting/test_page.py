@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.reporting.browser import wait_for
 
 PICTURE = """() => {

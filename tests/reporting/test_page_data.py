@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from harness.core.geometry import Box, Mesh
-from harness.recording.run import Finding, MeshRecord, Verdict
-from harness.recording.store import StoredRun
+from harness.recording.robot_record import MeshRecord
+from harness.recording.run import Finding
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.groups import groups_of
 from harness.reporting.html.packing import Packer, thin

@@ -14,7 +14,7 @@ import yaml
 from mcap.reader import make_reader
 
 from harness.cli.main import main
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.reporting.bag_runs import decoded, everything
 

@@ -6,10 +6,10 @@ from scipy.interpolate import BPoly
 
 from harness.core.spatial import SE3
 from harness.robot.description import Joint
-from harness.ros.control.controller import Window
+from harness.ros.control.controller import Command, Window
 from harness.ros.control.goals import Code, Defaults, GoalRefused
 from harness.ros.control.spline import Spline
-from harness.ros.control.trajectory import TrajectoryController
+from harness.ros.control.trajectory import start_trajectory
 
 JOINTS = [
     Joint(name, "revolute", "a", "b", SE3.identity(), np.array([0, 0, 1.0]), -2.0, 2.0)
@@ -25,13 +25,15 @@ def content(*points, names=("first", "second"), **fields):
     return {"joint_names": list(names), "points": rows, **fields}
 
 
-def controller(**tolerances):
-    return TrajectoryController("arm", JOINTS, Defaults(**tolerances))
+def followed(sent, now=0.0, **tolerances):
+    """The motion of a goal from rest at zero."""
+    command = Command("g", sent, now, REST, HERE)
+    return start_trajectory(JOINTS, Defaults(**tolerances), command)
 
 
 def refused(**fields):
     with pytest.raises(GoalRefused) as error:
-        controller().begin("g", fields, 1.0, REST, HERE)
+        followed(fields, 1.0)
     return error.value.code
 
 
@@ -48,41 +50,37 @@ def test_segments_are_those_of_hermite_interpolation(order):
 
 
 def test_joints_in_another_order_are_sorted_and_the_start_is_the_last_set_point():
-    arm = controller()
-    arm.begin("g", content((1.0, [0.4, 0.2], [0, 0]), names=("second", "first")), 0.0, REST, HERE)
-    positions, velocities, _ = arm.set_points(np.array([0.0, 0.5, 1.0, 2.0]))
+    arm = followed(content((1.0, [0.4, 0.2], [0, 0]), names=("second", "first")))
+    positions, velocities, _ = arm.at(np.array([0.0, 0.5, 1.0, 2.0]))
     assert np.allclose(positions, [[0, 0], [0.1, 0.2], [0.2, 0.4], [0.2, 0.4]])
     assert np.allclose(velocities[[0, 2, 3]], 0)
 
 
 def test_points_that_are_over_are_left_out():
-    arm = controller()
     late = content((0.5, [1, 1], [0, 0]), (2.0, [0.5, 0.5], [0, 0]), stamp=10.0)
-    arm.begin("g", late, 11.0, REST, HERE)
-    positions, _, _ = arm.set_points(np.array([11.0, 12.0]))
+    arm = followed(late, 11.0)
+    positions, _, _ = arm.at(np.array([11.0, 12.0]))
     assert np.allclose(positions, [[0, 0], [0.5, 0.5]])
 
 
 def test_a_stamp_in_the_future_delays_and_one_of_another_clock_does_not():
-    arm = controller()
-    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=15.0), 10.0, REST, HERE)
-    assert np.allclose(arm.set_points(np.array([16.0]))[0], 1.0)
-    assert (arm.set_points(np.array([15.0]))[0] < 0.99).all()
-    arm.begin("g", content((1.0, [1, 1], [0, 0]), stamp=1.79e9), 10.0, REST, HERE)
-    assert np.allclose(arm.set_points(np.array([11.0]))[0], 1.0)
+    arm = followed(content((1.0, [1, 1], [0, 0]), stamp=15.0), 10.0)
+    assert np.allclose(arm.at(np.array([16.0]))[0], 1.0)
+    assert (arm.at(np.array([15.0]))[0] < 0.99).all()
+    arm = followed(content((1.0, [1, 1], [0, 0]), stamp=1.79e9), 10.0)
+    assert np.allclose(arm.at(np.array([11.0]))[0], 1.0)
 
 
 @pytest.mark.parametrize(("time", "stamp"), [(1e-9, 0.0), (0.0, 0.0), (0.5, 0.5)])
 def test_a_trajectory_that_ends_now_is_its_last_point(time, stamp):
-    arm = controller()
-    arm.begin("g", content((time, [0.3, 0.1], [0, 0]), stamp=stamp), 1.0, REST, HERE)
-    assert np.allclose(arm.set_points(np.array([1.01]))[0], [0.3, 0.1])
+    arm = followed(content((time, [0.3, 0.1], [0, 0]), stamp=stamp), 1.0)
+    assert np.allclose(arm.at(np.array([1.01]))[0], [0.3, 0.1])
 
 
 def test_long_names_are_cropped_in_messages():
     names = ("x" * 10_000, "second")
     with pytest.raises(GoalRefused) as error:
-        controller().begin("g", content((1.0, [0, 0], []), names=names), 1.0, REST, HERE)
+        followed(content((1.0, [0, 0], []), names=names), 1.0)
     assert len(str(error.value)) < 200
 
 
@@ -96,35 +94,36 @@ def test_each_mistake_has_its_error_code():
     assert refused(**content((1.0, [0, 2.1], []))) is Code.INVALID_GOAL
     assert refused(**content((1.0, [0, np.inf], []))) is Code.INVALID_GOAL
     assert refused(**content((1.0, [0, 0], [0, 1]))) is Code.INVALID_GOAL
+    overflow = content((0.3, [0, 0], [1e308, 0]), (0.5, [0, 0], [0, 0]))
+    assert refused(**overflow) is Code.INVALID_GOAL
     assert refused(**content((0.1, [0, 0], []), stamp=0.5)) is Code.OLD_HEADER_TIMESTAMP
     unknown = [{"name": "third", "position": 0.1, "velocity": 0.0}]
     assert refused(**good, path_tolerance=unknown) is Code.INVALID_JOINTS
 
 
 def test_the_first_sample_beyond_the_path_tolerance_decides():
-    arm = controller(path=0.05)
-    arm.begin("g", content((2.0, [1, 0], [0, 0])), 0.0, REST, HERE)
-    desired = arm.set_points(TIMES)
+    arm = followed(content((2.0, [1, 0], [0, 0])), path=0.05)
+    desired = arm.at(TIMES)
     lagging = desired[:2].copy()
     lagging[0, 50:, 0] -= 0.06
     ended = arm.judge(Window(TIMES, desired, lagging, HERE))
-    assert (ended.goal, ended.code) == ("g", Code.PATH_TOLERANCE_VIOLATED)
-    assert "'first' is off by 0.06 rad (tolerance 0.05 rad) at t=0.510 s" in ended.message
-    assert not arm.is_active
+    assert (ended.goal, ended.result.error_code) == ("g", Code.PATH_TOLERANCE_VIOLATED)
+    assert (
+        "'first' is off by 0.06 rad (tolerance 0.05 rad) at t=0.510 s" in ended.result.error_string
+    )
 
 
 @pytest.mark.parametrize(
     ("bound", "code"), [(-1.0, Code.SUCCESSFUL), (0.0, None), (0.2, Code.SUCCESSFUL)]
 )
 def test_a_goal_s_own_tolerance_replaces_the_default(bound, code):
-    arm = controller(goal=0.01, goal_time=0.5)
     own = [{"name": "first", "position": bound, "velocity": 0.0}]
-    arm.begin("g", content((2.0, [1, 0], [0, 0]), goal_tolerance=own), 0.0, REST, HERE)
-    desired = arm.set_points(TIMES)
+    arm = followed(content((2.0, [1, 0], [0, 0]), goal_tolerance=own), goal=0.01, goal_time=0.5)
+    desired = arm.at(TIMES)
     off = desired[:2] + np.array([[[0.1, 0.0]], [[0.0, 0.0]]])
     ended = arm.judge(Window(TIMES, desired, off, HERE))
-    assert (ended and ended.code) == code
+    assert (ended and ended.result.error_code) == code
     if code is None:
         later = TIMES + 0.5
-        ended = arm.judge(Window(later, arm.set_points(later), off, HERE))
-        assert ended.code is Code.GOAL_TOLERANCE_VIOLATED
+        ended = arm.judge(Window(later, arm.at(later), off, HERE))
+        assert ended.result.error_code == Code.GOAL_TOLERANCE_VIOLATED

@@ -42,10 +42,18 @@ def test_a_node_earns_the_points_of_the_lesson_and_its_commands_replay(tmp_path,
     assert kinds == ["gripper", "trajectory", "gripper", "trajectory"]
 
 
+def grade_at_ease(capsys, *arguments):
+    """Grade, and again where the machine was too slow to judge a node, as a person would."""
+    for _ in range(3):
+        code, said = main(["grade", *arguments]), capsys.readouterr()
+        if "too slow to judge" not in said.out:
+            break
+    return code, said
+
+
 def test_a_node_that_crashes_ends_the_step_and_shows_what_it_printed(capsys):
-    code = main(["grade", BOX, "--node", f"{LIFT} --crash", "--no-report"])
-    said = capsys.readouterr()
-    assert code == 1
+    code, said = grade_at_ease(capsys, BOX, "--node", f"{LIFT} --crash", "--no-report")
+    assert code == 1, said.out
     assert "TIMED_OUT: `until` did not become true: the node ended" in said.out
     assert "the launched program ended with exit code 1" in said.out
     assert "no idea how this works" in said.err
@@ -79,9 +87,9 @@ def test_a_node_that_crashes_after_its_work_is_mentioned(tmp_path, capsys):
 def test_points_do_not_hide_a_step_that_failed(tmp_path, capsys):
     file = scenario(tmp_path)
     command = ["--node", "true", "--no-page", "--report-dir", str(tmp_path / "r")]
-    assert main(["grade", str(file), *command]) == 1
-    said = capsys.readouterr().out
-    assert "1 of 1 points\nnot passed: every point is earned, but a step failed" in said
+    code, said = grade_at_ease(capsys, str(file), *command)
+    assert code == 1
+    assert "1 of 1 points\nnot passed: every point is earned, but a step failed" in said.out
 
 
 def test_a_command_that_cannot_be_started_is_named(capsys):

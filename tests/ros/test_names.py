@@ -8,19 +8,26 @@ from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.ros.action_client import ActionClient
 from harness.ros.bridge import BridgeRequest, run_bridge
-from harness.ros.interfaces import GRIPPER, TRAJECTORY
-from harness.ros.names import Names, unserved
+from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
+from harness.ros.names import Use, unserved
+from harness.ros.rtps.discovery import Qos
+from harness.ros.rtps.graph import dds_type
 from harness.session.run_request import RunRequest
 from tests.ros.bridging import bridge, scenario
 
 HOLD = "- external: {}"
 
 
+def use(topic, *, publishes=False):
+    return Use(topic, "std_msgs/msg/String", publishes)
+
+
 def test_topics_that_nodes_use_among_themselves_are_left_out():
-    own = Names.of(["/joint_states"], ["/arm/joint_trajectory"])
-    others = Names.of(["/plan", "/arm/joint_trajectory", "/rosout"], ["/plan", "/joint_states"])
-    assert unserved(own, others) == []
-    [sentence] = unserved(own, Names.of([], ["/joint_state"]))
+    state, plan, command = "/joint_states", "/plan", "/arm/joint_trajectory"
+    own = [use(state, publishes=True), use(command)]
+    others = [use(state), *(use(name, publishes=True) for name in (plan, command, "/rosout"))]
+    assert unserved(own, [*others, use(plan)]) == []
+    [sentence] = unserved(own, [use("/joint_state")])
     assert sentence == (
         "a node subscribes to /joint_state, which is not published; did you mean /joint_states?"
     )
@@ -38,6 +45,35 @@ def test_misspelt_actions_and_topics_are_named_when_nothing_arrived(tmp_path):
         "a node publishes /arm_controler/joint_trajectory, which has no subscriber; did you mean"
         " /arm_controller/joint_trajectory?",
     )
+
+
+def test_wrong_types_and_qualities_are_noted_once_with_what_to_change(tmp_path):
+    said, command = [], "/arm_controller/joint_trajectory"
+    with bridge(scenario(tmp_path, HOLD), say=said.append) as (node, _):
+        node.ready()
+        node.graph.advertise(command, "std_msgs/msg/String")
+        node.graph.participant.writer(f"rt{command}", dds_type(TRAJECTORY), Qos(is_reliable=False))
+        ActionClient(node.graph, "/gripper_controller/gripper_cmd", FOLLOW)
+        node.listen("/joint_states", "sensor_msgs/msg/JointState", latched=True)
+        node.listen("/robot_description", "std_msgs/msg/String")
+        node.sleep(2.5)
+    assert said == [
+        "a node calls the action /gripper_controller/gripper_cmd with the type"
+        " control_msgs/action/FollowJointTrajectory, but its type is"
+        " control_msgs/action/GripperCommand: no message arrives; import GripperCommand from"
+        " control_msgs.action in the node",
+        f"a node publishes {command} with best-effort reliability, which does not fit the other"
+        " end: no message arrives; set reliability=ReliabilityPolicy.RELIABLE in its QoSProfile",
+        f"a node publishes {command} with the type std_msgs/msg/String, but its type is"
+        " trajectory_msgs/msg/JointTrajectory: no message arrives; import JointTrajectory from"
+        " trajectory_msgs.msg in the node",
+        "a node subscribes to /joint_states with transient-local durability, which does not fit"
+        " the other end: no message arrives; set durability=DurabilityPolicy.VOLATILE in its"
+        " QoSProfile",
+        "a node subscribes to /robot_description with volatile durability, so what was published"
+        " before it came does not arrive; set durability=DurabilityPolicy.TRANSIENT_LOCAL in its"
+        " QoSProfile",
+    ]
 
 
 def test_a_second_robot_in_a_domain_is_refused(tmp_path):

@@ -7,6 +7,7 @@ harness itself with that Python, which must have the version of this one.
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -64,6 +65,31 @@ def test_action_clients_of_rclpy_get_feedback_results_and_cancellation(tmp_path)
     assert said["cancel"] == [0, 1]
     assert said["image"] == [640, 480, "rgb8", 640 * 480 * 3]
     assert {"bridge", "student"} <= set(said["nodes"])
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_malformed_goals_garbage_and_clients_that_die_do_not_end_the_bridge(tmp_path):
+    said = run_node(tmp_path, "malformed.py")
+    answers = {name: said[name] for name in said if isinstance(said[name], list)}
+    rejected = {name: each[2] for name, each in answers.items() if each[:2] == [False, 0]}
+    joints = {"a joint twice", "five names", "empty", "tolerance of an unknown joint"}
+    assert {name for name, code in rejected.items() if code == -2} == joints
+    assert {name for name, code in rejected.items() if code == -1} == {
+        *("not a number", "infinite", "no positions", "before the start", "falling"),
+        *("velocities of three", "velocities at one point", "accelerations of five"),
+        *("velocities not a number", "huge velocities", "huge accelerations"),
+        "tolerance not a number",
+    }
+    assert {name for name, code in rejected.items() if code is False} == {
+        *("grip not a number", "grip infinite", "grip too wide"),
+        *("effort not a number", "effort below zero", "effort infinite"),
+    }
+    followed = {name: each[1:] for name, each in answers.items() if name not in rejected}
+    assert followed.pop("a good grip") == [4, True]
+    assert followed.pop("replaced") == [6, -1]
+    assert len(followed) == 8
+    assert all(each == [4, 0] for each in followed.values())
+    assert said["died"] == -signal.SIGKILL
 
 
 @pytest.mark.usefixtures("_control_msgs")

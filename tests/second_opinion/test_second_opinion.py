@@ -8,7 +8,7 @@ from collections import Counter
 
 import pytest
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 from tests.second_opinion.judge import Judge
 from tests.second_opinion.runs import EXPECTATIONS, KINDS, SRDF, URDF, trial

@@ -51,16 +51,20 @@ def test_objects_are_added_resized_and_deleted_in_the_text(studio):
     assert "objects" not in studio.text
 
 
-def test_an_object_is_moved_in_the_text_at_the_start_and_live_afterwards(studio):
+def test_an_object_is_moved_in_the_text_at_the_start_and_with_a_step_afterwards(studio):
     reply(studio, "add_object", **BOX)
     turned = SE3.from_xyz_rpy([0.25, 0.1, 0.04], [0, 0, np.pi / 2])
     studio.put_object("box", turned)
     assert "xyz: [0.25, 0.1, 0.04], quat_wxyz: [0.70711, 0, 0, 0.70711]" in studio.text
     reply(studio, "execute", step="gripper: open")
-    text = studio.text
     studio.put_object("box", SE3.from_xyz_rpy([0.2, -0.1, 0.04], [0, 0, 0]))
+    assert "- move_object: {object: box, pose: {xyz: [0.2, -0.1, 0.04]}}\n" in studio.text
+    assert studio.cell.is_run
+    studio.session.at_once["recording"]({"on": False})
+    text = studio.text
+    studio.put_object("box", SE3.from_xyz_rpy([0.2, 0.1, 0.04], [0, 0, 0]))
     assert studio.text == text
-    assert studio.cell.object_poses()["box"].translation[1] == pytest.approx(-0.1, abs=1e-3)
+    assert studio.cell.object_poses()["box"].translation[1] == pytest.approx(0.1, abs=1e-3)
     assert not studio.cell.is_run
 
 
@@ -96,6 +100,7 @@ def test_a_refusal_names_the_limit_the_pair_or_the_distance(studio):
     assert "joint4 at" in goal(studio, [0.2, 0, 0.02], 0)["refusal"]
     assert "mm deep" in goal(studio, [0.2, 0, 0.015], 60)["refusal"]
     assert "m away" in goal(studio, [0.9, 0, 0.1], 0)["refusal"]
+    assert studio.reach.nearest is not None, "what is drawn in red where no way exists"
     assert goal(studio, [0.2, 0, 0.15], 60) == {"refusal": "", "ways": 1}
 
 

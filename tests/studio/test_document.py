@@ -1,9 +1,14 @@
 """The scenario as text: what is added stands where it belongs, and nothing else changes."""
 
+from dataclasses import replace
+
 import pytest
 
 from harness.core.errors import SpecError
+from harness.language.scenario import RobotSpec
+from harness.robot.load import load_robot
 from harness.studio.document import Document, flow, new_text
+from harness.studio.step_texts import gripper_steps
 
 TEXT = """\
 # a comment at the top
@@ -87,6 +92,16 @@ def test_expectations_do_not_change_what_is_executed():
     assert document.with_expectations(["grasped: a"], 0).step_keys() == keys
     assert Document(TEXT.replace("1 s", "2 s")).step_keys()[0] == keys[0]
     assert Document(TEXT.replace("1 s", "2 s")).step_keys()[1] != keys[1]
+
+
+def test_a_gripper_without_named_states_opens_and_closes_by_its_width():
+    description = load_robot(RobotSpec(model="open_manipulator_x"))
+    assert gripper_steps(description) == {"open": "gripper: open", "close": "gripper: close"}
+    nameless = replace(description, named_states=())
+    assert gripper_steps(nameless) == {
+        "open": "gripper: {width: 0.08}",
+        "close": "gripper: {width: 0.022}",
+    }
 
 
 def test_numbers_are_written_as_a_person_would():

@@ -2,10 +2,14 @@
 
 import http.client
 import json
+import resource
+import signal
 
 import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
+
+from harness.core.errors import HarnessError, SpecError
 
 pytest.importorskip("viser")
 
@@ -148,6 +152,41 @@ def test_unsaved_work_survives_a_crash(serve):
     assert first.files.restored() is None
 
 
+def test_a_scenario_is_saved_where_it_was_and_elsewhere_only_if_it_still_compiles(tmp_path):
+    from harness.studio.files import StudioFiles
+    from harness.studio.studio import Studio
+
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "w.yaml").write_text("world: w\n")
+    text = "scenario: x\nrobot: open_manipulator_x\nworld: w.yaml\nsteps: [wait: 1 s]\n"
+    files = StudioFiles(tmp_path, tmp_path / "sub" / "x.scenario.yaml")
+    studio = Studio.opened(files, text, None, "")
+    assert studio.document_message()["file"] == "sub/x.scenario.yaml"
+    assert studio.do("save", {"name": "sub/x.scenario.yaml"})["file"] == "sub/x.scenario.yaml"
+    with pytest.raises(SpecError, match=r"w\.yaml"):
+        studio.do("save", {"name": "x.scenario.yaml"})
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["sub"]
+    assert files.path.read_text() == text
+
+
+def test_a_full_disk_leaves_the_file_as_it_was_and_no_half(tmp_path):
+    from harness.studio.files import StudioFiles
+
+    files = StudioFiles(tmp_path, tmp_path / "x.scenario.yaml")
+    files.save(files.path, "before")
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limit[1]))
+    try:
+        with pytest.raises(HarnessError, match=r"x.scenario.yaml' cannot be written: File too"):
+            files.save(files.path, "after" * 1000)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+        signal.signal(signal.SIGXFSZ, ignored)
+    assert [each.name for each in tmp_path.iterdir()] == ["x.scenario.yaml"]
+    assert files.path.read_text() == "before"
+
+
 def test_a_file_that_cannot_be_written_is_said_and_nothing_is_lost(serve):
     served = serve()
     (served.files.root / "taken.scenario.yaml").mkdir()
@@ -164,13 +203,42 @@ def test_a_file_that_cannot_be_written_is_said_and_nothing_is_lost(serve):
 
 
 def test_a_robot_of_the_command_line_may_be_anywhere(tmp_path):
-    from harness.core.errors import SpecError
     from harness.studio.document import Document
     from harness.studio.files import StudioFiles
 
     robot = tmp_path / "elsewhere" / "arm.urdf"
-    document = Document(f"robot: {{urdf: {robot}}}\n")
+    written = Document(f"robot: {{urdf: {robot}}}\n").root
     folder = tmp_path / "here"
-    StudioFiles(folder, folder / "x.scenario.yaml", [robot]).refuse_outside(document)
+    StudioFiles(folder, folder / "x.scenario.yaml", [robot]).refuse_outside(written)
     with pytest.raises(SpecError, match="is outside"):
-        StudioFiles(folder, folder / "x.scenario.yaml").refuse_outside(document)
+        StudioFiles(folder, folder / "x.scenario.yaml").refuse_outside(written)
+
+
+MESH = "{name: m, mesh: {file: '%s'}}"
+WAYS_OUT = {
+    "a mesh": f"objects: [{MESH % '../secret.stl'}]",
+    "a parameter": f"params: {{text: ../secret.stl}}\nobjects: [{MESH % '${text}'}]",
+    "two parts": f"params: {{a: ., b: ./secret.stl}}\nobjects: [{MESH % '${a}${b}'}]",
+    "a link of the file system": f"objects: [{MESH % 'link/secret.stl'}]",
+    "a world with a name": "world: {name: ../secret.yaml}",
+    "a world's mesh": "world: w.yaml",
+}
+
+
+@pytest.mark.parametrize("way", WAYS_OUT)
+def test_no_value_leads_out_of_the_folder(tmp_path, way):
+    from harness.studio.document import Document
+    from harness.studio.files import StudioFiles
+    from harness.studio.live_cell import LiveCell
+
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path)
+    (folder / "w.yaml").write_text(f"world: w\nobjects: [{MESH % '../secret.stl'}]\n")
+    (tmp_path / "secret.stl").write_text("solid x")
+    (tmp_path / "secret.yaml").write_text("world: secret\n")
+    files = StudioFiles(folder, folder / "x.scenario.yaml")
+    text = f"scenario: x\nrobot: open_manipulator_x\n{WAYS_OUT[way]}\nsteps: [wait: 1 s]\n"
+    with pytest.raises(SpecError, match="is outside"):
+        LiveCell(files, Document(text, str(files.path)))
+    assert LiveCell(files, Document(text.replace(WAYS_OUT[way], ""), str(files.path)))

@@ -7,6 +7,7 @@ from harness.core.errors import SpecError
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from harness.studio.document import Document
+from harness.studio.files import StudioFiles
 from harness.studio.judging import judged
 from harness.studio.live_cell import LiveCell
 
@@ -29,7 +30,8 @@ expect:
 
 @pytest.fixture
 def cell(tmp_path):
-    return LiveCell(tmp_path / "by_hand.scenario.yaml", Document(TEXT))
+    files = StudioFiles(tmp_path, tmp_path / "by_hand.scenario.yaml")
+    return LiveCell(files, Document(TEXT, str(files.path)))
 
 
 def full_state(cell):
@@ -41,8 +43,8 @@ def test_the_digest_of_the_studio_is_that_of_a_run_of_the_saved_file(cell):
     cell.idle(0.2)  # physics that goes on while a person thinks is no part of the run
     cell.go_to(3)
     found = judged(cell)
-    cell.path.write_text(cell.document.text)
-    result = run_case(RunRequest(cell.path))
+    cell.files.path.write_text(cell.document.text)
+    result = run_case(RunRequest(cell.files.path))
     assert result.outcome == found.outcome == "passed"
     assert found.digest == result.digest
     assert [each.margin for each in found.verdicts] == [each.margin for each in result.verdicts]
@@ -108,8 +110,8 @@ def test_a_recorded_step_is_in_the_text_and_was_executed(cell):
     assert text.splitlines()[10:12] == ["  - gripper: close", "  - wait: 50 ms"]
     assert text.startswith("# picked by hand")
     cell.go_to(4)
-    cell.path.write_text(text)
-    assert judged(cell).digest == run_case(RunRequest(cell.path)).digest
+    cell.files.path.write_text(text)
+    assert judged(cell).digest == run_case(RunRequest(cell.files.path)).digest
 
 
 def test_a_recorded_step_that_adds_an_object_repeats_those_before_it(cell):
@@ -126,8 +128,8 @@ def test_a_recorded_step_that_adds_an_object_repeats_those_before_it(cell):
     cell.step_back()
     assert len(full_state(cell)[0]) > len(before), "the physics has one more object"
     cell.go_to(4)
-    cell.path.write_text(text)
-    assert judged(cell).digest == run_case(RunRequest(cell.path)).digest
+    cell.files.path.write_text(text)
+    assert judged(cell).digest == run_case(RunRequest(cell.files.path)).digest
 
 
 def test_a_step_that_fails_is_not_recorded_and_changes_nothing(cell):

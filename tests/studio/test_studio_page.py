@@ -106,6 +106,18 @@ def test_a_slider_moves_the_joint(opened, served):
     opened.wait("Math.abs(parseFloat(document.querySelector('.joint output').innerText)) < 0.5")
 
 
+def test_an_overlap_is_shown_and_physics_waits_before_it_pushes_bodies_apart(opened, served):
+    size, xyz = [0.04, 0.04, 0.04], [0.2, 0, 0.01]
+    assert served.reply_to("add_object", name="sunk", kind="box", size=size, xyz=xyz) == {}
+    opened.wait_text("#overlaps", "At the start ground_plane and sunk overlap by 10.0 mm")
+    opened.wait("document.getElementById('play').innerText === 'Play'")
+    assert opened.page.inner_text("#clock") == "0.000 s"
+    assert served.studio.cell.object_poses()["sunk"].translation[2] == pytest.approx(0.01)
+    opened.page.click("#play")
+    opened.wait("document.getElementById('overlaps').hidden")
+    served.reply_to("delete_object", name="sunk")
+
+
 def test_a_value_beyond_the_limit_is_refused(opened):
     opened.page.fill('input[aria-label="joint1 number"]', "9")
     opened.page.press('input[aria-label="joint1 number"]', "Enter")
@@ -252,10 +264,13 @@ def test_a_breakpoint_stops_before_its_step(picked):
     opened, _ = picked
     opened.page.click("#reset")
     opened.wait_text("#status", "0 of 5 steps executed")
-    opened.page.evaluate("ace.edit('editor').gotoLine(10)")
+    opened.page.click(".ace_gutter-cell:has-text('10')")
+    opened.page.click("#run-breakpoint")
+    opened.wait_text("#status", "2 of 5 steps executed")
+    opened.page.evaluate("ace.edit('editor').gotoLine(11)")
     opened.page.keyboard.press("F9")
     opened.page.keyboard.press("F5")
-    opened.wait_text("#status", "2 of 5 steps executed")
+    opened.wait_text("#status", "3 of 5 steps executed")
     opened.page.keyboard.press("F5")
     opened.wait_text("#status", "5 of 5 steps executed")
 

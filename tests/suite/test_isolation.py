@@ -119,11 +119,11 @@ def test_a_process_that_leaves_without_a_result_is_an_error(server):
 
 def test_an_endless_native_call_ends_as_an_error_at_the_hard_cap(server):
     start = time.monotonic()
-    result = outcome(server, jobs.never_returns_from_native_code, hard_cap=0.5)
-    assert time.monotonic() - start < 10
+    result = outcome(server, jobs.never_returns_from_native_code, hard_cap=1.5)
+    assert time.monotonic() - start < 30
     assert result.outcome == "error"
     assert result.message.startswith(
-        "no end after 0.5 s of wall time during step 3/5: move_to a.scenario; stopped by"
+        "no end after 1.5 s of wall time during step 3/5: move_to a.scenario; stopped by"
     )
 
 

@@ -85,12 +85,12 @@ def test_samples_of_each_parametrised_case_share_a_group():
         ("randomize: {time: {uniform: [1 s, 2 cm]}}", 6, 19, "one unit"),
         ("randomize: {time: {uniform: [.inf, 1]}}", 6, 30, "finite"),
         ("randomize: {time: {uniform: [1, 2], choice: [1]}}", 6, 19, "exactly one of"),
-        ("randomize: {time: {normal: {mean: 1, std: 0}}}", 6, 28, "above 0"),
+        ("randomize: {time: {normal: {mean: 1, std: 0}}}", 6, 28, "more than 0"),
         ("randomize: {time: {normal: {mean: 1, std: 1, low: 9}}}", 6, 28, "too little"),
         ("randomize: {tim: {choice: [1]}}", 6, 13, "tim"),
         ("samples: 0", 6, 10, "1"),
         ("expect_rate: {at_least: 1.2}\nsamples: 3", 6, 25, "1"),
-        ("expect_rate: {at_least: 0.5}", 1, 1, "say how many"),
+        ("expect_rate: {at_least: 0.5}", 1, 1, "more than one run"),
     ],
 )
 def test_a_mistake_is_reported_at_its_place_and_leaves_one_case(

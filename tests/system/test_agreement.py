@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.engine.front_door import run
 from tests.running import run_case
 

@@ -13,7 +13,7 @@ from harness.core.resources import data_folder
 from harness.recording.film import decoded_film
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.plain import to_plain
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 FOLDER = data_folder("scenarios") / "cameras"

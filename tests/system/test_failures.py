@@ -8,7 +8,7 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.recording.explanation import STAGES, recorded_explanation
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.reporting.explanation import explanation_lines
 from harness.reporting.terminal import failure
 from harness.session.check import check_file

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.engine.front_door import problems, run
 from tests.running import run_case
 

@@ -1,7 +1,7 @@
 """A run reports what it allowed without a request."""
 
 from harness.core.resources import data_folder
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 PICK = data_folder("scenarios") / "lessons" / "04_ur_pick_by_friction.scenario.yaml"

@@ -8,7 +8,7 @@ import pytest
 
 from harness.cli.main import main
 from harness.core.resources import data_folder
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 LESSONS = data_folder("scenarios") / "lessons"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from harness.core.resources import data_folder
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from tests.running import run_case
 
 MOTIONS = sorted((data_folder("scenarios") / "motions").glob("*.scenario.yaml"))

@@ -10,7 +10,7 @@ from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.core.geometry import Box
 from harness.language.reading.load import parse_scenario
-from harness.recording.store import read_run
+from harness.recording.read_run import read_run
 from harness.robot.mesh_file import hull_points
 from harness.session.prepare import prepare
 from tests.running import run_case

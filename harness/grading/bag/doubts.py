@@ -12,10 +12,10 @@ from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
 from harness.grading.bag.joints import JointRows, joints_of_frames, rows_of_joint
-from harness.recording.run import LinkPlacement
+from harness.recording.robot_record import LinkPlacement
 from harness.robot.description import RobotDescription
 
-DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities"]
+DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities", "jumps", "once"]
 
 FEWEST_JUMPS = 3
 """Jumps there and back from which on a topic has two publishers; one is a wrong message."""
@@ -26,6 +26,9 @@ FASTEST_OBJECT = 5.0
 SLACK = {"revolute": 0.02, "prismatic": 0.002}
 """What noise and rounding may add [rad or m]."""
 OBJECT_SLACK = 0.02  # [m]
+FROM_REST = 20.0
+"""Acceleration of an object that rests at two messages and rests elsewhere at the next two
+[m/s^2]: twice that of a fall."""
 APART = {"revolute": 0.1, "prismatic": 0.01}
 """Difference between a joint and its frame in /tf that no delay of a message explains [rad or m]:
 20 ms at 5 rad/s or 0.5 m/s."""
@@ -67,10 +70,32 @@ def publisher_doubts(
             yield Doubt("publishers", f"{joint.name} {_two_values(first)}")
     for edges in (content.edges, content.objects):
         for (_, child), track in sorted(edges.items()):
-            first = _first_jump_of_track(track, timeline)
+            first = _first_jump(*_places(track, timeline), FASTEST_OBJECT, OBJECT_SLACK)
             if child in objects and first is not None:
                 yield Doubt("publishers", f"{child} {_two_values(first)}", (child,))
         yield from _doubts_about_parents(edges, objects)
+
+
+def jump_doubts(content: BagContent, timeline: Timeline, objects: set[str]) -> Iterator[Doubt]:
+    """Objects that are elsewhere from one message to the next, as exchanged ones are."""
+    for edges in (content.edges, content.objects):
+        for (_, child), track in sorted(edges.items()):
+            if child not in objects:
+                continue
+            times, places = _places(track, timeline)
+            steps, spans = np.linalg.norm(np.diff(places, axis=0), axis=1), np.diff(times)
+            around = np.concatenate([np.zeros(1), steps, np.zeros(1)])
+            at_rest = np.maximum(around[:-2], around[2:]) < 0.1 * steps
+            far = steps > OBJECT_SLACK + FASTEST_OBJECT * spans
+            far |= at_rest & (steps > OBJECT_SLACK + FROM_REST * spans**2 / 2)
+            if far.any():
+                first = int(np.argmax(far))
+                said = (
+                    f"{child} jumps by {1000 * steps[first]:.0f} mm at t={times[first + 1]:.3f} s"
+                )
+                yield Doubt(
+                    "jumps", f"{said}: objects were exchanged, or a program put it there", (child,)
+                )
 
 
 def _two_values(time: float) -> str:
@@ -80,10 +105,11 @@ def _two_values(time: float) -> str:
     )
 
 
-def _first_jump_of_track(track: RecordedTrack, timeline: Timeline) -> float | None:
+def _places(track: RecordedTrack, timeline: Timeline) -> tuple[FloatArray, FloatArray]:
+    """Times of the messages in their order [s], shape (N,), and places [m], shape (N, 3)."""
     seconds, is_judged = timeline.rows(track)
-    places = track.rows()[is_judged, :3]
-    return _first_jump(seconds[is_judged], places, FASTEST_OBJECT, OBJECT_SLACK)
+    order = np.argsort(seconds[is_judged], kind="stable")
+    return seconds[is_judged][order], track.rows()[is_judged, :3][order]
 
 
 def _first_jump(

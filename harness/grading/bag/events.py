@@ -10,7 +10,8 @@ import numpy as np
 from harness.core.types import BoolArray, FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent
-from harness.recording.run import AttachmentRecord, StepRecord, StepStatus
+from harness.recording.run import AttachmentRecord
+from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SavedResult
 
 RESOLUTION = 1e-6

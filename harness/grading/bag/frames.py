@@ -47,6 +47,11 @@ class Frames:
         """Whether the recording has a pose of a frame."""
         return frame in self._parents
 
+    def is_published_once(self, frame: str) -> bool:
+        """Whether a frame that may move has a single pose, which counts at all times."""
+        _, track = self._parents[frame]
+        return id(track) not in self._static and len(track.rows()) == 1
+
     def assumed_below(self, frame: str) -> str:
         """The frame without a parent that a frame's pose is in; empty where there is none."""
         passed: set[str] = set()

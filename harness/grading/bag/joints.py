@@ -12,7 +12,7 @@ from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, RecordedTrack, Tracks, joined_tracks
 from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
-from harness.recording.run import LinkPlacement
+from harness.recording.robot_record import LinkPlacement
 from harness.robot.description import RobotDescription
 
 

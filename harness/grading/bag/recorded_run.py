@@ -12,7 +12,13 @@ from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, BagTopics
-from harness.grading.bag.doubts import Doubt, publisher_doubts, tf_doubts, velocity_doubts
+from harness.grading.bag.doubts import (
+    Doubt,
+    jump_doubts,
+    publisher_doubts,
+    tf_doubts,
+    velocity_doubts,
+)
 from harness.grading.bag.events import (
     StepInterval,
     Timed,
@@ -33,14 +39,10 @@ from harness.grading.bag.joints import (
 from harness.grading.bag.message_files import bag_error
 from harness.grading.bag.reader import read_bag
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.run import (
-    Finding,
-    ObjectRecord,
-    RobotRecord,
-    Run,
-    Signals,
-    StepRecord,
-)
+from harness.recording.robot_record import RobotRecord
+from harness.recording.run import Finding, ObjectRecord, Run
+from harness.recording.signals import Signals
+from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
 NEVER_THERE = (
@@ -127,9 +129,12 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
     doubts = [
         *publisher_doubts(content, known.description, timeline, set(poses)),
-        *_frame_doubts(frames, list(poses)),
+        *_frame_doubts(frames, list(poses), {obj.name for obj in known.objects if obj.is_static}),
         *_step_doubts(events, steps),
     ]
+    twice = {name for doubt in doubts if doubt.kind == "publishers" for name in doubt.names}
+    if not _is_of_this_program(events):  # its steps may put objects somewhere
+        doubts += jump_doubts(content, timeline, set(poses) - twice)
     if content.joints:
         doubts += tf_doubts(content, placements, known.description, timeline, times, measured)
         if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
@@ -174,13 +179,24 @@ def _links_needed(known: Recorded, content: BagContent) -> set[str]:
     return {known.robot.tcp_link, *known.frames, *(carriers & robot)}
 
 
-def _frame_doubts(frames: Frames, objects: Sequence[str]) -> list[Doubt]:
+def _frame_doubts(frames: Frames, objects: Sequence[str], static: set[str]) -> list[Doubt]:
     names = {name: frames.assumed_below(name) for name in objects}
+    once = [name for name in objects if name not in static and frames.is_published_once(name)]
+    return [
+        *(
+            Doubt("once", f"{name} has one pose in all; it counts as its pose all along", (name,))
+            for name in once
+        ),
+        *_unknown_roots(frames, names),
+    ]
+
+
+def _unknown_roots(frames: Frames, names: Mapping[str, str]) -> list[Doubt]:
     return [
         Doubt(
             "frames",
             f"frame '{frame}' has no parent; it counts as the world",
-            tuple(name for name in objects if names[name] == frame),
+            tuple(name for name in names if names[name] == frame),
         )
         for frame in frames.assumed
     ]

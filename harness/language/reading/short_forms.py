@@ -8,7 +8,7 @@ is left out, so that pydantic goes on with the rest. Every value keeps its place
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
@@ -31,7 +31,7 @@ from harness.language.language import (
     UNTIL,
 )
 from harness.language.reading.names import UNTIL_USAGE, Words, take_apart, wrong_way_round
-from harness.language.scenario import RobotSpec
+from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, TAG, Step
 
 TURN = 6.283186  # [rad], rounded up
@@ -116,9 +116,11 @@ class _Shaper:
             else:
                 where = names.get("verb") or names.get("word") or ""
                 message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
-                hint = did_you_mean(key, inside, "keys") if inside else "it has no keys"
-                self.problems.append(entry.key.problem(message, hint))
                 near = nearest(key, inside)
+                place = "" if near else _place_of(key, {each: keys[each] for each in inside})
+                known = did_you_mean(key, inside, "keys") if inside else "it has no keys"
+                hint = "; ".join(filter(None, [place, known]))
+                self.problems.append(entry.key.problem(message, hint))
                 if near is not None and near not in item.value:  # go on as if it said so
                     shaped = self.field(entry.value, keys[near])
                     entries[near] = Entry(entry.key, shaped)
@@ -212,6 +214,24 @@ class _Shaper:
             self.problems.append(entry.key.problem(f"`{key}` is here twice", first))
         else:
             entries[key] = entry
+
+
+def _place_of(key: str, siblings: Mapping[str, FieldInfo]) -> str:
+    """Where a key can stand instead: inside one of its siblings, or in the file itself."""
+    homes = [
+        name
+        for name, field in siblings.items()
+        if any(key in keys_of(model) for model in _models_in(field.annotation))
+    ]
+    if len(homes) == 1:
+        return f"write `{homes[0]}: {{{key}: ...}}`"
+    return f"`{key}:` stands in column 1 of the file" if key in keys_of(Scenario) else ""
+
+
+def _models_in(annotation: Any) -> list[type[SpecModel]]:
+    """The models whose mapping a field may hold."""
+    kinds = [bare(each) for each in branches(bare(annotation)) or (bare(annotation),)]
+    return [kind for kind in kinds if is_model(kind)]
 
 
 def expanded(item: Located, model: type[SpecModel]) -> Located:

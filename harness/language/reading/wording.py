@@ -136,6 +136,10 @@ def _mapping(error: ErrorDetails, context: dict[str, Any], value: str) -> tuple[
     """A value in place of a mapping; the keys under which this value can stand."""
     message = f"is a mapping of keys and values, not {value}"
     name = context.get("class_name")
+    given: object = error["input"]
+    values = cast("list[object]", given) if isinstance(given, list) else []
+    if name is None and values and (first := _flow(values[0])):
+        return message, f"write a name before each value: `{{NAME: {first}, ...}}`"
     models = [model for model in _models(SpecModel) if model.__name__ == name]
     if len(models) != 1 or error["input"] is None:
         return message, ""

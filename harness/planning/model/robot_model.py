@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -36,7 +36,7 @@ class RobotModel:
 
     def __init__(self, description: RobotDescription) -> None:
         self.description = description
-        self.model = pin.buildModelFromXML(description.urdf)
+        self.model = _pinocchio_model(description.urdf)
         self.data = self.model.createData()
         joints = [
             self.model.joints[self.model.getJointId(name)] for name in description.joint_names
@@ -78,6 +78,12 @@ class RobotModel:
         """T_world_link at joint positions in description order."""
         pin.forwardKinematics(self.model, self.data, self.configuration(joint_positions))
         return se3_from_pin(pin.updateFramePlacement(self.model, self.data, self.frame_id(link)))
+
+
+@lru_cache(maxsize=4)
+def _pinocchio_model(urdf: str) -> pin.Model:
+    """The model of a URDF, made once and not changed."""
+    return pin.buildModelFromXML(urdf)
 
 
 class GroupSpace:

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from harness.recording.run import Run, Verdict
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 from harness.reporting.html import joint_groups as joints
 from harness.reporting.html import world_groups as world
 from harness.reporting.html.packing import Packer, pack, thin

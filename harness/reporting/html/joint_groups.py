@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.recording.run import GripperRecord, JointRecord, Run
+from harness.recording.robot_record import GripperRecord, JointRecord
+from harness.recording.run import Run
 from harness.reporting.html.plot_group import MOST_SERIES, Group, Limit
 
 

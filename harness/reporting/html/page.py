@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from html import escape
 from string import Template
 
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.reporting.html import bundle
 from harness.reporting.html.bundle import content_policy
 from harness.reporting.html.groups import pack_groups

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, Floats
 from harness.recording.explanation import recorded_explanation
 from harness.recording.link_poses import planned_tcp_poses, replayed_link_poses
-from harness.recording.run import Floats, Run, StepRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 from harness.reporting.html.packing import Packer
 
 TCP_POINTS = 1500

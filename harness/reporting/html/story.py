@@ -9,8 +9,11 @@ from typing import Any
 import numpy as np
 
 from harness.recording.plain import to_plain
-from harness.recording.run import JointRecord, Run, StepRecord, Verdict, is_nested
-from harness.recording.store import StoredRun
+from harness.recording.robot_record import JointRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord, is_nested
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict
 from harness.reporting.margins import allowance_used
 
 TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}

@@ -8,8 +8,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from harness.recording.run import Measure, StepRecord, Verdict
-from harness.recording.store import StoredRun
+from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Measure, Verdict
 from harness.reporting.html.story import depth_of, environment, ordered_steps
 from harness.reporting.margins import allowance_used
 from harness.reporting.terminal import verdict_line

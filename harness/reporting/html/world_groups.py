@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_angle
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, Pair
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.run import Pair, Run
+from harness.recording.run import Run
 from harness.reporting.html.plot_group import MOST_SERIES, Group
 
 

@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 
 from harness.recording.explanation import recorded_explanation
-from harness.recording.store import PAGE, StoredRun, blames_changes, read_run
+from harness.recording.read_run import read_run
+from harness.recording.stored_run import PAGE, StoredRun, blames_changes
 from harness.reporting.html.page import page_html
 from harness.reporting.html.summary import SummaryPicture
 

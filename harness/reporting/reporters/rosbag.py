@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.reporting.reporter import Reporter
 
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.recording.film import decoded_film
-from harness.recording.run import CaptureRecord, Run, VideoRecord
+from harness.recording.run import Run
+from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.reporting.rosbag.frames import optical_frames
 from harness.reporting.rosbag.messages import (
     CameraInfo,
@@ -32,16 +33,15 @@ def captures(run: Run) -> Iterator[Message]:
     frames = optical_frames(run)
     for capture in run.captures:
         camera = cameras[capture.camera]
-        topics, frame = camera_topics(camera.name), frames[camera.name]
-        yield Message(capture.time, topics.info, _info(camera, capture.time, frame))
+        topics, head = camera_topics(camera.name), header(capture.time, frames[camera.name])
+        yield Message(capture.time, topics.info, camera_info(camera, head))
         if "color" in capture.files:
             content = run.files[capture.files["color"]]
-            yield Message(
-                capture.time, topics.compressed, _compressed(content, camera, capture.time, frame)
-            )
-            yield Message(capture.time, topics.image, _raw(content, camera, capture.time, frame))
+            compressed = compressed_image(content, camera, head)
+            yield Message(capture.time, topics.compressed, compressed)
+            yield Message(capture.time, topics.image, _raw(content, camera, head))
         if "depth" in capture.files:
-            yield Message(capture.time, topics.depth, _depth(run, capture, frame))
+            yield Message(capture.time, topics.depth, _depth(run, capture, head))
 
 
 def video_frames(run: Run, video: VideoRecord, *, is_raw: bool = False) -> Iterator[Message]:
@@ -54,11 +54,11 @@ def video_frames(run: Run, video: VideoRecord, *, is_raw: bool = False) -> Itera
     topics, frame = camera_topics(camera.name), optical_frames(run)[camera.name]
     pictures = decoded_film(run.files[video.file])
     for time, picture in zip(video.times, pictures, strict=False):  # one that is cut off has less
-        content = _jpeg(picture, camera)
-        yield Message(time, topics.info, _info(camera, time, frame))
-        yield Message(time, topics.compressed, _compressed(content, camera, time, frame))
+        content, head = _jpeg(picture, camera), header(time, frame)
+        yield Message(time, topics.info, camera_info(camera, head))
+        yield Message(time, topics.compressed, compressed_image(content, camera, head))
         if is_raw:
-            yield Message(time, topics.image, _raw(content, camera, time, frame))
+            yield Message(time, topics.image, _raw(content, camera, head))
 
 
 def _jpeg(picture: np.ndarray[Any, Any], camera: Camera) -> bytes:
@@ -73,43 +73,44 @@ def _jpeg(picture: np.ndarray[Any, Any], camera: Camera) -> bytes:
     return content.tobytes()
 
 
-def _compressed(content: bytes, camera: Camera, time: float, frame: str) -> Any:
-    """With the format as compressed_image_transport writes it."""
+def compressed_image(content: bytes, camera: Camera, header: Any) -> Any:
+    """A CompressedImage with the format as compressed_image_transport writes it."""
     kind = MAGIC.get(content[:2], "png")
     source, stored = ("mono8", "mono8") if camera.is_grey else ("rgb8", "bgr8")
     data = np.frombuffer(content, np.uint8)
     said = f"{source}; {kind} compressed {stored}"
-    return CompressedImage(header=header(time, frame), format=said, data=data)
+    return CompressedImage(header=header, format=said, data=data)
 
 
-def _raw(content: bytes, camera: Camera, time: float, frame: str) -> Any:
+def _raw(content: bytes, camera: Camera, header: Any) -> Any:
     flag = cv2.IMREAD_GRAYSCALE if camera.is_grey else cv2.IMREAD_COLOR_RGB
     picture = cv2.imdecode(np.frombuffer(content, np.uint8), flag)
     if picture is None:
-        raise ValueError(f"a picture of {camera.name} at t={time:.3f} s cannot be decoded")
-    return _image(np.asarray(picture), "mono8" if camera.is_grey else "rgb8", time, frame)
+        raise ValueError(f"a picture of {camera.name} cannot be decoded")
+    return image(np.asarray(picture), header)
 
 
-def _depth(run: Run, capture: CaptureRecord, frame: str) -> Any:
+def _depth(run: Run, capture: CaptureRecord, header: Any) -> Any:
     with np.load(io.BytesIO(run.files[capture.files["depth"]]), allow_pickle=False) as archive:
-        depth = archive["depth"].astype("<f4")
-    return _image(depth, "32FC1", capture.time, frame)
+        return image(archive["depth"].astype("<f4"), header)
 
 
-def _image(picture: np.ndarray[Any, Any], encoding: str, time: float, frame: str) -> Any:
+def image(picture: np.ndarray[Any, Any], header: Any) -> Any:
+    """An Image: colour, shape (h, w, 3), grey levels, shape (h, w), or depth in float32 [m]."""
+    encoding = "32FC1" if picture.dtype == np.float32 else "rgb8" if picture.ndim == 3 else "mono8"
     data = np.ascontiguousarray(picture).view(np.uint8).reshape(-1)
     height, width = picture.shape[:2]
     return Image(
-        header=header(time, frame), height=height, width=width, encoding=encoding,
+        header=header, height=height, width=width, encoding=encoding,
         is_bigendian=0, step=data.size // height, data=data,
     )  # fmt: skip
 
 
-def _info(camera: Camera, time: float, frame: str) -> Any:
-    """A pinhole without distortion."""
+def camera_info(camera: Camera, header: Any) -> Any:
+    """The CameraInfo of a pinhole without distortion."""
     projection = np.hstack([camera.matrix, np.zeros((3, 1))])
     return CameraInfo(
-        header=header(time, frame), height=camera.height, width=camera.width,
+        header=header, height=camera.height, width=camera.width,
         distortion_model="plumb_bob", d=np.zeros(5), k=camera.matrix.reshape(-1),
         r=np.eye(3).reshape(-1), p=projection.reshape(-1), binning_x=0, binning_y=0,
         roi=RegionOfInterest(x_offset=0, y_offset=0, height=0, width=0, do_rectify=False),

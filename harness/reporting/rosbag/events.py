@@ -10,8 +10,10 @@ from pathlib import PurePath
 from typing import Any
 
 from harness.recording.plain import to_plain
-from harness.recording.run import Run, StepRecord, Verdict
-from harness.recording.store import StoredRun
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict
 from harness.reporting.rosbag.messages import Log, String, stamp
 from harness.reporting.rosbag.samples import Message
 from harness.reporting.rosbag.topics import EVENTS, ROSOUT

@@ -9,7 +9,8 @@ import numpy as np
 
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.recording.run import Run, StepRecord
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD
 from harness.reporting.rosbag.messages import (
     NOTHING,

@@ -14,7 +14,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 
 from harness.core.errors import HarnessError
 from harness.recording.run import Run
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.reporting.rosbag import cameras, joints
 from harness.reporting.rosbag.events import event_messages
 from harness.reporting.rosbag.foxglove import foxglove_layout

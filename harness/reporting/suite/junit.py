@@ -11,14 +11,15 @@ import re
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from tempfile import SpooledTemporaryFile
 from typing import IO
 from xml.sax.saxutils import escape
 
 from harness.core.printable import printable, printable_lines
-from harness.recording.run import Outcome, Verdict
+from harness.recording.run import Outcome
+from harness.recording.verdict import Verdict
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
@@ -115,7 +116,6 @@ def _tag(name: str, attributes: Mapping[str, str], inner: str | None = None) -> 
     return f"<{name}{said} />" if inner is None else f"<{name}{said}>{inner}</{name}>"
 
 
-@lru_cache(maxsize=1000)
 def _escaped(text: str) -> str:
     """Text in one line as XML, in an attribute too."""
     return _xml(printable(text))

@@ -10,7 +10,7 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
-from harness.recording.run import Verdict
+from harness.recording.verdict import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.bundle import content_policy
 from harness.reporting.margins import allowance_used

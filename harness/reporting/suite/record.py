@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from harness.recording.run import Outcome, Verdict
+from harness.recording.run import Outcome
+from harness.recording.verdict import Verdict
 from harness.reporting.json_text import compact_json, json_text
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult

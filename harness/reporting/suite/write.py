@@ -18,6 +18,8 @@ from harness.reporting.suite.record import SuiteCase, SuiteRecord, results_json
 PAGE = "index.html"
 JUNIT = "junit.xml"
 RESULTS = "results.json"
+BUFFER = 2**20
+"""Bytes of a file that are written at once."""
 
 History = Mapping[Key, Sequence[float | None]]
 
@@ -106,7 +108,7 @@ def replaced(file: Path) -> Generator[IO[bytes]]:
     """A new file, which gets its name when everything is written."""
     part = file.with_name(f".{file.name}.{os.getpid()}")
     try:
-        with part.open("wb") as stream:
+        with part.open("wb", buffering=BUFFER) as stream:
             yield stream
         part.replace(file)
     finally:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,11 +13,11 @@ from harness.core.types import FloatArray
 from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import RobotDescription
-from harness.ros.control.controller import Outcome, Window
+from harness.ros.control.controller import Command, Controller, Outcome, Window
 from harness.ros.control.goals import Code, Defaults, GoalRefused
-from harness.ros.control.gripper import GripperController
+from harness.ros.control.gripper import GripperMotion
 from harness.ros.control.spline import Rows
-from harness.ros.control.trajectory import Finished, Tracking, TrajectoryController
+from harness.ros.control.trajectory import follow_result, start_trajectory
 
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator
@@ -51,35 +52,36 @@ def controller_names(description: RobotDescription, names: Ros2Names) -> Control
     return ControllerNames(arm if group else (), names.gripper_controller or default)
 
 
-AnyController = TrajectoryController | GripperController
-
-
 class ExternalCell:
-    """Controllers on the servos; time moves in `tick` alone, commands come between ticks."""
+    """Controllers on the servos; time moves in `tick` alone, commands come between ticks.
+
+    Attributes:
+        commands: Everything that was received.
+        outcomes: What ended since it was last taken; in order.
+        trajectories: The controllers that follow trajectories, by each of their names.
+        gripper: The controller of GripperCommand; None without a gripper.
+    """
 
     def __init__(self, servos: MujocoSimulator, names: ControllerNames) -> None:
         self._servos = servos
-        self.names = names
         self.description = description = servos.description
         self.commands: list[CommandRecord] = []
         self.outcomes: list[Outcome] = []
-        """What ended since it was last taken; in order."""
         self._rows = max(1, round(TICK / servos.timestep))
-        tracking = description.tracking
-        self.trajectories: dict[str, TrajectoryController] = {}
+        self.trajectories: dict[str, Controller] = {}
+        self.gripper: Controller | None = None
         if names.arm:
-            joints = description.groups[description.arm_group].joint_names
-            arm = TrajectoryController(
-                names.arm[0],
-                [description.joint_by_name[name] for name in joints],
-                Defaults(tracking.trajectory, tracking.goal, tracking.goal_time),
-            )
+            group, tracking = description.groups[description.arm_group], description.tracking
+            joints = [description.joint_by_name[name] for name in group.joint_names]
+            bounds = Defaults(tracking.trajectory, tracking.goal, tracking.goal_time)
+            arm = Controller(names.arm[0], joints, partial(start_trajectory, joints, bounds))
             self.trajectories.update(dict.fromkeys(names.arm, arm))
-        self.gripper: GripperController | None = None
         if names.gripper and description.gripper is not None:
-            self.gripper = GripperController(names.gripper, description, servos.timestep)
-            finger = TrajectoryController(names.gripper, self.gripper.joints, Defaults())
-            self.trajectories[names.gripper] = finger
+            name, joints = names.gripper, [description.joint_by_name[description.gripper.joint]]
+            start = partial(GripperMotion, description, servos.timestep)
+            self.gripper = Controller(name, joints, start)
+            finger = partial(start_trajectory, joints, Defaults())
+            self.trajectories[name] = Controller(name, joints, finger)
         controllers = (*dict.fromkeys(self.trajectories.values()), self.gripper)
         self._controllers = tuple(each for each in controllers if each is not None)
         place, actuated = description.joint_index, servos.actuated_joints
@@ -99,7 +101,7 @@ class ExternalCell:
     @property
     def is_idle(self) -> bool:
         """Whether no controller follows anything."""
-        return not any(controller.is_active for controller in self._controllers)
+        return all(controller.motion is None for controller in self._controllers)
 
     def hold_commanded(self, positions: FloatArray) -> None:
         """Start from set points in description order, such as a planned motion left them."""
@@ -132,41 +134,36 @@ class ExternalCell:
         )
         self.commands.append(record)
         if code != Code.SUCCESSFUL and kind == "trajectory" and goal:
-            self.outcomes.append(Finished(goal, None, code, answer))
+            self.outcomes.append(Outcome(goal, False, follow_result(code, answer)))
         return record
 
-    def _begin(
-        self, controller: AnyController | None, goal: str, content: Mapping[str, Any]
-    ) -> None:
+    def _begin(self, controller: Controller | None, goal: str, content: Mapping[str, Any]) -> None:
         """Let a controller follow a goal; what its joints followed before ends."""
         if controller is None:
             raise GoalRefused(Code.INVALID_GOAL, "the robot has no gripper")
-        previous = controller.goal
         start = self._last[:, :, controller.columns]
         measured = self._servos.joint_positions()[controller.places]
-        controller.begin(goal, content, self.time, start, measured)
-        self._interrupt(controller, previous, Code.INVALID_GOAL, PREEMPTED)
+        motion = controller.start(Command(goal, content, self.time, start, measured))
         for other in self._controllers:
-            if other is not controller and other.joint_names == controller.joint_names:
-                self._interrupt(other, other.stop(), Code.INVALID_GOAL, PREEMPTED)
-        gripper = self.gripper
-        if gripper is not None and controller.joint_names == gripper.joint_names:
-            effort = gripper.effort if controller is gripper else gripper.gripper.grip_effort
-            self._servos.limit_gripper(effort)
+            if other.joint_names == controller.joint_names:
+                self._interrupt(other, Code.INVALID_GOAL, PREEMPTED)
+        controller.motion, gripper = motion, self.description.gripper
+        if gripper is not None and controller.joint_names == (gripper.joint,):
+            self._servos.limit_gripper(motion.effort or gripper.grip_effort)
 
-    def _interrupt(self, controller: AnyController, goal: str, code: Code, reason: str) -> None:
-        """Report that a goal ended before it was reached; goals from a topic have no result."""
-        if goal:
+    def _interrupt(self, controller: Controller, code: Code, reason: str) -> None:
+        """End what a controller follows before it is reached."""
+        motion, controller.motion = controller.motion, None
+        if motion is not None and motion.goal:  # what came from a topic has no result
             now = self._window(controller, np.array([self.time]), self._last)
-            self.outcomes.append(controller.interrupted(goal, code, reason, now))
+            self.outcomes.append(motion.interrupted(code, reason, now))
 
     def _cancel(self, goal: str) -> None:
         """Hold the joints of a goal where they are."""
         for controller in self._controllers:
             if controller.goal == goal:
-                controller.stop()
                 self._hold(controller, self._servos.joint_positions()[controller.places])
-                self._interrupt(controller, goal, Code.SUCCESSFUL, "canceled")
+                self._interrupt(controller, Code.SUCCESSFUL, "canceled")
                 return
         raise GoalRefused(Code.INVALID_GOAL, "no such goal is active")
 
@@ -181,38 +178,38 @@ class ExternalCell:
         servos.stream(np.concatenate([self._last, rows], axis=1))
         self._last = rows[:, -1:]
         for controller in self._controllers:
-            if not controller.is_active:
+            motion = controller.motion
+            if motion is None:
                 continue
-            ended = controller.judge(self._window(controller, times, rows))
+            ended = motion.judge(self._window(controller, times, rows))
             if ended is not None:
+                controller.motion = None
                 if ended.hold is not None:
                     self._hold(controller, ended.hold)
                 self.outcomes.append(ended)
 
-    def tracking(self) -> list[Tracking]:
-        """Desired and actual motion of every goal that is followed."""
-        found: list[Tracking] = []
-        for controller in dict.fromkeys(self.trajectories.values()):
-            if controller.goal:
-                now = self._window(controller, np.array([self.time]), self._last)
-                desired, actual = now.desired[:2, -1], now.measured[:, -1]
-                found.append(Tracking(controller.goal, self.time, desired, actual))
-        return found
+    def tracking(self) -> list[tuple[Controller, Window]]:
+        """Desired and measured motion of every trajectory with a goal, at this moment."""
+        return [
+            (each, self._window(each, np.array([self.time]), self._last))
+            for each in dict.fromkeys(self.trajectories.values())
+            if each.goal
+        ]
 
     def finish(self) -> None:
         """End what is still active; the arm holds its last set point."""
         for controller in self._controllers:
-            self._interrupt(controller, controller.stop(), Code.INVALID_GOAL, STOPPED)
+            self._interrupt(controller, Code.INVALID_GOAL, STOPPED)
         self._servos.command(self._last[0, -1])
 
-    def _window(self, controller: AnyController, times: FloatArray, rows: Rows) -> Window:
+    def _window(self, controller: Controller, times: FloatArray, rows: Rows) -> Window:
         """Desired and measured motion of a controller's joints at the last samples."""
         measured = np.array(self._servos.measured(self._servos.sample_count - len(times)))
         columns, places = controller.columns, controller.places
         efforts = self._servos.efforts()[columns]
         return Window(times, rows[:, :, columns], measured[:, :, places], efforts)
 
-    def _hold(self, controller: AnyController, positions: FloatArray) -> None:
+    def _hold(self, controller: Controller, positions: FloatArray) -> None:
         """Command the joints of a controller to rest at some positions."""
         self._last = self._last.copy()
         self._last[:, -1, controller.columns] = 0.0
@@ -223,7 +220,6 @@ class ExternalCell:
         whole = np.zeros((3, len(times), self._last.shape[2]))
         whole[0] = self._last[0, -1]
         for controller in self._controllers:
-            rows = controller.set_points(times)
-            if rows is not None:
-                whole[:, :, controller.columns] = rows
+            if controller.motion is not None:
+                whole[:, :, controller.columns] = controller.motion.at(times)
         return whole

@@ -1,11 +1,10 @@
-"""What the controllers of a cell have in common: a goal, set points, and how the goal ends."""
+"""What the controllers of a cell have in common: they follow one motion, until it ends."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Protocol
 
 from harness.core.types import FloatArray, IntArray
 from harness.robot.description import Joint
@@ -19,10 +18,14 @@ class Outcome:
 
     Attributes:
         goal: The identifier of the goal; empty for one from a topic.
+        has_succeeded: Whether the goal was reached.
+        result: The result message of its action.
         hold: Positions that are commanded from now on; None where the last set point is kept.
     """
 
     goal: str
+    has_succeeded: bool
+    result: Any
     hold: FloatArray | None = None
 
 
@@ -43,72 +46,71 @@ class Window:
     efforts: FloatArray
 
 
-class Followed(Protocol):
-    """What a controller follows."""
+@dataclass(frozen=True, eq=False)
+class Command:
+    """What a controller is requested to follow, and from where.
 
-    @property
-    def goal(self) -> str: ...
+    Attributes:
+        goal: The identifier of the goal; empty for one from a topic.
+        content: The values of its message.
+        now: The present simulated time [s].
+        start: The last set point, shape (3, 1, dof).
+        measured: The measured positions, shape (dof,).
+    """
+
+    goal: str
+    content: Mapping[str, Any]
+    now: float
+    start: Rows
+    measured: FloatArray
 
 
-F = TypeVar("F", bound=Followed)
+class Motion(Protocol):
+    """What a controller follows.
+
+    Attributes:
+        goal: The identifier of its goal; empty for one from a topic.
+        effort: The effort limit that it sets [N or N m]; 0 for the gripper's own.
+    """
+
+    goal: str
+    effort: float
+
+    def at(self, times: FloatArray) -> Rows:
+        """Set points at some times [s]."""
+        ...
+
+    def judge(self, window: Window) -> Outcome | None:
+        """How the goal ended; None while it goes on."""
+        ...
+
+    def interrupted(self, code: Code, reason: str, window: Window) -> Outcome:
+        """How the goal ends when a newer goal or a request to cancel ends it."""
+        ...
 
 
-class Controller(ABC, Generic[F]):
-    """Moves some joints towards one goal at a time; a new goal replaces the old one.
+class Controller:
+    """Moves some joints along one motion at a time.
 
     Attributes:
         columns: Where its joints are among the actuated ones.
         places: Where they are in the description.
+        start: Makes the motion of a command.
+            GoalRefused is raised where it cannot be followed.
+        motion: What it follows; None while it follows nothing.
     """
 
     columns: IntArray
     places: IntArray
 
-    def __init__(self, name: str, joints: Sequence[Joint]) -> None:
-        self._active: F | None = None
-        self.name, self.joints = name, tuple(joints)
+    def __init__(
+        self, name: str, joints: Sequence[Joint], start: Callable[[Command], Motion]
+    ) -> None:
+        self.name, self.start = name, start
         self.joint_names = tuple(joint.name for joint in joints)
-
-    @property
-    def is_active(self) -> bool:
-        """Whether it follows something."""
-        return self._active is not None
+        self.motion: Motion | None = None
 
     @property
     def goal(self) -> str:
         """The identifier of the goal that it follows; empty for none, or one from a topic."""
-        return self._active.goal if self._active else ""
-
-    def stop(self) -> str:
-        """Follow nothing any more; the identifier of the goal that was followed."""
-        goal, self._active = self.goal, None
-        return goal
-
-    @abstractmethod
-    def begin(
-        self, goal: str, content: Mapping[str, Any], now: float, start: Rows, measured: FloatArray
-    ) -> None:
-        """Follow a goal from now on.
-
-        Args:
-            goal: Its identifier; empty for one from a topic.
-            content: The values of its message.
-            now: The present simulated time [s].
-            start: The last set point, shape (3, 1, dof).
-            measured: The measured positions, shape (dof,).
-
-        Raises:
-            GoalRefused: It cannot be followed; what was followed goes on.
-        """
-
-    @abstractmethod
-    def set_points(self, times: FloatArray) -> Rows | None:
-        """Set points at some times; None where it follows nothing."""
-
-    @abstractmethod
-    def judge(self, window: Window) -> Outcome | None:
-        """How the goal ended; None while it goes on."""
-
-    @abstractmethod
-    def interrupted(self, goal: str, code: Code, reason: str, window: Window) -> Outcome:
-        """How a goal ends that something else ended: a newer goal, or a request to cancel."""
+        return self.motion.goal if self.motion else ""

@@ -15,6 +15,9 @@ from harness.robot.description import Joint
 LIMIT_SLACK = 1e-4
 """Excess of a position limit that is rounding of a decimal number [rad or m]."""
 
+LARGEST = 1e6
+"""Values from which on a position, a velocity or an acceleration is no motion of an arm."""
+
 LONGEST_NAME = 40
 """Characters of a name in a message."""
 
@@ -137,12 +140,12 @@ def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
             Code.INVALID_JOINTS,
             f"this controller has no joint {', '.join(unknown[:6])}; it has {', '.join(names)}",
         )
+    if len(set(given)) < len(given):
+        raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names a joint twice")
     if missing:
         raise GoalRefused(
             Code.INVALID_JOINTS, f"the trajectory lacks {', '.join(map(repr, missing))}"
         )
-    if len(set(given)) < len(given):
-        raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names a joint twice")
     return [list(given).index(name) for name in names]
 
 
@@ -175,9 +178,11 @@ def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> 
             f"point {wrong} has {len(points[wrong][key])} {key}, and there are {len(order)} joints",
         )
     values = np.array([point[key] for point in points], dtype=float)[:, order]
-    if not np.isfinite(values).all():
-        place = int(np.flatnonzero(~np.isfinite(values).all(axis=1))[0])
-        raise GoalRefused(Code.INVALID_GOAL, f"point {place} has {key} that are not finite numbers")
+    is_bad = ~(np.abs(values) < LARGEST).all(axis=1)  # which is also true of NaN
+    if is_bad.any():
+        place = int(np.argmax(is_bad))
+        said = f"point {place} has {key} that are not numbers below {LARGEST:g}"
+        raise GoalRefused(Code.INVALID_GOAL, said)
     return values
 
 

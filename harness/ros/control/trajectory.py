@@ -1,106 +1,79 @@
-"""A joint trajectory controller: follows one trajectory at a time within tolerances."""
+"""Following a joint trajectory within tolerances, as joint_trajectory_controller does."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from harness.core.types import FloatArray
 from harness.robot.description import Joint
-from harness.ros.control.controller import Controller, Outcome, Window
+from harness.ros.control.controller import Command, Outcome, Window
 from harness.ros.control.goals import Code, Defaults, TrajectoryGoal, checked_goal
 from harness.ros.control.spline import Rows, Spline
+from harness.ros.interfaces import FOLLOW, message
 
 TIME_SLACK = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Finished(Outcome):
-    """How a trajectory ended.
+def start_trajectory(
+    joints: Sequence[Joint], defaults: Defaults, command: Command
+) -> TrajectoryMotion:
+    """The motion of a trajectory from the last set point on.
 
-    Attributes:
-        code: The error code of its result.
-        message: What happened, with numbers; empty for success.
+    Raises:
+        GoalRefused: It cannot be followed.
     """
+    goal = checked_goal(command.content, joints, command.now, defaults)
+    return TrajectoryMotion(command.goal, joints, goal, _spline(goal, command.now, command.start))
 
-    code: Code = Code.SUCCESSFUL
-    message: str = ""
 
-
-@dataclass(frozen=True, eq=False)
-class Tracking:
-    """Desired and actual motion at one moment, for feedback.
-
-    Attributes:
-        goal: The identifier of the goal.
-        time: The simulated time [s].
-        desired: The desired positions and velocities, shape (2, dof).
-        actual: The measured ones, shape (2, dof).
-    """
-
-    goal: str
-    time: float
-    desired: FloatArray
-    actual: FloatArray
+def follow_result(code: Code, reason: str) -> object:
+    """The result message of FollowJointTrajectory."""
+    return message(f"{FOLLOW}_Result", error_code=int(code), error_string=reason)
 
 
 @dataclass(eq=False)
-class _Active:
+class TrajectoryMotion:
+    """A trajectory that is followed within the tolerances of its goal."""
+
     goal: str
+    joints: Sequence[Joint]
+    checked: TrajectoryGoal
     spline: Spline
-    path: FloatArray
-    target: FloatArray
-    deadline: float
+    effort: float = 0.0
 
+    def at(self, times: FloatArray) -> Rows:
+        return self.spline.at(times)
 
-class TrajectoryController(Controller[_Active]):
-    """Follows trajectories of its joints within tolerances."""
-
-    def __init__(self, name: str, joints: Sequence[Joint], defaults: Defaults) -> None:
-        super().__init__(name, joints)
-        self._defaults = defaults
-
-    def begin(
-        self, goal: str, content: Mapping[str, Any], now: float, start: Rows, measured: FloatArray
-    ) -> None:
-        del measured  # it starts from the last set point
-        checked = checked_goal(content, self.joints, now, self._defaults)
-        spline = _spline(checked, now, start)
-        deadline = spline.end + checked.goal_time
-        self._active = _Active(goal, spline, checked.path, checked.goal, deadline)
-
-    def set_points(self, times: FloatArray) -> Rows | None:
-        return None if self._active is None else self._active.spline.at(times)
-
-    def judge(self, window: Window) -> Finished | None:
+    def judge(self, window: Window) -> Outcome | None:
         """Compare the motion with its tolerances."""
-        active, times = self._active, window.times
-        if active is None:
-            return None
         errors = np.abs(window.desired[:2] - window.measured)
-        last, now, end = window.measured[0, -1], float(times[-1]), active.spline.end
+        times, last = window.times, window.measured[0, -1]
+        now, end = float(times[-1]), self.spline.end
         moving = times < end - TIME_SLACK
-        beyond = self._first_beyond(errors[:, moving], active.path)
+        beyond = self._first_beyond(errors[:, moving], self.checked.path)
         if beyond:
             row, text = beyond
             said = f"path tolerance: {text} at t={times[row]:.3f} s"
-            return Finished(self.stop(), last, Code.PATH_TOLERANCE_VIOLATED, said)
+            return self._ended(Code.PATH_TOLERANCE_VIOLATED, said, last)
         if now < end - TIME_SLACK:
             return None
-        missed = self._first_beyond(errors[:, -1:], active.target)
+        missed = self._first_beyond(errors[:, -1:], self.checked.goal)
         if missed is None:
-            return Finished(self.stop())
-        if now < active.deadline:
+            return self._ended(Code.SUCCESSFUL)
+        if now < end + self.checked.goal_time:
             return None
         said = f"goal tolerance: {missed[1]} {now - end:.3f} s after the end"
-        return Finished(self.stop(), last, Code.GOAL_TOLERANCE_VIOLATED, said)
+        return self._ended(Code.GOAL_TOLERANCE_VIOLATED, said, last)
 
-    def interrupted(self, goal: str, code: Code, reason: str, window: Window) -> Finished:
+    def interrupted(self, code: Code, reason: str, window: Window) -> Outcome:
         del window
-        return Finished(goal, None, code, reason)
+        return self._ended(code, reason)
+
+    def _ended(self, code: Code, reason: str = "", hold: FloatArray | None = None) -> Outcome:
+        return Outcome(self.goal, code == Code.SUCCESSFUL, follow_result(code, reason), hold)
 
     def _first_beyond(self, errors: FloatArray, bounds: FloatArray) -> tuple[int, str] | None:
         """The first sample with an error beyond a bound, and what is said of its worst joint."""

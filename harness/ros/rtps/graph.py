@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from harness.ros.graph import Reply
+from harness.ros.graph import OnMessage, Publisher, Reply
 from harness.ros.interfaces import CANCEL, decoded, encoded, message, prepare
-from harness.ros.names import Names
+from harness.ros.names import Use
 from harness.ros.rtps import wire
 from harness.ros.rtps.discovery import Endpoint, Qos
 from harness.ros.rtps.participant import Participant
@@ -37,35 +37,19 @@ def dds_type(kind: str) -> str:
 
 
 @dataclass
-class _Publisher:
-    writer: Writer
-    kind: str
-
-    @property
-    def subscribers(self) -> int:
-        return len(self.writer.matched)
-
-    def publish(self, message: Any) -> None:
-        if self.writer.matched or self.writer.endpoint.qos.is_latched:
-            self.writer.write(encoded(message, self.kind))
-
-
-@dataclass
 class _Client:
     """A client of a service; `waiting` has what takes each response, by the request's identity."""
 
     writer: Writer
     reader: Reader
     kind: str
-    waiting: dict[bytes, Callable[[Any], None]] = field(
-        default_factory=dict[bytes, Callable[[Any], None]]
-    )
+    waiting: dict[bytes, OnMessage] = field(default_factory=dict[bytes, OnMessage])
 
     @property
     def is_ready(self) -> bool:
         return bool(self.writer.matched) and bool(self.reader.matched)
 
-    def call(self, request: Any, on_response: Callable[[Any], None]) -> None:
+    def call(self, request: Any, on_response: OnMessage) -> None:
         number, guid = self.writer.last + 1, self.reader.endpoint.guid
         identity = guid + wire.sequence_number(number)
         if any(server.startswith(CYCLONE) for server in self.writer.matched):
@@ -78,17 +62,7 @@ class RtpsGraph:
     """A node in a domain, with a participant of its own."""
 
     def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
-        """Join a domain.
-
-        Args:
-            domain: The number of the ROS domain.
-            node: The name of the node.
-            is_local: Whether it talks to this machine alone.
-
-        Raises:
-            SpecError: There is no such domain.
-            NetworkError: There is no free port.
-        """
+        """Join a domain, as `open_graph` says."""
         self.participant = Participant(domain, name=node, is_local=is_local)
         self._node = node
         latched = Qos(is_latched=True, depth=1)
@@ -97,14 +71,15 @@ class RtpsGraph:
 
     def advertise(
         self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
-    ) -> _Publisher:
-        return _Publisher(self._writer(f"rt{topic}", kind, Qos(True, latched, depth)), kind)
+    ) -> Publisher:
+        made = self._writer(f"rt{topic}", kind, Qos(True, latched, depth))
+        return Publisher(kind, made.write, lambda: len(made.matched), latched)
 
     def subscribe(
         self,
         topic: str,
         kind: str,
-        on_message: Callable[[Any], None],
+        on_message: OnMessage,
         *,
         latched: bool = False,
         reliable: bool = True,
@@ -135,8 +110,8 @@ class RtpsGraph:
         client = _Client(writer, reader, kind)
         return client
 
-    def names(self) -> tuple[Names, Names]:
-        return _names(self.participant.own_endpoints()), _names(self.participant.known_endpoints())
+    def uses(self) -> tuple[list[Use], list[Use]]:
+        return _uses(self.participant.own_endpoints()), _uses(self.participant.known_endpoints())
 
     def spin(self, until: float) -> None:
         self.participant.spin(until)
@@ -182,10 +157,19 @@ class RtpsGraph:
         self._discovery.write(encoded(info, INFO))
 
 
-def _names(endpoints: Iterable[Endpoint]) -> Names:
-    """Names in ROS of what is written and what is read in DDS; services are left out."""
-    topics = [(e.is_writer, e.topic[2:]) for e in endpoints if e.topic.startswith("rt/")]
-    return Names.of(*([name for kind, name in topics if kind is which] for which in (True, False)))
+def _uses(endpoints: Iterable[Endpoint]) -> list[Use]:
+    """What endpoints are in ROS; services are left out."""
+    return [
+        Use(
+            each.topic[2:],
+            each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_"),
+            each.is_writer,
+            each.qos.is_reliable,
+            each.qos.is_latched,
+        )
+        for each in endpoints
+        if each.topic.startswith("rt/")
+    ]
 
 
 # -- what identifies a request: a reader and a number in 24 bytes, or 16 bytes of Cyclone DDS -----

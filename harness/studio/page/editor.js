@@ -42,9 +42,8 @@ export function start() {
   });
   editor.on("mousemove", hover);
   editor.on("guttermousedown", (event) => {
-    const row = event.getDocumentPosition().row;
-    if (!event.domEvent.altKey) return;
-    toggleBreakpoint(row);
+    if (!event.domEvent.target.classList.contains("ace_gutter-cell")) return;
+    toggleBreakpoint(event.getDocumentPosition().row);
     event.stop();
   });
   return editor;
@@ -55,11 +54,11 @@ export function toggleBreakpoint(row) {
   else session.setBreakpoint(row);
 }
 
-/** The first line of the next step with a breakpoint that is not the very next one; 0 without one. */
-export function nextBreakpoint() {
+/** The line before the next step with a breakpoint that is not the very next one; the last line without one. */
+export function breakpoint() {
   const marked = Object.keys(session.getBreakpoints()).filter((row) => session.getBreakpoints()[row]).map((row) => Number(row) + 1);
   const steps = marked.map((line) => stepLines.filter((first) => first <= line).length - 1).filter((step) => step > done);
-  return steps.length ? stepLines[Math.min(...steps)] : 0;
+  return steps.length ? stepLines[Math.min(...steps)] - 1 : session.getLength();
 }
 
 async function check() {

@@ -40,7 +40,7 @@ on("robot", (message) => {
   options($("camera"), robot.cameras);
   $("camera-box").hidden = !robot.cameras.length;
   showGripper();
-  for (const overlap of robot.overlaps) log("warning", `At the start ${overlap}: they will be pushed apart.`);
+  $("overlaps").replaceChildren(...robot.overlaps.map((overlap) => element("div", {}, `At the start ${overlap}: Play, and every motion, lets them be pushed apart.`)));
 });
 
 function showJoints() {
@@ -64,7 +64,7 @@ function showGripper() {
   if (!robot.gripper) return box.replaceChildren("This robot has no gripper.");
   const width = element("input", { type: "number", id: "width", min: 0, max: robot.gripper.widest, step: 0.001, value: robot.gripper.widest.toFixed(3) });
   box.replaceChildren(
-    ...robot.gripper.states.map((name) => element("button", { onclick: () => run(`gripper: ${name}`) }, `${name}`)),
+    ...Object.entries(robot.gripper.steps).map(([word, step]) => element("button", { onclick: () => run(step) }, word)),
     element("label", {}, " width [m] ", width), element("button", { onclick: () => run(`gripper: {width: ${Number(width.value)}}`) }, "Go"),
     element("output", { id: "gap" }));
 }
@@ -72,6 +72,8 @@ function showGripper() {
 on("state", (message) => {
   state = message;
   $("clock").textContent = `${message.time.toFixed(3)} s`;
+  $("overlaps").hidden = message.time > 0;
+  $("record").checked = message.is_recording;
   $("play").textContent = message.is_playing ? "Pause" : "Play";
   $("play").setAttribute("aria-pressed", message.is_playing);
   document.body.classList.toggle("busy", Boolean(message.busy));
@@ -140,7 +142,7 @@ on("connected", () => document.body.classList.remove("lost"));
 // -- what is done ---------------------------------------------------------------------------
 
 async function run(step) {
-  const reply = await act("execute", { step, record: $("record").checked });
+  const reply = await act("execute", { step });
   if (!reply.error) log("passed", reply.step);
   return reply;
 }
@@ -168,10 +170,11 @@ click("advance", () => act("advance", { seconds: 0.01 }));
 click("reset", () => act("reset"));
 click("stop", () => act("stop"));
 click("plan", async () => showPlan(await act("plan", goal())));
-click("execute", async () => showPlan(await act("execute", { ...goal(), record: $("record").checked })));
+click("execute", async () => showPlan(await act("execute", goal())));
 click("record-joints", async () => showPlan(await act("execute", { here: true, record: true })));
 click("run-all", () => act("run", { until: "end" }));
 click("run-line", () => act("run", { until: "line", line: editor.line() }));
+click("run-breakpoint", () => act("run", { until: "line", line: editor.breakpoint() }));
 click("run-next", () => act("run", { until: "next" }));
 click("back", () => act("back"));
 click("undo", () => act("undo"));
@@ -185,6 +188,7 @@ $("camera").addEventListener("change", look);
 on("camera", (message) => { $("camera-image").src = `data:image/jpeg;base64,${message.image}`; });
 $("speed").addEventListener("change", () => act("speed", { value: Number($("speed").value) }));
 $("follow").addEventListener("change", () => act("follow", { on: $("follow").checked }));
+$("record").addEventListener("change", () => act("recording", { on: $("record").checked }));
 $("share").addEventListener("change", () => act("share", { value: Number($("share").value) }));
 $("verb").addEventListener("change", () => { $("interim-label").hidden = $("verb").value !== "circ"; });
 
@@ -235,18 +239,12 @@ document.addEventListener("keydown", (event) => {
   if (event.ctrlKey && event.key === "s") { event.preventDefault(); return save(); }
   if (event.key === "F10") { event.preventDefault(); return act(event.shiftKey ? "back" : "run", { until: "next" }); }
   if (event.key === "F9") { event.preventDefault(); return editor.toggleBreakpoint(editor.line() - 1); }
-  if (event.key === "F5" && event.shiftKey === false) {
-    event.preventDefault();
-    const at = editor.nextBreakpoint();
-    return act("run", at ? { until: "line", line: at - 1 } : { until: "end" });
-  }
+  if (event.key === "F5" && !event.shiftKey) { event.preventDefault(); return $("run-breakpoint").click(); }
   const isTyping = event.target.matches?.("input, textarea, select, .ace_text-input");
   if (event.key === "Escape" && !event.target.matches?.(".ace_text-input")) return act("stop");
   if (isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
-  const gripper = robot?.gripper?.states ?? [];
-  const state = (words) => gripper.find((name) => words.includes(name));
-  if (event.key === "o" && state(["open"])) run("gripper: open");
-  if (event.key === "p" && state(["closed", "close"])) run(`gripper: ${state(["closed", "close"])}`);
+  if (event.key === "o" && robot?.gripper) run(robot.gripper.steps.open);
+  if (event.key === "p" && robot?.gripper) run(robot.gripper.steps.close);
   if (event.key === " " && !event.target.matches?.("button, summary")) { event.preventDefault(); $("play").click(); }
 });
 

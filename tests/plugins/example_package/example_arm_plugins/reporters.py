@@ -3,7 +3,7 @@
 import csv
 from pathlib import Path
 
-from harness.recording.store import StoredRun
+from harness.recording.stored_run import StoredRun
 from harness.reporting.reporter import Reporter
 
 

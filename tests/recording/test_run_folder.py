@@ -23,10 +23,15 @@ from harness.expectations.static import Static
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.explanation import recorded_explanation
+from harness.recording.older_runs import FORMAT
 from harness.recording.plain import to_plain
-from harness.recording.run import CaptureRecord, Finding, MeshRecord, VideoRecord
+from harness.recording.read_run import read_run
+from harness.recording.robot_record import MeshRecord
+from harness.recording.run import Finding
+from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.recording.step_results import SavedResult
-from harness.recording.store import FORMAT, StoredRun, read_run, write_run
+from harness.recording.stored_run import StoredRun
+from harness.recording.write_run import write_run
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
 
 EXPECTED = [

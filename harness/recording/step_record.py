@@ -1,0 +1,58 @@
+"""What became of one step: its times, its motion and its failure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from harness.core.details import Details
+from harness.core.trajectory import JointTrajectory
+
+StepStatus = Literal["passed", "failed", "expected error", "not reached"]
+
+
+@dataclass(frozen=True)
+class StepRecord:
+    """One executed (or not executed) step.
+
+    Attributes:
+        id: The file's `id`, else its path (`steps[3]`, `steps[3].lift`).
+        path: Place in the expanded file; the step's seed is made from it.
+        verb: The verb: `move_to`, `lin`, ...
+        summary: One line for a person: `move_to mogi_home`.
+        line: The line in the scenario file, from 1; 0 if unknown.
+        error_code: MoveIt error name of its failure, expected or not; empty when it succeeded.
+        expected_error: What the file expects; empty when success is expected.
+        start_time: The simulated time at its start [s].
+        end_time: The simulated time at its end [s].
+        start_index: First sample of the step.
+        end_index: One past its last sample.
+        trajectory: The commanded trajectory; None for steps without a motion.
+        planner: Statistics: planner_id, checks, attempts, path lengths ...
+        explanation: Plain data: IK solutions and what became of them, blocking pairs, nearest pose.
+        result: What the step reports; `harness.recording.step_results` has the common parts.
+    """
+
+    id: str
+    path: str
+    verb: str
+    summary: str
+    line: int
+    status: StepStatus
+    start_time: float = 0.0
+    end_time: float = 0.0
+    start_index: int = 0
+    end_index: int = 0
+    error_code: str = ""
+    expected_error: str = ""
+    message: str = ""
+    trajectory: JointTrajectory | None = None
+    planner: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    explanation: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    result: Details = field(default_factory=Details)
+
+
+def is_nested(inner: str, outer: str) -> bool:
+    """Whether the step at one path is nested in the step at another."""
+    return inner.startswith((f"{outer}.", f"{outer}["))

@@ -1,0 +1,226 @@
+"""The rules of the scenes: what each says, with which limits, and where it must not fire."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+EXPECTATIONS = "expectations.md"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule, and the scenes that show it.
+
+    Attributes:
+        title: What it is about.
+        text: Definition, quantities and limits, with their reasons; links to what says more.
+        fires: Scenes of the page that it refutes, warns of or withholds points for.
+        silent: Scenes in which it must not fire.
+    """
+
+    title: str
+    text: str
+    fires: tuple[str, ...]
+    silent: tuple[str, ...]
+
+
+RULES = (
+    Rule(
+        "Excused contact has a bound",
+        "A contact that gripping, carrying or putting down excuses is a [collision]"
+        f"({EXPECTATIONS}#collision) where its mean force over 50 ms exceeds twice the weight and"
+        " the grip, plus 1 N, or where the object is dragged by 2 cm along one contact. 50 ms are"
+        " longer than any blow; an object is accelerated with at most gravity's; 1 N is a position"
+        " error of a tenth of a millimetre; points of contact wander less than 2 cm while an object"
+        " tilts and leaves.",
+        (
+            "held box pressed onto a hidden plate",
+            "gripped box rammed into what it stands on",
+            "held box dragged along a rug",
+            "box dragged bit by bit",
+            "welded box that no finger touches hits a beam",
+        ),
+        ("box put down as usual", "box gripped twice where it stands"),
+    ),
+    Rule(
+        "Held is not struck",
+        f"[`lifted`]({EXPECTATIONS}#lifted) and [`grasped`]({EXPECTATIONS}#grasped) require 0.1 s"
+        " of hold, the hand's share of the weight (half, friction included), at most 5 mm and"
+        " 0.1 rad of motion in the hand, and that its motion raised the object. A blow lasts a few"
+        " milliseconds, and what flies past at 0.5 m/s is 5 cm further after 0.1 s; with less than"
+        " half of its weight carried an object falls.",
+        (
+            "ball shot up through the half-open hand",
+            "ball thrown up that lands on the fingers",
+            "ball cradled on two half-open fingers",
+            "plank across both fingers",
+            "box raised between the fingers by a block below it",
+            "cube nudged up without gravity",
+        ),
+        ("box lifted with a jerk", "ball gripped above its middle"),
+    ),
+    Rule(
+        "Shapes decide, pictures do not",
+        f"[`in`]({EXPECTATIONS}#in), [`placed`]({EXPECTATIONS}#placed), distances and widths are"
+        " those of collision shapes. Where `visuals` reach further, or less far, by 5 mm and a"
+        " tenth of the object's extent, a finding says so: a smaller difference shows the shape.",
+        ("ball next to a tray that is shown larger", "post that is shown thinner than it is"),
+        ("ball shown as a balloon",),
+    ),
+    Rule(
+        "Pairs that the physics leaves out are measured",
+        "Links whose contact the SRDF excludes and that are apart with every joint at zero are a"
+        " finding where they overlap by more than 1 mm, and with `count_allowed` a"
+        f" [collision]({EXPECTATIONS}#collision): convex hulls are not exact to less.",
+        (
+            "arm folded into its base",
+            "hand folded through the upper arm",
+            "lower arm through the base",
+        ),
+        ("links that overlap at their joints",),
+    ),
+    Rule(
+        "What observed nothing does not pass",
+        "Each verdict counts the samples, pairs and premises that it observed. With none it is `not"
+        " observable` or `not reached`; with few, or where a change was already there, it carries a"
+        f" [warning]({EXPECTATIONS}#expectations) that `--strict` turns into a failure. An object"
+        " stands where it stood up to 5 mm: further than the physics settles it.",
+        (
+            "object that only the planner knows",
+            "object that comes after the step it is judged over",
+            "premise that never holds",
+            "until that comes at its first sample",
+            "lift before the step that it is expected of",
+            "object that stands where it stood",
+            "fixture that rises with the box on it",
+            "step that takes no time",
+        ),
+        ("object that a push put there",),
+    ),
+    Rule(
+        "A variation varies something",
+        "`parametrize`, `randomize` and `--set` take names that something reads, and at least one"
+        " value: anything else is an error of the file, with exit code 2. Samples with equal"
+        " digests are one and the same run, of which two or more show no rate. A suite says how"
+        " many files it found, collected and ran.",
+        (
+            "grid over a parameter that nothing reads",
+            "random parameter that nothing reads",
+            "grid without values",
+        ),
+        ("grid over a parameter that a step reads",),
+    ),
+    Rule(
+        "Nothing is known in a gap",
+        "Between two messages further apart than ten periods of their topic (0.1 s at least, 1.5 s"
+        " at most) nothing is interpolated, and a verdict that the gap could change is `not"
+        " observable`: a burst of lost messages is shorter, and a topic at 1 Hz has no gaps. Points"
+        " for what several publishers, /tf, frames, clocks, jumps, single poses or chosen steps"
+        " make [doubtful](../guides/grading.md#points) are withheld.",
+        (
+            "hole of 0.6 s in the joint states",
+            "hole of 2 s in the poses of the box",
+            "clock that jumps an hour ahead",
+            "joint states that fall silent",
+            "two publishers of the box",
+            "/tf that contradicts the joint states",
+            "steps that the student chose",
+            "boxes exchanged on the way",
+            "box that was seen once",
+        ),
+        (
+            "four lost messages",
+            "/tf that is 20 ms late",
+            "velocities that come 40 ms late",
+            "box that slides 8 cm",
+        ),
+    ),
+    Rule(
+        "A window does not cut a definition short",
+        f"[`static`]({EXPECTATIONS}#static) and `placed` look 50 ms back, beyond the start of the"
+        " step; where less was recorded of an object they are `not reached`. At the turning point"
+        " of a throw an object is slower than 5 mm/s for 1 ms.",
+        ("turning point of a throw", "let go in the air", "can that rolls through the tray"),
+        ("box that stands still during a step of 2 ms", "can that stays in the tray"),
+    ),
+    Rule(
+        "Distances between samples are bounded",
+        f"A [clearance]({EXPECTATIONS}#clearance) is measured wherever the motion of the two bodies"
+        " could make it smaller by more than 2 mm until the next sample, at interpolated positions"
+        " too. Bodies at rest are measured every 5 ms, and 2 mm is the stated error.",
+        (
+            "ball that passes the gripper between two samples",
+            "ball that passes the gripper at 100 m/s",
+        ),
+        ("slow ball that passes the gripper at a distance",),
+    ),
+    Rule(
+        "A grasp is between the fingers",
+        f"Two sides [press]({EXPECTATIONS}#grasped) from directions more than 90 degrees apart, at"
+        " places as far from each other as the object is thick, and close: two contacts with"
+        " coefficients of friction of at most 1 cannot balance each other otherwise.",
+        (
+            "closed tips on a larger box",
+            "closed tips against the front of a crate",
+            "box leans against the gripper, which grasps nothing",
+            "box pinched between links of the arm",
+        ),
+        ("ball gripped above its middle", "ball shown as a balloon"),
+    ),
+    Rule(
+        "Names and units mean one thing",
+        "No object is called `robot`, `gripper`, `any`, `tcp`, `world` or like a link or a joint. A"
+        " number with a unit of another dimension is an error; so is one beyond every value that"
+        " the quantity has, such as 5 rad of lean.",
+        (
+            "object called `any`",
+            "object called like a link",
+            "length for a joint that turns",
+            "degrees without a unit",
+            "tolerance of 5 rad",
+        ),
+        ("angles and lengths where they belong",),
+    ),
+    Rule(
+        "A run that was written over is called so",
+        "`harness judge` and `harness compare` compute the digest of signals, trajectories and"
+        " verdicts again, and the checksum of run.json and the resolved scenario, and say which of"
+        " them differs. They judge what is there; runs of different robots are compared by name.",
+        (
+            "verdict turned round",
+            "recorded positions written over",
+            "digest written over as well",
+        ),
+        ("folder that was moved", "run of another robot"),
+    ),
+    Rule(
+        "What is not checked is said",
+        "`contact may be missed` is a warning where an object moves between two samples by more"
+        " than both least widths: it is before the other at one and past it at the next. An inertia"
+        " beyond that of the whole mass at the far end of the shapes is a note. The"
+        " [list below](#what-the-verdicts-do-not-claim) has the rest.",
+        (
+            "ball that passes through a plate between two samples",
+            "ball at 200 m/s through a cube",
+            "rod that seems to rest",
+        ),
+        ("ball that misses the plate at 5 m/s", "rod that falls"),
+    ),
+    Rule(
+        "The environment decides nothing",
+        "Files are UTF-8 whatever the locale, the terminal gets what its encoding has, and a"
+        " graphics library is looked for when there is a picture to draw.",
+        (
+            "ASCII alone",
+            "locale that is not installed",
+            "graphics library that is missing",
+        ),
+        ("environment as it is",),
+    ),
+)
+
+
+def rule_row(rule: Rule) -> str:
+    """A rule's line of the table."""
+    fires, silent = ("<br>".join(titles) for titles in (rule.fires, rule.silent))
+    return f"| **{rule.title}.** {rule.text} | {fires} | {silent} |"
