@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
+from harness.reporting.rosbag.frames import optical_frames
 from harness.robot.description import RobotDescription
 from harness.ros.graph import Graph
 from harness.ros.interfaces import header
@@ -32,8 +32,8 @@ Drawn = tuple[np.ndarray, bytes]
 class _Topics:
     """What one camera publishes, named as the course's Gazebo does."""
 
-    def __init__(self, graph: Graph, camera: Camera) -> None:
-        base, self.camera = f"/{camera.name}", camera
+    def __init__(self, graph: Graph, camera: Camera, frame: str) -> None:
+        base, self.camera, self._frame = f"/{camera.name}", camera, frame
         self._raw = graph.advertise(f"{base}/image", IMAGE, depth=1)
         self._compressed = graph.advertise(f"{base}/image/compressed", COMPRESSED, depth=1)
         names = f"{base}/camera_info", f"{base}/image/camera_info"
@@ -46,18 +46,15 @@ class _Topics:
 
     def publish_info(self, time: float) -> None:
         if any(info.subscribers for info in self._infos):
-            content = camera_info(self.camera, self._header(time))
+            content = camera_info(self.camera, header(time, self._frame))
             for info in self._infos:
                 info.publish(content)
 
     def publish(self, time: float, drawn: Drawn) -> None:
         picture, jpeg = drawn
-        self._raw.publish(image(picture, self._header(time)))
-        self._compressed.publish(compressed_image(jpeg, self.camera, self._header(time)))
-
-    def _header(self, time: float) -> Any:
-        frame = self.camera.optical_frame_id or f"{self.camera.name}_optical_frame"
-        return header(time, frame)
+        head = header(time, self._frame)
+        self._raw.publish(image(picture, head))
+        self._compressed.publish(compressed_image(jpeg, self.camera, head))
 
 
 class CameraTopics:
@@ -65,7 +62,8 @@ class CameraTopics:
 
     def __init__(self, graph: Graph, program: Program) -> None:
         cameras = tuple(program.cameras.values())
-        self._topics = [_Topics(graph, camera) for camera in cameras]
+        frames = optical_frames(cameras, [each.name for each in program.all_objects()])
+        self._topics = [_Topics(graph, camera, frames[camera.name]) for camera in cameras]
         self._scene = cameras, program.description, program.all_objects(), program.seed
         self._painter: tuple[BaseProcess, Connection] | None = None
         self._pending: tuple[_Topics, float] | None = None

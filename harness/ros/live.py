@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
+from harness.reporting.rosbag.frames import camera_edges
 from harness.ros.camera_topics import CameraTopics
 from harness.ros.graph import Graph
 from harness.ros.handover import HandOver
@@ -78,7 +79,10 @@ class LiveControl(HandOver):
         self.names: tuple[str, ...] = ()
         self._graph, self._request = graph, request
         self._pace = Pace(request.factor)
-        self._states = StateTopics(graph, self.robot)
+        program = prepared.program
+        objects = [each.name for each in program.all_objects()]
+        cameras = camera_edges(tuple(program.cameras.values()), self.robot, objects)
+        self._states = StateTopics(graph, self.robot, cameras)
         self._wiring = Wiring(graph, self.cell, self._note)
         self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
+from collections.abc import Iterable
 
 from harness.core.types import FloatArray
 from harness.recording.link_poses import placement_poses
 from harness.recording.robot_record import RobotRecord
-from harness.reporting.rosbag.messages import TransformStamped, transform
+from harness.reporting.rosbag.frames import Edge, robot_edges
 from harness.ros.graph import Graph
-from harness.ros.interfaces import header, message, stamp
+from harness.ros.interfaces import message, stamp
 
 TF = "tf2_msgs/msg/TFMessage"
 TF_EVERY = 2
@@ -21,7 +19,12 @@ TF_EVERY = 2
 class StateTopics:
     """Publishes the state of the robot after every tick."""
 
-    def __init__(self, graph: Graph, robot: RobotRecord) -> None:
+    def __init__(self, graph: Graph, robot: RobotRecord, cameras: Iterable[Edge]) -> None:
+        """Advertise the topics, and publish what does not change.
+
+        Args:
+            cameras: Where the optical frames of the cameras hang.
+        """
         names = [joint.name for joint in robot.joints]
         self._moved = [placement for placement in robot.placements if placement.joint]
         self._columns = [names.index(placement.joint) for placement in self._moved]
@@ -30,9 +33,8 @@ class StateTopics:
         self._state = message("sensor_msgs/msg/JointState", name=names)
         self._tf = graph.advertise("/tf", TF, depth=100)
         static = graph.advertise("/tf_static", TF, latched=True, depth=1)
-        fixed = [placement for placement in robot.placements if not placement.joint]
-        transforms = [_stamped(0.0, each.parent, each.link, np.array(each.pose)) for each in fixed]
-        static.publish(message(TF, transforms=transforms))
+        edges = [*robot_edges(robot), *cameras]
+        static.publish(message(TF, transforms=[edge.stamped(0.0) for edge in edges]))
         description = graph.advertise(
             "/robot_description", "std_msgs/msg/String", latched=True, depth=1
         )
@@ -62,14 +64,7 @@ class StateTopics:
 
     def _publish_frames(self, time: float, positions: FloatArray) -> None:
         transforms = [
-            _stamped(time, each.parent, each.link, placement_poses(each, position)[0])
+            Edge(each.parent, each.link, placement_poses(each, position)[0]).stamped(time)
             for each, position in zip(self._moved, positions[self._columns, None], strict=True)
         ]
         self._tf.publish(message(TF, transforms=transforms))
-
-
-def _stamped(time: float, parent: str, child: str, pose: FloatArray) -> Any:
-    """A pose (xyz, quaternion wxyz) as a TransformStamped."""
-    return TransformStamped(
-        header=header(time, parent), child_frame_id=child, transform=transform(pose.tolist())
-    )

@@ -106,7 +106,8 @@ def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
 
 
 def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
-    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+    camera = "cameras: [{name: top, pose: {xyz: [0.5, 0, 0.5]}, look_at: [0, 0, 0]}]"
+    with bridge(scenario(tmp_path, HOLD, camera)) as (node, _):
         node.ready()
         late = Node(node.graph.participant.domain)
         description = late.listen("/robot_description", "std_msgs/msg/String", latched=True)
@@ -117,4 +118,6 @@ def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
     assert description[0].data.startswith("<?xml")
     edges = {each.child_frame_id: each.header.frame_id for each in moving[0].transforms}
     assert edges["link2"] == "link1"
-    assert static[0].transforms[0].header.frame_id == "world"
+    fixed = {each.child_frame_id: each.header.frame_id for each in static[0].transforms}
+    assert fixed["top_optical_frame"] == "world"
+    assert {fixed[name] for name in fixed} <= {"world", *fixed, *edges}, "one tree"

@@ -30,7 +30,7 @@ MAGIC = {b"\xff\xd8": "jpeg", b"\x89P": "png"}
 def captures(run: Run) -> Iterator[Message]:
     """The pictures that `capture` steps took: compressed as they are, raw, and their depth."""
     cameras = {camera.name: camera for camera in run.cameras}
-    frames = optical_frames(run)
+    frames = optical_frames(run.cameras, run.signals.object_poses)
     for capture in run.captures:
         camera = cameras[capture.camera]
         topics, head = camera_topics(camera.name), header(capture.time, frames[camera.name])
@@ -51,7 +51,8 @@ def video_frames(run: Run, video: VideoRecord, *, is_raw: bool = False) -> Itera
         is_raw: Publish the frames uncompressed too.
     """
     camera = next(camera for camera in run.cameras if camera.name == video.camera)
-    topics, frame = camera_topics(camera.name), optical_frames(run)[camera.name]
+    topics = camera_topics(camera.name)
+    frame = optical_frames(run.cameras, run.signals.object_poses)[camera.name]
     pictures = decoded_film(run.files[video.file])
     for time, picture in zip(video.times, pictures, strict=False):  # one that is cut off has less
         content, head = _jpeg(picture, camera), header(time, frame)

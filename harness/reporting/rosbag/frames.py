@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from harness.core.camera import Camera
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.link_poses import placement_poses
+from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Run
 from harness.reporting.rosbag.messages import TFMessage, TransformStamped, header, transform
 from harness.reporting.rosbag.samples import Message, blocks
@@ -31,21 +33,44 @@ class Edge:
     child: str
     pose: FloatArray
 
+    def stamped(self, time: float) -> Any:
+        """The edge as a geometry_msgs/TransformStamped."""
+        return _stamped(time, self.parent, self.child, self.pose.tolist())
+
 
 def static_edges(run: Run) -> list[Edge]:
     """The root in the world, fixed joints, objects that stayed where they were, cameras."""
-    placements = run.robot.placements
-    edges: list[Edge] = []
+    objects = run.signals.object_poses
+    return [
+        *robot_edges(run.robot),
+        *(Edge(WORLD, name, poses[0]) for name, poses in sorted(objects.items()) if _stays(poses)),
+        *camera_edges(run.cameras, run.robot, objects),
+    ]
+
+
+def robot_edges(robot: RobotRecord) -> list[Edge]:
+    """The root in the world, and the fixed joints."""
+    placements = robot.placements
     children = {placement.link for placement in placements}
     roots = dict.fromkeys(p.parent for p in placements if p.parent not in children)
-    edges += [Edge(WORLD, root, IDENTITY) for root in roots if root != WORLD]
-    edges += [Edge(p.parent, p.link, np.array(p.pose)) for p in placements if not p.joint]
-    edges += [
-        Edge(WORLD, name, poses[0])
-        for name, poses in sorted(run.signals.object_poses.items())
-        if _stays(poses)
+    return [
+        *(Edge(WORLD, root, IDENTITY) for root in roots if root != WORLD),
+        *(Edge(p.parent, p.link, np.array(p.pose)) for p in placements if not p.joint),
     ]
-    return [*edges, *_cameras(run, {WORLD, *run.robot.link_names, *run.signals.object_poses})]
+
+
+def camera_edges(
+    cameras: Sequence[Camera], robot: RobotRecord, objects: Collection[str]
+) -> Iterator[Edge]:
+    """Optical frames that are no link of the robot already.
+
+    Args:
+        objects: The names of objects, which have frames too.
+    """
+    known = {WORLD, *robot.link_names, *objects}
+    for camera, frame in zip(cameras, optical_frames(cameras, objects).values(), strict=True):
+        if frame not in known and camera.frame in known:
+            yield Edge(camera.frame, frame, camera.optical_pose.as_vector())
 
 
 def moving_objects(run: Run) -> list[str]:
@@ -53,11 +78,11 @@ def moving_objects(run: Run) -> list[str]:
     return [name for name, poses in sorted(run.signals.object_poses.items()) if not _stays(poses)]
 
 
-def optical_frames(run: Run) -> dict[str, str]:
+def optical_frames(cameras: Sequence[Camera], objects: Collection[str]) -> dict[str, str]:
     """The optical frame of each camera, by the camera's name; no two share one."""
-    taken = {WORLD, *run.signals.object_poses}
+    taken = {WORLD, *objects}
     frames: dict[str, str] = {}
-    for camera in run.cameras:
+    for camera in cameras:
         frame = camera.optical_frame_id or f"{camera.name}_optical_frame"
         frames[camera.name] = frame if frame not in taken else f"{camera.name}/{frame}"
         taken.add(frames[camera.name])
@@ -67,9 +92,7 @@ def optical_frames(run: Run) -> dict[str, str]:
 def static_tf(run: Run) -> Message:
     """All that never moves, once."""
     start = float(run.signals.times[0])
-    transforms = [
-        _stamped(start, edge.parent, edge.child, edge.pose.tolist()) for edge in static_edges(run)
-    ]
+    transforms = [edge.stamped(start) for edge in static_edges(run)]
     return Message(start, TF_STATIC, TFMessage(transforms=transforms))
 
 
@@ -95,13 +118,6 @@ def moving_tf(run: Run, indices: IntArray) -> Iterator[Message]:
                 if there[number, place]
             ]
             yield Message(time, TF, TFMessage(transforms=transforms))
-
-
-def _cameras(run: Run, known: set[str]) -> Iterator[Edge]:
-    """Optical frames that are no link of the robot already."""
-    for camera, frame in zip(run.cameras, optical_frames(run).values(), strict=True):
-        if frame not in known and camera.frame in known:
-            yield Edge(camera.frame, frame, camera.optical_pose.as_vector())
 
 
 def _stays(poses: FloatArray) -> bool:
