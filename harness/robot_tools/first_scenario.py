@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,8 @@ from harness.session.run_request import RunRequest
 TEMPLATES = Path(__file__).parent / "templates"
 MOST_RUNS = 3
 """Scenarios of a kind that are run; each takes seconds."""
+PICK_SECONDS = 40.0
+"""Wall time after which no further pick is tried, so that a motion is found within a minute [s]."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,7 @@ def first_scenario(
         SpecError: A file of the robot has mistakes.
         RobotError: The robot is not known, or its files cannot be used.
     """
+    end = time.monotonic() + PICK_SECONDS
     description = load_source(source)
     candidates = Candidates(description)
     words = {
@@ -71,7 +75,7 @@ def first_scenario(
             if not trouble:
                 return FirstScenario(text, no_pick="" if template == "pick" else no_pick)
             runs += has_run
-            if runs == MOST_RUNS:
+            if runs == MOST_RUNS or (template == "pick" and time.monotonic() > end):
                 break
         if template == "pick" and tried:
             no_pick = f"none of {tried} picks passes; the last: {trouble}"

@@ -6,6 +6,8 @@ import pytest
 
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
+from harness.robot_tools import first_scenario
+from harness.robot_tools.first_scenario import _trouble
 from tests.robot.arm_files import SRDF, URDF, write_arm
 from tests.robot.test_own_gripper import JAW, SIX, SIX_SRDF, SIX_WITH_JAW
 
@@ -73,6 +75,19 @@ def test_a_hand_that_does_not_close_is_named(capsys, folder):
     write_arm(folder, SIX_WITH_JAW.replace(JAW, still))
     assert new("arm.urdf").steps[0].verb == "move_to"
     assert "no pick: 'gripper' is not used as a gripper: the gap" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("seconds", "tried"), [(0, "none of 1 picks"), (600, "none of 9 picks")])
+def test_no_pick_is_tried_after_its_time(tmp_path, capsys, monkeypatch, seconds, tried):
+    def trouble(text, candidate):
+        return ("out of reach", False) if "pick:" in text else _trouble(text, candidate)
+
+    monkeypatch.setattr(first_scenario, "_trouble", trouble)
+    monkeypatch.setattr(first_scenario, "PICK_SECONDS", seconds)
+    assert main(["new", str(tmp_path / "a.scenario.yaml"), "--robot", "open_manipulator_x"]) == 0
+    said = capsys.readouterr().out
+    assert f"no pick: {tried} passes; the last: out of reach" in said
+    assert "it was run once and passed" in said
 
 
 @pytest.mark.parametrize("start", ["1.23456789", "-1.23456789"])
