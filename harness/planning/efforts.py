@@ -13,7 +13,7 @@ import pinocchio as pin
 from harness.core.details import Details
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
-from harness.planning.collision.scene import Payload
+from harness.planning.collision.collision_model import Payload
 from harness.planning.model.robot_model import GroupSpace, pin_from_se3
 from harness.recording.motion_failures import OverloadFailure, TrajectoryFailure
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from harness.cell.cell import Belief, Presence
 from harness.engine.execute import ProgramExecution
-from harness.planning.collision.scene import CoalScene, SceneState
+from harness.planning.collision.collision_model import SceneState
+from harness.planning.collision.scene import CoalScene
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_record import StepRecord
 from harness.simulation.snapshot import PhysicsState

@@ -13,9 +13,9 @@ import pinocchio as pin
 
 from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
+from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.compiled import Certify
 from harness.planning.collision.convex_tree import ConvexTree, concatenate, shapes_tree
-from harness.planning.collision.scene import Body, CollisionModel
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
 

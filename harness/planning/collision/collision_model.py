@@ -1,0 +1,149 @@
+"""What a scene holds: objects, payloads, and the bodies and pairs that are checked."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+
+from harness.core.geometry import Shape
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray, IntArray
+from harness.planning.model.robot_model import RobotModel
+
+
+@dataclass(frozen=True, eq=False)
+class SceneObject:
+    """An object of the scene.
+
+    Attributes:
+        shapes: The shapes on the body.
+        pose: T_world_object, or T_link_object while attached.
+        link: What it is attached to; None while it stands in the world.
+        touch_links: Links it may touch while attached.
+        mass: The mass of the object [kg].
+        center_of_mass: The centre of mass in the object [m], shape (3,).
+        inertia: The inertia about the centre of mass, object axes, shape (3, 3).
+    """
+
+    shapes: tuple[Shape, ...]
+    pose: SE3
+    link: str | None = None
+    touch_links: frozenset[str] = frozenset()
+    mass: float = 0.0
+    center_of_mass: FloatArray = field(default_factory=lambda: np.zeros(3))
+    inertia: FloatArray = field(default_factory=lambda: np.zeros((3, 3)))
+
+
+@dataclass(frozen=True, eq=False)
+class SceneState:
+    """A snapshot of a planning scene.
+
+    Attributes:
+        objects: The objects by name.
+        allowed: Pairs that the scene allows in addition to the robot's.
+        unpadded: Pairs that keep no padding.
+    """
+
+    objects: Mapping[str, SceneObject]
+    allowed: frozenset[tuple[str, str]]
+    unpadded: frozenset[tuple[str, str]]
+
+
+@dataclass(frozen=True, eq=False)
+class Payload:
+    """What an attached object adds to the link that carries it; as in SceneObject."""
+
+    name: str
+    link: str
+    pose: SE3
+    mass: float
+    center_of_mass: FloatArray
+    inertia: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A link or an object as a set of geometries that move together.
+
+    Attributes:
+        name: The name of the link or the object.
+        joint: Pinocchio's joint it moves with; 0 stands still.
+        geometries: Indices into the geometry model.
+        shapes: The same, placed on the joint.
+        is_link: A link of the robot.
+        is_held: Whether this is an attached object.
+    """
+
+    name: str
+    joint: int
+    geometries: tuple[int, ...]
+    shapes: tuple[Shape, ...]
+    is_link: bool
+    is_held: bool
+
+
+@dataclass(frozen=True, eq=False)
+class BodyPair:
+    """Two bodies that are checked against each other.
+
+    Attributes:
+        first: Name; the robot's link or the held object where there is one.
+        second: The name of the second body.
+        keeps_padding: Between the robot (or what it holds) and an object of the world that it is
+            not about to grasp.
+        rows: Indices of the geometry model's collision pairs.
+    """
+
+    first: str
+    second: str
+    keeps_padding: bool
+    rows: tuple[int, ...]
+
+
+@dataclass(eq=False)
+class SharedData:
+    """Coal's data of a scene, which takes milliseconds to make.
+
+    Attributes:
+        geometry_data: The requests with their margins, and the results of the last check.
+        holder: The user whose margins the requests have.
+    """
+
+    geometry_data: pin.GeometryData
+    holder: object = None
+
+
+@dataclass(frozen=True, eq=False)
+class CollisionModel:
+    """The scene as it is now, ready to be checked; not changed after it was made.
+
+    Attributes:
+        rows: The geometries of each of the geometry model's collision pairs, shape (R, 2).
+    """
+
+    robot: RobotModel
+    geometry: pin.GeometryModel
+    bodies: tuple[Body, ...]
+    pairs: tuple[BodyPair, ...]
+    rows: IntArray
+
+    @cached_property
+    def shared(self) -> SharedData:
+        """The data that all checkers of this scene share."""
+        return SharedData(self.geometry.createData())
+
+    def margin_map(self, margins: Sequence[float]) -> FloatArray:
+        """The margins of all pairs of bodies, as Pinocchio takes them for pairs of geometries."""
+        found = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
+        of_row = np.zeros(len(self.rows))
+        for pair, margin in zip(self.pairs, margins, strict=True):
+            for row in pair.rows:
+                of_row[row] = margin
+        found[self.rows[:, 0], self.rows[:, 1]] = of_row
+        return found
