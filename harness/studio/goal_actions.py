@@ -44,8 +44,10 @@ class GoalActions(LiveStudio):
         """
         if self.study is None:
             self.study = ReachStudy(self.cell, self.cell.description.default_group)
-        near = None if self.reach is None or self.reach.best is None else self.reach.best
-        reach = self.study.answer(pose, None if near is None else near.positions, explain=explain)
+        near = self.chosen
+        if near is None and self.reach is not None and self.reach.best is not None:
+            near = self.reach.best.positions
+        reach = self.study.answer(pose, near, explain=explain)
         self.reach, self.chosen, self._goal = reach, None, pose
         best = reach.best
         if self.follows and best is not None:

@@ -132,6 +132,21 @@ def test_the_handle_goes_to_the_tcp_exactly_where_no_rounded_pose_is_reached(tmp
     assert (reached["refusal"], reached["ways"] > 0) == ("", True)
 
 
+def test_a_drag_goes_on_from_the_ghost_that_was_clicked(tmp_path):
+    studio = opened(tmp_path, new_text("by hand", {"model": "ur3e"}, "empty"))
+    down = {"rpy": [180, 0, 90], "unit": "deg"}
+    reply(studio, "goal", xyz=[0.3, 0.1, 0.3], **down)
+    names = [way.name for way in studio.reach.ways]
+    assert len(names) > 3
+    for name in names:
+        [number] = [i for i, way in enumerate(studio.reach.ways) if way.name == name]
+        clicked = studio.reach.ways[number].positions
+        studio._choose(number)  # noqa: SLF001 - what a click in the scene does
+        reply(studio, "goal", xyz=[0.3, 0.1, 0.302], **down)
+        assert studio.reach.best.name == name
+        assert studio.reach.best.positions == pytest.approx(clicked, abs=0.05)
+
+
 JUDGED = """\
 scenario: judged
 robot: open_manipulator_x
