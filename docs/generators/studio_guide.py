@@ -19,6 +19,9 @@ GUIDE = ROOT / "docs" / "guides" / "studio.md"
 PICTURES = {"7": "studio_plan.jpg", "12": "studio_passed.jpg"}
 """Pictures by the number of the step after which they are taken."""
 
+PHONE = "studio_phone.jpg"
+"""The picture of the end on a narrow, dark screen."""
+
 SENTENCE = re.compile(
     r"Click \*\*(?P<click>[^*]+)\*\*|Open \*\*(?P<summary>[^*]+)\*\*"
     r"|Type `(?P<text>[^`]+)` into \*(?P<field>[^*]+)\*"
@@ -97,6 +100,12 @@ def main() -> None:
                 page.wait_for_timeout(5000)
                 picture = ROOT / "docs" / "pictures" / PICTURES[number]
                 page.screenshot(path=picture, type="jpeg", quality=70)
+        page.emulate_media(color_scheme="dark")
+        page.set_viewport_size({"width": 390, "height": 1000})
+        page.reload()
+        page.wait_for_selector(".joint")
+        page.wait_for_timeout(8000)
+        page.screenshot(path=ROOT / "docs" / "pictures" / PHONE, type="jpeg", quality=70)
         browser.close()
     studio.close()
 

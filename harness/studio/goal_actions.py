@@ -44,8 +44,10 @@ class GoalActions(LiveStudio):
         """
         if self.study is None:
             self.study = ReachStudy(self.cell, self.cell.description.default_group)
-        near = None if self.reach is None or self.reach.best is None else self.reach.best
-        reach = self.study.answer(pose, None if near is None else near.positions, explain=explain)
+        near = self.chosen
+        if near is None and self.reach is not None and self.reach.best is not None:
+            near = self.reach.best.positions
+        reach = self.study.answer(pose, near, explain=explain)
         self.reach, self.chosen, self._goal = reach, None, pose
         best = reach.best
         if self.follows and best is not None:
@@ -81,19 +83,22 @@ class GoalActions(LiveStudio):
         return reach
 
     def do_goal(self, message: Message) -> Message:
-        """Put the handle on a pose that is given by numbers, in a frame."""
+        """Put the handle on the TCP, or on a pose that is given by numbers in a frame."""
+        frame = str(message.get("frame", "world"))
+        pose = self.cell.tcp_pose() if message.get("here") else self._typed(message, frame)
+        if self.view is not None:
+            self.view.put_handle("tcp", pose)
+        reach = self.answer_pose(pose, frame=frame)
+        return {"refusal": printable(reach.refusal), "ways": len(reach.ways)}
+
+    def _typed(self, message: Message, frame: str) -> SE3:
         xyz = np.array([float(value) for value in message["xyz"]])
         turn = np.array([float(value) for value in message["rpy"]])
         if message.get("unit") == "deg":
             turn = np.radians(turn)
         if not (np.isfinite(xyz).all() and np.isfinite(turn).all()) or len(xyz) + len(turn) != 6:
             raise RefusedError("a goal has three coordinates and three angles")
-        frame = str(message.get("frame", "world"))
-        pose = self.cell.cell.frame(frame) @ SE3.from_xyz_rpy(xyz, turn)
-        if self.view is not None:
-            self.view.put_handle("tcp", pose)
-        reach = self.answer_pose(pose, frame=frame)
-        return {"refusal": printable(reach.refusal), "ways": len(reach.ways)}
+        return self.cell.cell.frame(frame) @ SE3.from_xyz_rpy(xyz, turn)
 
     def do_choose(self, message: Message) -> Message:
         """Choose one of the ways to the pose."""
@@ -154,7 +159,7 @@ class GoalActions(LiveStudio):
         else:
             raise RefusedError("there is no goal: drag the handle, or choose a named state")
         if STEPS[verb].is_arc:
-            keys["interim"] = {"xyz": [round(float(value), 5) for value in message["interim"]]}
+            keys["interim"] = _interim(message)
         if message.get("planner"):
             given = str(message["planner"])
             planning = given if ":" in given else f"planner_id: {given}"
@@ -173,3 +178,13 @@ class GoalActions(LiveStudio):
         turns = [description.joint_by_name[name].kind != "prismatic" for name in names]
         factor = np.where(turns, np.pi / 180 if message.get("unit") == "deg" else 1.0, 1.0)
         return dict(zip(names, (float(v) for v in np.round(factor * values, 6)), strict=True))
+
+
+def _interim(message: Message) -> dict[str, Any]:
+    """The point that an arc passes through, in the frame of the goal."""
+    point = [float("nan" if value is None else value) for value in message["interim"]]
+    if len(point) != 3 or not np.isfinite(point).all():
+        raise RefusedError("an arc passes through a point: write its x, y and z")
+    frame = str(message.get("frame", "world"))
+    place: dict[str, Any] = {} if frame == "world" else {"frame": frame}
+    return {**place, "xyz": [round(value, 5) for value in point]}

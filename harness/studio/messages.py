@@ -77,7 +77,6 @@ def cell_message(cell: LiveCell) -> Message:
         "positions": [
             round(float(positions[index]), 5) for index in cell.simulator.physics.actuated
         ],
-        "tcp": [round(float(value), 5) for value in cell.tcp_pose().as_vector()],
         "contacts": [[*pair, round(force, 2)] for pair, force in contacts[:MOST_CONTACTS]],
         "width": _width(cell),
         "steps_done": cell.steps_done,

@@ -117,6 +117,36 @@ def test_a_goal_is_recorded_in_the_chosen_frame(studio):
     assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
 
 
+def test_an_arc_passes_through_a_point_of_the_frame_of_its_goal(studio):
+    arc = {"verb": "circ", "frame": "link1", "interim": [0.2, 0, 0.16]}
+    assert reply(studio, "goal", here=True, frame="link1")["ways"] == 1
+    step = studio.motion_text(arc)
+    assert step.endswith("interim: {frame: link1, xyz: [0.2, 0, 0.16]}}")
+    for point in ([0], [0.2, 0, None]):
+        assert "write its x, y and z" in reply(studio, "plan", **{**arc, "interim": point})["error"]
+
+
+def test_the_handle_goes_to_the_tcp_exactly_where_no_rounded_pose_is_reached(tmp_path):
+    studio = opened(tmp_path, new_text("by hand", {"model": "ur3e"}, "empty"))
+    reached = reply(studio, "goal", here=True, frame="base_link")
+    assert (reached["refusal"], reached["ways"] > 0) == ("", True)
+
+
+def test_a_drag_goes_on_from_the_ghost_that_was_clicked(tmp_path):
+    studio = opened(tmp_path, new_text("by hand", {"model": "ur3e"}, "empty"))
+    down = {"rpy": [180, 0, 90], "unit": "deg"}
+    reply(studio, "goal", xyz=[0.3, 0.1, 0.3], **down)
+    names = [way.name for way in studio.reach.ways]
+    assert len(names) > 3
+    for name in names:
+        [number] = [i for i, way in enumerate(studio.reach.ways) if way.name == name]
+        clicked = studio.reach.ways[number].positions
+        studio._choose(number)  # noqa: SLF001 - what a click in the scene does
+        reply(studio, "goal", xyz=[0.3, 0.1, 0.302], **down)
+        assert studio.reach.best.name == name
+        assert studio.reach.best.positions == pytest.approx(clicked, abs=0.05)
+
+
 JUDGED = """\
 scenario: judged
 robot: open_manipulator_x

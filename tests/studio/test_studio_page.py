@@ -357,6 +357,14 @@ def test_a_phone_shows_everything_without_scrolling_sideways(opened, scheme):
     page.set_viewport_size({"width": 1400, "height": 900})
 
 
+def test_the_angles_of_a_goal_are_converted_with_their_unit(opened):
+    opened.page.fill("#goal-pitch", "90")
+    opened.page.select_option("#unit", "rad")
+    assert opened.page.input_value("#goal-pitch") == "1.5708"
+    opened.page.select_option("#unit", "deg")
+    opened.page.fill("#goal-pitch", "0")
+
+
 def test_a_second_page_watches_until_it_is_given_control(browser, opened, served):
     context = browser.new_context()
     second = Page(context, served.address)

@@ -16,8 +16,8 @@ async function act(name, keys = {}) {
   if (name !== "jog" && name !== "stop") await editor.flush();
   const reply = await request(name, keys);
   if (reply.error) {
+    for (const line of (reply.explanation ?? []).toReversed()) log("explanation", line);  // the newest line is on top
     log("failed", reply.error);
-    for (const line of reply.explanation ?? []) log("explanation", line);
   }
   return reply;
 }
@@ -130,11 +130,19 @@ on("reach", (message) => {
 });
 
 function showGoal(pose, frame = "world") {
-  const factor = $("unit").value === "deg" ? 180 / Math.PI : 1;
+  const [factor, digits] = $("unit").value === "deg" ? [180 / Math.PI, 3] : [1, 5];
   ["x", "y", "z"].forEach((name, index) => { $(`goal-${name}`).value = Number(pose[index].toFixed(4)); });
-  eulerOf(pose.slice(3)).forEach((angle, index) => { $(`goal-${["roll", "pitch", "yaw"][index]}`).value = Number((factor * angle).toFixed(3)); });
+  eulerOf(pose.slice(3)).forEach((angle, index) => { $(`goal-${["roll", "pitch", "yaw"][index]}`).value = Number((factor * angle).toFixed(digits)); });
   $("frame").value = frame;
 }
+
+$("unit").addEventListener("change", () => {
+  const factor = $("unit").value === "deg" ? 180 / Math.PI : Math.PI / 180;
+  for (const name of ["roll", "pitch", "yaw"]) {
+    const field = $(`goal-${name}`);
+    if (field.value) field.value = Number((factor * field.value).toFixed(5));
+  }
+});
 
 on("note", (message) => log(message.kind, message.text));
 on("lost", () => { document.body.classList.add("lost"); $("status").textContent = "connection lost; it comes back by itself"; });
@@ -181,7 +189,7 @@ click("back", () => act("back"));
 click("undo", () => act("undo"));
 click("step-run", () => run($("step-text").value));
 click("control", () => request("control", { word: isMine ? "release" : "request" }));
-click("goal-here", () => { if (state) { showGoal(state.tcp); setGoal(); } });
+click("goal-here", () => act("goal", { here: true, frame: $("frame").value }));
 click("goal-set", () => setGoal());
 const look = () => { if (robot?.cameras.length) act("camera", { name: $("camera-box").open ? $("camera").value : "" }); };
 $("camera-box").addEventListener("toggle", look);
