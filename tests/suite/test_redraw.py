@@ -87,4 +87,4 @@ def test_redrawing_without_random_values_is_refused(file, tmp_path, more):
     text = "\n".join([*lines, more, ""])
     done = harness("check", file(text), cwd=tmp_path)
     assert done.returncode == 2
-    assert "nothing is random" in done.stdout
+    assert "add `randomize`" in done.stdout
