@@ -165,6 +165,11 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     return mask
 
 
+def held_by(run: Run, name: str) -> bool:
+    """Whether the hand ever holds an object."""
+    return run.robot.gripper is not None and bool(_holds(run, name).any())
+
+
 def _holds(run: Run, name: str) -> BoolArray:
     """Samples at which the hand holds an object, welds and short gaps included, shape (N,)."""
     mask = held_by_fingers(run, name) | welded(run, name)
@@ -199,7 +204,7 @@ class _Contact:
     """A contact of an object in the hand with another, during one hold.
 
     Attributes:
-        samples: Its samples.
+        samples: The samples at which the two touch.
         dragged: How far the object is dragged along the other since it touches [m], shape (n,);
             None where nothing excuses the contact.
         leaves: Whether the object has touched the other since before it was gripped.
