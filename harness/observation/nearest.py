@@ -4,14 +4,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import coal
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.observation.body_tracks import BodyTrack, TrackedShape, centers_of, travels
+from harness.observation.body_tracks import (
+    Balls,
+    BodyTrack,
+    TrackedShape,
+    ball_around,
+    balls_of,
+    centers_of,
+    travels,
+)
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
@@ -53,36 +61,57 @@ _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
 def pairs_between(
-    first: Sequence[TrackedShape], second: Sequence[TrackedShape], seen: BodyTrack
+    first: Sequence[TrackedShape],
+    second: Sequence[TrackedShape],
+    seen: BodyTrack,
+    cutoff: float = np.inf,
 ) -> list[ShapePair]:
-    """Every shape of one body against every shape of another.
+    """Shapes of one body against shapes of another, in their order.
 
     Args:
         first: The shapes of the moving body.
         second: The shapes of the other.
         seen: Track of the first body as seen from the second.
+        cutoff: Pairs that are never nearer than this [m], between samples neither, may be left out.
     """
     if not first or not second:
         return []
-    centers = centers_of(seen, first)
-    travelled = travels(seen, centers, np.array([shape.radius for shape in first]))
+    if len(first) > 1:  # one ball about the body rules most of the other's shapes out
+        balls = ball_around(first)
+        second = [shape for shape, near, _, _ in _approaches(seen, balls, second, cutoff) if near]
+    found: list[tuple[int, ShapePair]] = []
+    for b, near, travelled, least in _approaches(seen, balls_of(first), second, cutoff):
+        found += [(i, ShapePair(first[i], b, seen, travelled[:, i], least[:, i])) for i in near]
+    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
+
+
+def _approaches(
+    seen: BodyTrack, balls: Balls, second: Sequence[TrackedShape], cutoff: float
+) -> Iterator[tuple[TrackedShape, list[int], FloatArray, FloatArray]]:
+    """How near balls of a moving body come to the shapes of another.
+
+    Yields:
+        A shape of the other body; the balls that may come nearer than the cutoff; what `travels`
+        says of all balls, and lower bounds of their distances [m], shape (N, balls) each.
+    """
+    centers = centers_of(seen, balls)
+    travelled = travels(seen, centers, balls.radii)
     since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
-    pairs: list[ShapePair] = []
-    for column, a in enumerate(first):
-        for b in second:
-            gaps = np.repeat(b.gap(centers[::LOOKS, :, column]), LOOKS)[: len(travelled)]
-            least = gaps - since[:, column] - a.radius
-            pairs.append(ShapePair(a, b, seen, travelled[:, column], least))
-    return pairs
+    margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
+    for shape in second:
+        gaps = np.repeat(shape.gap(centers[::LOOKS]), LOOKS, axis=0)[: len(travelled)]
+        least = gaps - since - balls.radii
+        is_far = least.min(axis=0) - margin >= cutoff  # a half space is not: its bound is NaN
+        yield shape, np.flatnonzero(~is_far).tolist(), travelled, least
 
 
-def largest_travel(pairs: Sequence[ShapePair], cutoff: float) -> FloatArray:
-    """The most that a pair moves since the sample before [m], shape (N,).
+def largest_travel(pairs: Sequence[ShapePair], cutoff: float, count: int) -> FloatArray:
+    """The most that a pair moves since the sample before [m], shape (count,).
 
     Pairs count where they may come nearer than the cutoff in between: two bodies that are d1 and d2
     apart and move by s against each other are at least (d1 + d2 - s) / 2 apart.
     """
-    moved = np.zeros(len(pairs[0].travel))
+    moved = np.zeros(count)
     for pair in pairs:
         steps = np.diff(pair.travel)
         is_near = pair.least[1:] + pair.least[:-1] - steps < 2 * cutoff
@@ -90,7 +119,9 @@ def largest_travel(pairs: Sequence[ShapePair], cutoff: float) -> FloatArray:
     return moved
 
 
-def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[FloatArray, IntArray]:
+def smallest_distances(
+    pairs: Sequence[ShapePair], cutoff: float, count: int
+) -> tuple[FloatArray, IntArray]:
     """The smallest distance over the pairs at every sample, and which pair it was.
 
     Conservative advancement: a pair measured at distance d is at least d minus what it has
@@ -98,13 +129,13 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
     cutoff. The result is exact to `STILL` wherever it is below the cutoff.
 
     Args:
-        pairs: All over the same N samples, none absent.
+        pairs: All over the same samples, none absent.
         cutoff: Larger distances are reported as the cutoff [m].
+        count: The number of samples.
 
     Returns:
-        Distances (N,), at most `cutoff`, and indices of pairs (N,), -1 at the cutoff.
+        Distances (count,), at most `cutoff`, and indices of pairs (count,), -1 at the cutoff.
     """
-    count = len(pairs[0].travel)
     nearest = np.full(count, cutoff)
     which = np.full(count, -1, dtype=np.int64)
     first = np.array([pair.distance(0) if pair.least.min() < cutoff else np.inf for pair in pairs])
