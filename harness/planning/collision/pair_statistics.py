@@ -14,7 +14,9 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
+from harness.planning.collision.collision_model import rigid_shapes
 from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import Joint, RobotDescription
@@ -121,14 +123,10 @@ class _Checker:
         self._geometry = pin.GeometryModel()
         shaped: dict[str, list[int]] = {}
         for link in description.links:
-            for shape in link.collisions:
+            rigid = rigid_shapes(self._robot, link.name, SE3.identity(), link.collisions)
+            for shape in rigid.shapes:
                 name = f"{link.name} {self._geometry.ngeoms}"
-                joint, placement = (
-                    self._robot.parent_joint(link.name),
-                    self._robot.placement(link.name),
-                )
-                placed = geometry_object(name, joint, placement, shape)
-                index = self._geometry.addGeometryObject(placed)
+                index = self._geometry.addGeometryObject(geometry_object(name, rigid.joint, shape))
                 shaped.setdefault(link.name, []).append(index)
         carrier = carriers(description.joints, WORLD)
         names = list(shaped)
