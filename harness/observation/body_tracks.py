@@ -146,34 +146,6 @@ class TrackedShape:
         return np.sqrt(np.einsum("ijk,ijk->ik", outside, outside))
 
 
-@dataclass(frozen=True, eq=False)
-class Balls:
-    """Balls that move with a body.
-
-    Attributes:
-        centers: The centres in the body frame [m], shape (3, K).
-        radii: The radii [m], shape (K,).
-    """
-
-    centers: FloatArray
-    radii: FloatArray
-
-
-def balls_of(shapes: Sequence[TrackedShape]) -> Balls:
-    """The ball about each shape."""
-    centers = np.column_stack([shape.center for shape in shapes])
-    return Balls(centers, np.array([shape.radius for shape in shapes]))
-
-
-def ball_around(shapes: Sequence[TrackedShape]) -> Balls:
-    """One ball about the balls of all shapes."""
-    balls = balls_of(shapes)
-    sides = [(balls.centers - balls.radii).min(axis=1), (balls.centers + balls.radii).max(axis=1)]
-    center = np.mean(sides, axis=0)
-    reach = np.linalg.norm(balls.centers - center[:, None], axis=0) + balls.radii
-    return Balls(center[:, None], reach.max(keepdims=True))
-
-
 def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ...]:
     """Convert a body's shapes for distance measurements."""
     found = []
@@ -202,22 +174,23 @@ def relative_track(first: BodyTrack, second: BodyTrack) -> BodyTrack:
     return BodyTrack(turned @ first.rotations, (turned @ offset)[:, :, 0])
 
 
-def centers_of(seen: BodyTrack, balls: Balls) -> FloatArray:
-    """The centres of balls along the track of their body [m], shape (N, 3, K)."""
-    turned = seen.rotations.reshape(-1, 3) @ balls.centers  # many times faster than one by one
+def centers_of(seen: BodyTrack, shapes: Sequence[TrackedShape]) -> FloatArray:
+    """The centres of the balls about shapes of a body along its track [m], shape (N, 3, shapes)."""
+    centers = np.column_stack([shape.center for shape in shapes])
+    turned = seen.rotations.reshape(-1, 3) @ centers  # many times faster than one by one
     return seen.translations[:, :, None] + turned.reshape(len(seen.rotations), 3, -1)
 
 
 def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArray:
-    """Bound the path length of every point of balls since the first sample [m], shape (N, K).
+    """Bound the path length of every point of shapes since the first sample [m], (N, shapes).
 
-    Between two samples a point moves at most as far as the centre of its ball plus the ball's
-    radius times the angle turned.
+    Between two samples a point of a shape moves at most as far as the centre of its ball plus the
+    ball's radius times the angle turned.
 
     Args:
-        seen: The track of the balls' body.
+        seen: The track of the shapes' body.
         centers: The centres of the balls, as `centers_of` returns them.
-        radii: The radii of the balls [m], shape (K,).
+        radii: The radii of the balls [m], shape (shapes,).
     """
     steps = np.diff(centers, axis=0)
     shifts = np.sqrt(np.einsum("ijk,ijk->ik", steps, steps))

@@ -4,22 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import coal
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.observation.body_tracks import (
-    Balls,
-    BodyTrack,
-    TrackedShape,
-    ball_around,
-    balls_of,
-    centers_of,
-    travels,
-)
+from harness.observation.body_tracks import BodyTrack, TrackedShape, centers_of, travels
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
@@ -76,33 +68,17 @@ def pairs_between(
     """
     if not first or not second:
         return []
-    if len(first) > 1:  # one ball about the body rules most of the other's shapes out
-        balls = ball_around(first)
-        second = [shape for shape, near, _, _ in _approaches(seen, balls, second, cutoff) if near]
-    found: list[tuple[int, ShapePair]] = []
-    for b, near, travelled, least in _approaches(seen, balls_of(first), second, cutoff):
-        found += [(i, ShapePair(first[i], b, seen, travelled[:, i], least[:, i])) for i in near]
-    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
-
-
-def _approaches(
-    seen: BodyTrack, balls: Balls, second: Sequence[TrackedShape], cutoff: float
-) -> Iterator[tuple[TrackedShape, list[int], FloatArray, FloatArray]]:
-    """How near balls of a moving body come to the shapes of another.
-
-    Yields:
-        A shape of the other body; the balls that may come nearer than the cutoff; what `travels`
-        says of all balls, and lower bounds of their distances [m], shape (N, balls) each.
-    """
-    centers = centers_of(seen, balls)
-    travelled = travels(seen, centers, balls.radii)
+    centers, radii = centers_of(seen, first), np.array([shape.radius for shape in first])
+    travelled = travels(seen, centers, radii)
     since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
     margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
-    for shape in second:
-        gaps = np.repeat(shape.gap(centers[::LOOKS]), LOOKS, axis=0)[: len(travelled)]
-        least = gaps - since - balls.radii
-        is_far = least.min(axis=0) - margin >= cutoff  # a half space is not: its bound is NaN
-        yield shape, np.flatnonzero(~is_far).tolist(), travelled, least
+    found: list[tuple[int, ShapePair]] = []
+    for b in second:
+        gaps = np.repeat(b.gap(centers[::LOOKS]), LOOKS, axis=0)[: len(travelled)]
+        least = gaps - since - radii
+        near = np.flatnonzero(least.min(axis=0) - margin < cutoff).tolist()
+        found += [(i, ShapePair(first[i], b, seen, travelled[:, i], least[:, i])) for i in near]
+    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
 
 
 def largest_travel(pairs: Sequence[ShapePair], cutoff: float, count: int) -> FloatArray:
