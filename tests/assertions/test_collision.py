@@ -272,17 +272,48 @@ def test_a_short_blow_is_judged_by_its_impulse():
     assert collides(held_down(40.0, span=(120, 121)))
 
 
+GRIP = np.tile([0.0, 20.0], (200, 1))
+"""Efforts; the gap changes by 2 m a metre: 10 N on each side."""
+
+
+@pytest.mark.parametrize(
+    ("newton", "samples", "expected"),
+    [(12.9, 4, False), (12.9, 8, True), (18.0, 4, False), (20.0, 4, True)],
+)
+def test_what_leaves_its_support_presses_it_with_the_grip_for_a_tenth_of_a_second(
+    newton, samples, expected
+):
+    run = held_down(newton, span=(120, 120 + samples), joint_efforts=GRIP)
+    assert collides(run) is expected
+    twice = held_down(newton, span=(160, 160 + samples), run=run)
+    twice.signals.contact_forces["Table", "box"][120 : 120 + samples] = newton
+    assert collides(twice), "the tenth of a second is of the whole contact"
+
+
+def test_what_is_put_down_presses_with_twice_its_weight_and_a_newton_at_most():
+    z = np.full(200, 0.1)
+    z[:100] = z[150:] = 0.02
+    base = lift_run(grip=(50, 180), joint_efforts=GRIP)
+    poses = base.signals.object_poses["box"].copy()
+    poses[:, 2] = z
+    placed = changed(base, object_poses={**base.signals.object_poses, "box": poses})
+    put_down = touching("Table", "box", (0, 100), (150, 200), run=placed)
+    assert not collides(put_down)
+    pressed = put_down.signals.contact_forces["Table", "box"].copy()
+    pressed[160:164] = 12.9
+    forces = {**put_down.signals.contact_forces, ("Table", "box"): pressed}
+    assert collides(changed(put_down, contact_forces=forces))
+
+
 def test_the_grip_explains_more_while_the_gripper_moves():
-    efforts = np.tile([0.0, 20.0], (200, 1))  # the gap changes by 2 m a metre: 10 N on each side
     gripping = (step("close", 39, 200, "gripper"),)
-    assert collides(held_down(20.0, joint_efforts=efforts))
-    assert not collides(held_down(20.0, joint_efforts=efforts, steps=gripping))
-    assert collides(held_down(24.0, joint_efforts=efforts, steps=gripping))
+    assert collides(held_down(20.0, joint_efforts=GRIP))
+    assert not collides(held_down(20.0, joint_efforts=GRIP, steps=gripping))
+    assert collides(held_down(35.0, joint_efforts=GRIP, steps=gripping))
 
 
 def test_a_link_of_the_hand_presses_with_its_grip_and_the_weight_at_most():
-    efforts = np.tile([0.0, 20.0], (200, 1))
-    run = lift_run(joint_efforts=efforts)
+    run = lift_run(joint_efforts=GRIP)
     assert not collides(touching("palm", "box", (90, 200), run=run, value=20.0))
     rammed = touching("palm", "box", (90, 200), run=run, value=24.0)
     assert collides(rammed)
