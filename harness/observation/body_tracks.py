@@ -14,10 +14,10 @@ import numpy as np
 from harness.core.geometry import Shape
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray
-from harness.planning.collision.geometry import coal_geometry
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.forward_kinematics import LinkPoses
+from harness.robot.solids import coal_geometry
 
 
 @dataclass(frozen=True, eq=False)

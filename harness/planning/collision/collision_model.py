@@ -15,7 +15,8 @@ from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.convex_tree import ConvexTree, shapes_tree
-from harness.planning.model.robot_model import RobotModel
+from harness.planning.model.robot_model import RobotModel, pin_from_se3
+from harness.robot.solids import coal_geometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,15 @@ class RigidShapes:
 
     joint: int
     shapes: tuple[Shape, ...]
+
+    def add_to(self, geometry: pin.GeometryModel, name: str) -> range:
+        """Add the shapes to a geometry model; returns their indices there."""
+        start = geometry.ngeoms
+        for number, shape in enumerate(self.shapes):
+            solid, place = coal_geometry(shape), pin_from_se3(shape.pose)
+            added = pin.GeometryObject(f"{name}#{number}", self.joint, place, solid)
+            geometry.addGeometryObject(added)
+        return range(start, geometry.ngeoms)
 
     @cached_property
     def tree(self) -> ConvexTree:

@@ -17,7 +17,6 @@ import pinocchio as pin
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.planning.collision.collision_model import rigid_shapes
-from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.srdf.srdf import link_pair
@@ -121,13 +120,11 @@ class _Checker:
     def __init__(self, description: RobotDescription) -> None:
         self._robot = RobotModel(description)
         self._geometry = pin.GeometryModel()
-        shaped: dict[str, list[int]] = {}
+        shaped: dict[str, range] = {}
         for link in description.links:
-            rigid = rigid_shapes(self._robot, link.name, SE3.identity(), link.collisions)
-            for shape in rigid.shapes:
-                name = f"{link.name} {self._geometry.ngeoms}"
-                index = self._geometry.addGeometryObject(geometry_object(name, rigid.joint, shape))
-                shaped.setdefault(link.name, []).append(index)
+            if link.collisions:
+                rigid = rigid_shapes(self._robot, link.name, SE3.identity(), link.collisions)
+                shaped[link.name] = rigid.add_to(self._geometry, link.name)
         carrier = carriers(description.joints, WORLD)
         names = list(shaped)
         pairs = [

@@ -27,7 +27,6 @@ from harness.planning.collision.collision_model import (
     SceneState,
     rigid_shapes,
 )
-from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import ObjectFailure
@@ -53,6 +52,7 @@ class CoalScene:
         self._links = {
             link.name: rigid_shapes(self.robot, link.name, SE3.identity(), link.collisions)
             for link in description.links
+            if link.collisions
         }
         self._allowed: set[tuple[str, str]] = {
             _sorted(*pair) for pair in description.allowed_collisions
@@ -257,11 +257,6 @@ class CoalScene:
         points = np.stack([nearest.getNearestPoint1(), nearest.getNearestPoint2()])
         return touch, points
 
-    def is_allowed(self, first: str, second: str) -> bool:
-        """Whether the robot's description or the scene lets two bodies touch."""
-        links = self.description.link_names
-        return self._allows(first, second, first in links, second in links)
-
     def _allows(self, first: str, second: str, first_is_link: bool, second_is_link: bool) -> bool:
         key = _sorted(first, second)
         if key in self._allowed or key in self._extra:
@@ -282,15 +277,14 @@ class CoalScene:
     def _build(self) -> CollisionModel:
         geometry = pin.GeometryModel()
         bodies = [
-            self._add_body(geometry, link.name, self._links[link.name], True, False)
-            for link in self.description.links
-            if link.collisions
+            Body(name, rigid, rigid.add_to(geometry, name), is_link=True, is_held=False)
+            for name, rigid in self._links.items()
         ]
-        bodies += [
-            self._add_body(geometry, name, self._rigid_object(name), False, obj.link is not None)
-            for name, obj in self._objects.items()
-            if obj.shapes
-        ]
+        for name, obj in self._objects.items():
+            if obj.shapes:
+                rigid, is_held = self._rigid_object(name), obj.link is not None
+                rows = rigid.add_to(geometry, name)
+                bodies.append(Body(name, rigid, rows, is_link=False, is_held=is_held))
         checked = [
             (first, second)
             for later, second in enumerate(bodies)
@@ -324,19 +318,6 @@ class CoalScene:
             rigid = rigid_shapes(self.robot, obj.link, obj.pose, obj.shapes)
             known = self._rigid[name] = obj, rigid
         return known[1]
-
-    def _add_body(
-        self,
-        geometry: pin.GeometryModel,
-        name: str,
-        rigid: RigidShapes,
-        is_link: bool,
-        is_held: bool,
-    ) -> Body:
-        start = geometry.ngeoms
-        for number, shape in enumerate(rigid.shapes):
-            geometry.addGeometryObject(geometry_object(f"{name}#{number}", rigid.joint, shape))
-        return Body(name, rigid, range(start, geometry.ngeoms), is_link, is_held)
 
     def _is_checked(self, first: Body, second: Body) -> bool:
         if first.rigid.joint == second.rigid.joint or self._allows(
