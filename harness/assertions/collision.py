@@ -83,15 +83,15 @@ def why_not_excused(run: Run, pair: Pair) -> str:
     """
     links = frozenset(run.robot.link_names)
     things = [name for name in pair if name not in links]
-    if run.robot.gripper is None or not things:
+    if run.robot.gripper is None:
         return ""
     force = mean_force(run, *pair)
     beyond = np.zeros(len(force))
     limits = np.zeros(len(force))
-    if len(things) == 1:
-        (link,) = set(pair) - set(things)
-        limits = hand_limit(run, things[0])
-        beyond = np.where(_gripping(run, link, things[0]), force - limits, 0.0)
+    for link, thing in permutations(pair):
+        if link in links and thing not in links:
+            limits = hand_limit(run, thing)
+            beyond = np.where(_gripping(run, link, thing), force - limits, 0.0)
     for held, other in permutations(things, 2):
         for contact in _contacts_in_hand(run, held, other):
             if contact.dragged is None:
