@@ -16,7 +16,7 @@ from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Joint, Link, Mimic, PlanningGroup
 from harness.robot.mesh_file import hull_of
 from harness.robot.robot_yaml import FingerSide, GripperFacts
-from harness.robot.solids import box_corners, coal_geometry, hull_corners
+from harness.robot.solids import box_corners, coal_geometry, hull_corners, nearest_point
 from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
@@ -234,10 +234,20 @@ class _Hand:
         return nearest
 
     def center(self, pads: tuple[str, ...], position: float) -> FloatArray:
-        """Midpoint between the pads' centres; of a single jaw its own centre, shape (3,)."""
+        """Midpoint between the pads' centres; where a single jaw meets the palm, shape (3,)."""
         if self.palm in pads:
-            return self.middle(next(pad for pad in pads if pad != self.palm), position)
+            return self._meeting(next(pad for pad in pads if pad != self.palm), position)
         return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
+
+    def _meeting(self, jaw: str, position: float) -> FloatArray:
+        """Middle of the jaw's corners that are nearest to the palm, shape (3,)."""
+        at = self.pose(jaw, position)
+        parts = [(at @ place).apply(hull_corners(s)) for s, place in self.parts(jaw, is_jaw=True)]
+        corners = np.concatenate(parts)
+        palm = convex_shapes(self._links[self.palm].collisions)
+        away = np.array([np.linalg.norm(each - nearest_point(palm, each)) for each in corners])
+        meeting = corners[away <= away.min() + LEAST_TRAVEL]
+        return 0.5 * (meeting.min(axis=0) + meeting.max(axis=0))
 
 
 def _outer_half(
