@@ -232,6 +232,27 @@ def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):
     assert load_arm(tmp_path, srdf=None).gripper is None
 
 
+SHAPE = """<collision><origin xyz="0.03 0 0.05"/><geometry><box size="0.08 0.06 0.1"/></geometry>
+    </collision>"""
+
+
+def test_a_whole_tool_that_a_wrist_turns_is_no_jaw_whatever_its_name(tmp_path):
+    urdf = SIX.replace(HAND, "").replace('"tool"', '"gripper_base"')
+    for link in ("e", "gripper_base"):
+        urdf = urdf.replace(f'<link name="{link}">', f'<link name="{link}">{SHAPE}')
+    write_arm(tmp_path, urdf)
+    assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names[-1] == "tool_joint"
+
+
+def test_a_jaw_without_shapes_is_no_joint_of_the_arm(tmp_path):
+    """As in a description of the SO-100."""
+    seen = JAW.replace("collision>", "visual>")
+    write_arm(tmp_path, SIX.replace(HAND, seen))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert any("its fingers have no collision shapes" in note for note in arm.notes)
+
+
 def test_a_named_group_is_the_gripper_without_an_end_effector(tmp_path):
     group = GROUP.splitlines()[0]
     write(tmp_path, group=group)
