@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.assertions.collision import Pair, colliding, held_by, why_not_excused
-from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
+from harness.assertions.contacts import bodies, could_touch, pairs_of, unseen_contacts
 from harness.assertions.excused_force import SPAN
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
@@ -125,7 +125,7 @@ class Collision(Predicate):
             self._contacts(window),
             applies=together,
             pairs=len(possible),
-            warnings=skipped_contacts(run, possible),
+            warnings=unseen_contacts(run, possible),
         )
 
     def _contacts(self, window: Window) -> MarginSignal:

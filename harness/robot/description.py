@@ -47,6 +47,10 @@ class Link:
     collisions: tuple[Shape, ...] = ()
 
 
+BODY_MASS = 0.01
+"""Least mass of a link that is a body where it is not drawn [kg]; frames have grams."""
+
+
 @dataclass(frozen=True)
 class Mimic:
     """`value = multiplier * joint + offset`, as in URDF."""
@@ -262,6 +266,26 @@ class RobotDescription:
             if joint.kind == "fixed" and joint.parent in static:
                 static.add(joint.child)
         return frozenset(static)
+
+    @cached_property
+    def shapeless_links(self) -> tuple[str, ...]:
+        """Links that a joint moves and that nothing can touch.
+
+        Neither they nor what is fixed to them has collision shapes, though they are drawn or have a
+        mass of `BODY_MASS`: no frames.
+        """
+        moved_by: dict[str, str] = {}  # link -> the link that the last movable joint moves
+        for joint in self.joints:
+            first = joint.child if joint.is_movable else moved_by.get(joint.parent, "")
+            moved_by[joint.child] = first
+        links = [link for link in self.links if moved_by.get(link.name)]
+        solid = {moved_by[link.name] for link in links if link.collisions}
+        bodies = {
+            moved_by[link.name]
+            for link in links
+            if link.visuals or (link.inertial is not None and link.inertial.mass >= BODY_MASS)
+        }
+        return tuple(name for name in self.link_names if name in bodies - solid)
 
     @property
     def default_group(self) -> str:

@@ -143,7 +143,7 @@ def hitting():
     return make_run(objects=(TABLE, BOX, *WALLS), contact_forces=forces)
 
 
-def test_of_six_collisions_the_first_two_are_told_apart_and_four_are_measured():
+def test_of_six_collisions_the_first_two_are_named_and_four_are_measured():
     answer = verdict(hitting(), Never(predicate=Collision()))
     assert (answer.status, answer.margin, answer.time) == ("failed", -6.0, pytest.approx(0.1))
     assert answer.reason == (
