@@ -26,7 +26,7 @@ from harness.reporting.terminal import verdict_warnings
 from harness.session.distances_ahead import DistancesAhead
 from harness.session.external import ExternalSession, MakeSession, NoPrograms
 from harness.session.observe import observed_run, with_believed_poses
-from harness.session.pictures import Pictures
+from harness.session.pictures import Drawings, Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
 from harness.session.record import executed_run
@@ -191,17 +191,23 @@ def _reported(
         HarnessError: The folder cannot be written, or a reporter fails.
     """
     progress.activity("writing the report")
-    with clock.part("render"):
-        run, drawings = pictures.drawn(judged.run, progress.activity)
-    with clock.part("write"):
+    drawings, rendered = Drawings(), clock.seconds.get("render", 0.0)
+
+    def complete() -> StoredRun:
+        nonlocal judged, drawings
+        with clock.part("render"):
+            run, drawings = pictures.drawn(judged.run, progress.activity)
         judged = replace(judged, run=run)
+        return judged
 
-        def add(target: Path) -> None:
-            write_files(target, drawings.images)
-            reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
-            write_with(reporters, target, judged, progress.activity)
+    def add(target: Path) -> None:
+        write_files(target, drawings.images)
+        reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
+        write_with(reporters, target, judged, progress.activity)
 
-        write_run(folder, judged, extra=add)
+    with clock.part("write"):
+        write_run(folder, judged, add, complete)
+    clock.seconds["write"] -= clock.seconds["render"] - rendered  # what was waited for
     progress.written(judged, str(folder))
     return replace(
         result,
