@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from types import TracebackType
 
 from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
@@ -64,15 +63,8 @@ class Pictures:
         self._captures = self._begin_captures(is_kept=is_kept)
         self._drawings = self._begin_drawings() if is_kept else None
 
-    def __enter__(self) -> Pictures:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the processes that are at work."""
         for background in (self._captures, self._drawings):
             if background is not None:
                 background.close()

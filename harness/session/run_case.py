@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -60,13 +60,13 @@ def run_case(
     progress.compiled()
     try:
         with ExitStack() as stack:
-            ahead = stack.enter_context(DistancesAhead(prepared))
+            ahead = stack.enter_context(closing(DistancesAhead(prepared)))
             session = make_session(prepared, begun.simulator)
             executed = _executed(request, begun, clock, progress, session, ahead)
             refusal = session.refusal()
             del begun, session  # the simulator is the largest object; the run holds its recording
             gc.collect()  # parts of the simulator refer to each other
-            pictures = stack.enter_context(Pictures(request, prepared, executed))
+            pictures = stack.enter_context(closing(Pictures(request, prepared, executed)))
             judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
