@@ -138,7 +138,7 @@ def smallest_distances(
         if previous >= 0 and measured(previous) < best:  # most likely the smallest again
             best, best_pair = known[previous], previous
         bound = key - travelled[sample]
-        rivals = (bound < best).nonzero()[0]
+        rivals = np.flatnonzero(bound < best)
         bounds = bound[rivals]
         order = bounds.argsort(kind="stable")
         for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):

@@ -31,7 +31,7 @@ from harness.planning.model.robot_model import RobotModel
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
-from harness.robot.solids import box_corners, coal_geometry, distance_to_point
+from harness.robot.solids import box_corners, coal_geometry, nearest_point
 
 ROBOT = "robot"
 """Stands for every link of the robot in allowed pairs."""
@@ -216,9 +216,9 @@ class CoalScene:
         ]
         return np.concatenate(corners) if corners else np.zeros((1, 3))
 
-    def distance_to_link(self, link: str, point: FloatArray) -> float:
-        """Distance between a point in a link's frame and the link's shapes, 0 inside [m]."""
-        return distance_to_point(self.shapes_of(link), point)
+    def nearest_on_link(self, link: str, point: FloatArray) -> FloatArray:
+        """The point of a link's shapes nearest to a point, itself inside, link axes, shape (3,)."""
+        return nearest_point(self.shapes_of(link), point)
 
     def shapes_of(self, body: str) -> tuple[Shape, ...]:
         """The shapes of a link or an object, in its frame."""
