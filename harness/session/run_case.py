@@ -191,6 +191,7 @@ def _reported(
         HarnessError: The folder cannot be written, or a reporter fails.
     """
     progress.activity("writing the report")
+    pictures.begin()
     drawings, rendered = Drawings(), clock.seconds.get("render", 0.0)
 
     def complete() -> StoredRun:

@@ -59,7 +59,7 @@ class LinkedObject:
                 self._starts[number] = size + -size % max(section.alignment, 1)
                 size = self._starts[number] + section.size
         access = mmap.PROT_READ | mmap.PROT_WRITE | mmap.PROT_EXEC
-        self._memory = mmap.mmap(-1, max(size, 1), prot=access)
+        self._memory = mmap.mmap(-1, max(size, 1), flags=mmap.MAP_PRIVATE, prot=access)
         self._base = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
         for number, start in self._starts.items():
             section = self._sections[number]
