@@ -37,7 +37,7 @@ def approved_texts(request):
     if os.environ.get("APPROVE"):
         _write({**_approved(), request.node.nodeid: said})
     elif request.node.nodeid in _approved():
-        assert said == _approved()[request.node.nodeid], f"not as in {FILE.name}: {__doc__}"
+        assert said == _approved()[request.node.nodeid], f"not as in {FILE.name}: see {__name__}"
 
 
 def problem_text(problem: Problem) -> str:

@@ -9,11 +9,17 @@ import numpy as np
 from pydantic import Field
 
 from harness.assertions.collision import Pair, colliding, why_not_excused
-from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
+from harness.assertions.contacts import (
+    DEBOUNCE,
+    bodies,
+    could_touch,
+    pairs_of,
+    skipped_contacts,
+)
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
-from harness.assertions.temporal import episodes
+from harness.assertions.temporal import episodes, without_gaps
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.possible_contacts import check_contact
@@ -55,8 +61,9 @@ class Collision(Predicate):
     with every joint at zero, and overlap by more than 1 mm during the run (convex hulls are not
     exact), are a finding of the run, and a collision where `count_allowed` says so.
 
-    It is judged while two of the bodies are in the physics: with an object that only the planner
-    knows it is not observable, before an object is there it is not reached.
+    A collision lasts through gaps of at most 10 ms, as a contact does. It is judged while two of
+    the bodies are in the physics: with an object that only the planner knows it is not observable,
+    before an object is there it is not reached.
     """
 
     short = "between"
@@ -118,18 +125,19 @@ class Collision(Predicate):
         run = window.run
         pairs = self._pairs(run)
         allowed_too = self.count_allowed
-        guilty = {pair: window.cut(colliding(run, pair, allowed_too)) for pair in pairs}
         unknown = np.zeros(len(window.times), dtype=bool)
         for pair in pairs:
             unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
         if unknown.any():
             values = np.where(unknown, np.nan, -1.0)
             return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
-        forces = {
-            pair: np.where(guilty[pair], window.cut(run.signals.contact_forces[pair]), 0.0)
-            for pair in pairs
-            if guilty[pair].any()
-        }
+        forces: dict[Pair, FloatArray] = {}
+        for pair in pairs:
+            guilty = colliding(run, pair, allowed_too)
+            force = np.where(guilty, run.signals.contact_forces[pair], 0.0)
+            lasting = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
+            if (lasting > 0).any():
+                forces[pair] = lasting
         overlaps = _overlaps_at_start(window, forces)
         if overlaps:
             return _overlapped(forces, overlaps)

@@ -10,7 +10,13 @@ from pydantic import Field
 
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import UP, object_poses, physical_poses, present
+from harness.assertions.poses import (
+    UP,
+    object_poses,
+    physical_poses,
+    present,
+    start_samples,
+)
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window, object_record
 from harness.cell.scope import At
@@ -94,12 +100,11 @@ class In(ObjectPredicate):
         return all_of(window, parts, text, present=there)
 
     def unchanged(self, window: Window) -> str:
-        before = replace(window, start=0)
-        margins = self.margins(before).values
-        known = margins[~np.isnan(margins)]
-        if (known < 0).any():
+        begin = int(start_samples(window.run, self.object)[window.stop - 1])
+        if (self.margins(replace(window, start=begin)).values < 0).any():
             return ""
-        return f"{self.object} was in {self.container} since the run began"
+        since = "a step put it there" if begin else "the run began"
+        return f"{self.object} was in {self.container} since {since}"
 
 
 def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:

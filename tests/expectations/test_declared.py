@@ -1,5 +1,6 @@
 """What expectations declare, and the limits of the rules, are changed on purpose alone."""
 
+import ast
 import importlib
 from pathlib import Path
 
@@ -41,9 +42,16 @@ def test_the_keys_defaults_and_rules_of_a_predicate(word):
 )
 def test_the_limits_of_a_module(name):
     module = importlib.import_module(name.replace("/", ".").removesuffix(".__init__"))
-    for key, value in sorted(vars(module).items()):
-        if key.isupper() and key != "TYPE_CHECKING" and isinstance(value, VALUES):
-            SAID.append(f"{key}: {value!r}")
+    tree = ast.parse((ROOT / f"{name}.py").read_text(encoding="utf-8"))
+    keys = [
+        name.id
+        for node in tree.body
+        if isinstance(node, ast.Assign | ast.AnnAssign)
+        for name in (node.targets if isinstance(node, ast.Assign) else [node.target])
+        if isinstance(name, ast.Name) and hasattr(module, name.id)
+    ]
+    values = {key: getattr(module, key) for key in sorted(keys)}
+    SAID.extend(f"{key}: {it!r}" for key, it in values.items() if isinstance(it, VALUES))
 
 
 @pytest.mark.parametrize(
