@@ -156,6 +156,11 @@ class Gripper:
         """Finger links of both sides: the default touch_links of attached objects."""
         return tuple(link for side in self.sides.values() for link in side)
 
+    @property
+    def has_single_jaw(self) -> bool:
+        """Whether a jaw closes on the palm, which is then one of the pads."""
+        return self.palm_link in self.pads.values()
+
 
 @dataclass(frozen=True)
 class TrackingTolerances:

@@ -151,6 +151,7 @@ WITH_GRIPPER = tuple(
     if arm.file.rpartition("/")[2]
     in {
         "panda.urdf",
+        "so101.urdf",
         "z1.urdf",
         "fr3.urdf",
         "px100.urdf.xacro",
@@ -159,11 +160,7 @@ WITH_GRIPPER = tuple(
         "panda_arm_hand.urdf.xacro",
     }
 )
-"""Arms with fingers, for which the page says whether a generated scenario picks a box.
-
-The SO-101 is not among them: `harness new` tries its picks for minutes, and 20 s of CPU time go
-into its convex parts the first time.
-"""
+"""Arms with fingers, for which the page says whether a generated scenario picks a box."""
 
 ELSEWHERE = {
     "mujoco-menagerie, robot-descriptions, panda-gym": "have no data: robots are downloaded when "

@@ -27,13 +27,19 @@ STATED = {
     "ur_description/urdf/ur5_robot.urdf": 0.015,
     "franka_robot_model/fr3.urdf": 0.01,
     "xacro/kuka_description/kuka_lbr_iiwa/urdf/lbr_iiwa_14_r820.xacro": 0.01,
+    "xacro/abb_irb140_description/urdf/irb140.urdf": 0.01,
     "xacro/trossen_descriptions/urdf/px100.urdf.xacro": 0.01,
     "xacro/trossen_descriptions/urdf/wx250s.urdf.xacro": 0.01,
 }
 """Largest share of configurations that only the parts call a self-collision."""
 
 ERROR = 5e-4
-"""Distance up to which parts may be apart where the surfaces touch [m]."""
+"""Distance up to which parts may be apart where the surfaces touch [m].
+
+One configuration of the kinova is missed although its parts overlap, by 0.015 mm: Coal's check
+without contacts stops at its tolerance of 1e-6 and sees it with 1e-7. Checks with contacts, and
+those with any padding, see it too.
+"""
 
 
 def with_surfaces(description):

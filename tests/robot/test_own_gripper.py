@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harness.core.errors import RobotError
+from harness.core.spatial import rotation_from_quat_wxyz
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from tests.engine.front_door import check, run
@@ -187,19 +188,22 @@ def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     assert arm.groups["gripper"].joint_names == (joint,)
 
 
+FLAT = (
+    '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+    '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
+    "</geometry></collision></link>"
+)
+TURNING_JAW = (
+    PALM.replace(f'<link name="palm">{INERTIAL}</link>', FLAT.format("palm", -0.01))
+    + FLAT.format("jaw", 0.01)
+    + '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
+    '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
+)
+"""As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
+
+
 def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_outer_half(tmp_path):
-    """As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
-    flat = (
-        '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
-        '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
-        "</geometry></collision></link>"
-    )
-    hinge = (
-        '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
-        '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
-    )
-    fixed = PALM.replace(f'<link name="palm">{INERTIAL}</link>', flat.format("palm", -0.01))
-    write(tmp_path, fixed + flat.format("jaw", 0.01) + hinge, group="")
+    write(tmp_path, TURNING_JAW, group="")
     gripper = load_arm(tmp_path, srdf=None).gripper
     assert (gripper.closed_position, gripper.widths[0, 1]) == pytest.approx((0, 0), abs=1e-6)
     corner = 0.05 * math.sin(1.2)
@@ -226,6 +230,27 @@ def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):
     write_arm(tmp_path)
     assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names == ("turn", "bend", "reach")
     assert load_arm(tmp_path, srdf=None).gripper is None
+
+
+SHAPE = """<collision><origin xyz="0.03 0 0.05"/><geometry><box size="0.08 0.06 0.1"/></geometry>
+    </collision>"""
+
+
+def test_a_whole_tool_that_a_wrist_turns_is_no_jaw_whatever_its_name(tmp_path):
+    urdf = SIX.replace(HAND, "").replace('"tool"', '"gripper_base"')
+    for link in ("e", "gripper_base"):
+        urdf = urdf.replace(f'<link name="{link}">', f'<link name="{link}">{SHAPE}')
+    write_arm(tmp_path, urdf)
+    assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names[-1] == "tool_joint"
+
+
+def test_a_jaw_without_shapes_is_no_joint_of_the_arm(tmp_path):
+    """As in a description of the SO-100."""
+    seen = JAW.replace("collision>", "visual>")
+    write_arm(tmp_path, SIX.replace(HAND, seen))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert any("its fingers have no collision shapes" in note for note in arm.notes)
 
 
 def test_a_named_group_is_the_gripper_without_an_end_effector(tmp_path):
@@ -293,6 +318,13 @@ def test_a_hand_that_starts_closed_takes_a_box_from_above(tmp_path):
 
 
 SIX_WITH_JAW = SIX.replace(HAND, JAW)
+SIX_WITH_TURNING_JAW = SIX.replace(HAND, TURNING_JAW)
+FIVE_WITH_TURNING_JAW = (
+    SIX_WITH_TURNING_JAW.replace('name="d_joint" type="revolute"', 'name="d_joint" type="fixed"')
+    .replace("</robot>", FRAME.format("jaw_tip_tcp", "0.002 0 0.09", "") + "</robot>")
+    .replace('rpy="0 0 1"', 'rpy="0 0 1.2"')
+)
+"""The TCP's z axis points out of the hand, its x axis across it."""
 BLOCK = """
     objects:
       - name: block
@@ -328,3 +360,34 @@ def test_a_palm_near_the_pads_does_not_touch_what_is_grasped(tmp_path):
     robot = "{urdf: arm.urdf, srdf: arm.srdf}"
     result, _ = run(tmp_path, PICK, robot=robot, rest=BLOCK)
     assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_an_arm_of_five_joints_puts_down_what_its_jaw_took(tmp_path):
+    """Its TCP's z axis points out of the hand, so that a pitch of the x axis says nothing."""
+    write_arm(tmp_path, FIVE_WITH_TURNING_JAW)
+    rest = """
+        objects:
+          - {name: block, pose: {xyz: [0.25, 0, 0.217]}, box: {size: [0.015, 0.015, 0.034]},
+             mass: 0.05, friction: 0.3}
+          - {name: stand, static: true, pose: {xyz: [0.25, 0, 0.1]}, box: {size: [0.2, 0.2, 0.2]}}
+          - {name: shelf, static: true, pose: {xyz: [0, 0.3, 0.1]}, box: {size: [0.2, 0.2, 0.2]}}
+        expect:
+          - placed: {object: block, on: shelf}
+    """
+    steps = PICK + "\n- place: {object: block, pose: {xyz: [0, 0.3, 0.217]}}"
+    result, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}", rest=rest)
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    assert saved.signals.object_poses["block"][-1, :2] == pytest.approx([0, 0.3], abs=0.01)
+
+
+def test_a_line_of_five_joints_keeps_the_gripper_upright(tmp_path):
+    write_arm(tmp_path, FIVE_WITH_TURNING_JAW)
+    steps = """
+        - move_to: {joints: {b_joint: 0.6, c_joint: 1.5, e_joint: 0.5}}
+        - move_relative: {direction: {xyz: [0.3, 1, 0]}, distance: 0.15}
+    """
+    _, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}")
+    poses = saved.signals.tcp_pose[saved.signals.times > saved.steps[1].start_time]
+    up = np.array([rotation_from_quat_wxyz(pose[3:])[2] for pose in poses])
+    assert np.ptp(poses[:, 1]) > 0.1
+    assert np.abs(up - up[0]).max() < 0.01

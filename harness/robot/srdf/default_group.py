@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from harness.robot.description import Joint
+from harness.robot.gripper.inferred_gripper import is_gripper
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
@@ -13,8 +14,11 @@ from harness.robot.urdf.urdf import Urdf
 DEFAULT_GROUP = "arm"
 """Name of the group of a robot without an SRDF."""
 
-FINGER_NAMES = re.compile(r"grip|jaw|finger|claw|pinch", re.IGNORECASE)
-"""Names by which a single movable jaw differs from an arm's last joint."""
+FINGER_NAMES = re.compile(r"jaw|finger|claw|pinch", re.IGNORECASE)
+"""Names by which a single movable jaw differs from an arm's last joint.
+
+A whole tool that a wrist turns can be called a gripper too, so that its shapes decide.
+"""
 
 LEAST_ARM = 2
 """Fewest joints that remain when a jaw is left out."""
@@ -95,9 +99,14 @@ def _is_next_to_fingers(joint: Joint, chain: set[str], urdf: Urdf) -> bool:
 
 def _is_jaw(joint: Joint, urdf: Urdf) -> bool:
     """Whether a chain's last joint is a jaw that closes on the link that carries it."""
-    shaped = {link.name for link in urdf.links if link.collisions}
-    named = FINGER_NAMES.search(joint.name) or FINGER_NAMES.search(joint.child)
-    return bool(named) and {joint.parent, joint.child} <= shaped
+    carrier = carriers(urdf.joints, urdf.root)
+    carried = [each for each in urdf.joints if carrier[each.parent] == carrier[joint.child]]
+    if any(each.is_movable for each in carried):
+        return False
+    names = f"{joint.name} {joint.child}"
+    if FINGER_NAMES.search(names):
+        return True
+    return "grip" in names.lower() and is_gripper(urdf, (joint.name,))
 
 
 def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:
