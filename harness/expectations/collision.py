@@ -8,8 +8,7 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-<<<<<<< HEAD
-from harness.assertions.collision import Pair, colliding, why_not_excused
+from harness.assertions.collision import Pair, colliding, held_by, why_not_excused
 from harness.assertions.contacts import (
     DEBOUNCE,
     bodies,
@@ -17,11 +16,7 @@ from harness.assertions.contacts import (
     pairs_of,
     skipped_contacts,
 )
-=======
-from harness.assertions.collision import Pair, colliding, held_by, why_not_excused
-from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
 from harness.assertions.excused_force import SPAN
->>>>>>> main
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
@@ -151,21 +146,12 @@ class Collision(Predicate):
         if unknown.any():
             values = np.where(unknown, np.nan, -1.0)
             return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
-<<<<<<< HEAD
         forces: dict[Pair, FloatArray] = {}
         for pair in pairs:
-            guilty = colliding(run, pair, allowed_too)
-            force = np.where(guilty, run.signals.contact_forces[pair], 0.0)
+            force = _force(run, colliding(run, pair, allowed_too), run.signals.contact_forces[pair])
             lasting = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
             if (lasting > 0).any():
                 forces[pair] = lasting
-=======
-        forces = {
-            pair: _force(window, guilty[pair], window.cut(run.signals.contact_forces[pair]))
-            for pair in pairs
-            if guilty[pair].any()
-        }
->>>>>>> main
         overlaps = _overlaps_at_start(window, forces)
         if overlaps:
             return _overlapped(forces, overlaps)
@@ -242,15 +228,15 @@ class Collision(Predicate):
         return best, name
 
 
-def _force(window: Window, guilty: BoolArray, forces: FloatArray) -> FloatArray:
-    """The force while two bodies collide, else 0 [N], shape (n,).
+def _force(run: Run, guilty: BoolArray, forces: FloatArray) -> FloatArray:
+    """The force while two bodies collide, else 0 [N], shape (N,).
 
     An average over the time before can make a contact a collision: its first sample has the largest
     force of this time.
     """
     found = np.where(guilty, forces, 0.0)
     for start, _ in episodes(guilty):
-        averaged = (window.times > window.times[start] - SPAN)[: start + 1]
+        averaged = (run.signals.times > run.signals.times[start] - SPAN)[: start + 1]
         found[start] = forces[: start + 1][averaged].max()
     return found
 
