@@ -186,6 +186,26 @@ def test_overlaps_at_the_start_are_measured_by_their_depths(count):
     assert (always.status, always.time) == ("failed", pytest.approx(0.6))
 
 
+@pytest.mark.parametrize("newton", [1e-3, 0.5, 1.0])
+def test_an_overlap_counts_however_softly_the_physics_pushes_it_apart(newton):
+    run = overlapping(1)
+    soft = {pair: rows * 1e-3 * newton for pair, rows in run.signals.contact_forces.items()}
+    answer = verdict(changed(run, contact_forces=soft), Never(predicate=Collision()))
+    assert (answer.status, answer.unit) == ("failed", "m")
+
+
+def test_contacts_that_are_not_known_are_no_collisions_and_exclude_none():
+    forces = force(N)
+    forces[100:120] = np.nan
+    run = make_run(contact_forces={("arm_link", "box"): forces})
+    spec = Collision(between=("arm_link", "box"))
+    assert verdict(run, Never(predicate=spec)).status == "not observable"
+    assert verdict(run, Never(predicate=spec), "").observed is None
+    before = replace(run, steps=(step("before", 0, 90), step("around", 90, 150)))
+    assert verdict(before, Never(predicate=spec), "before").status == "passed"
+    assert verdict(before, Always(predicate=spec), "around").status == "failed"
+
+
 def test_what_overlapped_without_a_force_at_the_start_does_not_collide_there():
     run = overlapping(2)
     later = {pair: np.roll(rows, 100) for pair, rows in run.signals.contact_forces.items()}
