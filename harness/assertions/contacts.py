@@ -124,10 +124,10 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     return force, attached(run, name).astype(float)
 
 
-def was_in_robot(run: Run, name: str, stop: int) -> bool:
-    """Whether the robot touched or held an object at some sample before one."""
+def was_in_robot(run: Run, name: str, samples: slice) -> bool:
+    """Whether the robot touched or held an object at some of a run's samples."""
     force, hold = robot_contact(run, name)
-    return bool((force[:stop] > TOUCH_FORCE).any() or hold[:stop].any())
+    return bool((force[samples] > TOUCH_FORCE).any() or hold[samples].any())
 
 
 def bodies(run: Run, word: str) -> frozenset[str]:

@@ -79,13 +79,13 @@ def test_the_robot_touches_with_the_sum_of_its_links_and_holds_what_is_attached(
     pressing, hold = robot_contact(run, "box")
     assert pressing[[9, 10, 11, 12, 15, 22]].tolist() == [0, 1, 1.5, 1.5, 0.5, 0]
     assert where(hold) == where(attached(run, "stand_in")) == list(range(30, 35))
-    assert not was_in_robot(run, "box", 10)
-    assert was_in_robot(run, "box", 11)
+    assert not was_in_robot(run, "box", slice(10))
+    assert was_in_robot(run, "box", slice(11))
     free = changed(run, contact_forces={})
-    assert not was_in_robot(free, "box", 30)
-    assert was_in_robot(free, "box", 31)
+    assert not was_in_robot(free, "box", slice(30))
+    assert was_in_robot(free, "box", slice(31))
     faint = changed(run, contact_forces={("arm_link", "box"): np.full(N, 0.001)})
-    assert not was_in_robot(faint, "box", 30)
+    assert not was_in_robot(faint, "box", slice(30))
 
 
 def test_the_gap_of_the_pads_is_interpolated_from_the_grippers_widths():
