@@ -18,6 +18,7 @@ between objects nor a hold.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
@@ -36,6 +37,7 @@ from harness.assertions.excused_force import (
     dragged,
     hand_limit,
     held_limit,
+    leaving_limit,
     mean_force,
 )
 from harness.assertions.hold import held_by_fingers, welded
@@ -81,24 +83,24 @@ def why_not_excused(run: Run, pair: Pair) -> str:
     """
     links = frozenset(run.robot.link_names)
     things = [name for name in pair if name not in links]
-    if run.robot.gripper is None or not things:
+    if run.robot.gripper is None:
         return ""
     force = mean_force(run, *pair)
     beyond = np.zeros(len(force))
     limits = np.zeros(len(force))
-    if len(things) == 1:
-        (link,) = set(pair) - set(things)
-        limits = hand_limit(run, things[0])
-        beyond = np.where(_gripping(run, link, things[0]), force - limits, 0.0)
+    for link, thing in permutations(pair):
+        if link in links and thing not in links:
+            limits = hand_limit(run, thing)
+            beyond = np.where(_gripping(run, link, thing), force - limits, 0.0)
     for held, other in permutations(things, 2):
-        limit = _held_limit(run, held)
-        for span, moved in _contacts_in_hand(run, held, other):
-            if moved is None:
+        for contact in _contacts_in_hand(run, held, other):
+            if contact.dragged is None:
                 continue
-            if moved.max() >= DRAG:
-                return f"dragged along it by {amount(float(moved.max()), 'm')}"
-            beyond[span] = (force - limit)[span]
-            limits[span] = limit[span]
+            if contact.dragged.max() >= DRAG:
+                return f"dragged along it by {amount(float(contact.dragged.max()), 'm')}"
+            span = contact.samples
+            limits[span] = _limit_of(run, held, contact, force[span])
+            beyond[span] = force[span] - limits[span]
     worst = int(np.argmax(beyond))
     if beyond[worst] <= 0:
         return ""
@@ -163,6 +165,11 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     return mask
 
 
+def held_by(run: Run, name: str) -> bool:
+    """Whether the hand ever holds an object."""
+    return run.robot.gripper is not None and bool(_holds(run, name).any())
+
+
 def _holds(run: Run, name: str) -> BoolArray:
     """Samples at which the hand holds an object, welds and short gaps included, shape (N,)."""
     mask = held_by_fingers(run, name) | welded(run, name)
@@ -171,34 +178,54 @@ def _holds(run: Run, name: str) -> BoolArray:
     return mask
 
 
-def _held_limit(run: Run, name: str) -> FloatArray:
-    return held_limit(run, name, _samples_of(run, lambda step: step.moves_gripper))
+def _limit_of(run: Run, held: str, contact: _Contact, force: FloatArray) -> FloatArray:
+    """Largest mean force of a contact of an object in the hand that is excused [N], shape (n,)."""
+    span = contact.samples
+    limit = held_limit(run, held, _samples_of(run, lambda step: step.moves_gripper))[span]
+    return leaving_limit(run, span, force, limit) if contact.leaves else limit
 
 
 def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:
     """Samples at which an object in the hand touches another without excuse, shape (N,)."""
     guilty = np.zeros(len(run.signals.times), dtype=bool)
-    contacts = _contacts_in_hand(run, held, other)
-    if not contacts:
-        return guilty
-    presses = mean_force(run, held, other) > _held_limit(run, held)
-    for span, moved in contacts:
-        guilty[span] |= True if moved is None else presses[span] | (moved >= DRAG)
+    for contact in _contacts_in_hand(run, held, other):
+        span = contact.samples
+        if contact.dragged is None:
+            guilty[span] = True
+            continue
+        force = mean_force(run, held, other)[span]
+        presses = force > _limit_of(run, held, contact, force)
+        guilty[span] |= presses | (contact.dragged >= DRAG)
     return guilty
 
 
-def _contacts_in_hand(run: Run, held: str, other: str) -> list[tuple[slice, FloatArray | None]]:
-    """Contacts of an object in the hand with another: samples, and how far it is dragged [m].
+@dataclass(frozen=True, eq=False)
+class _Contact:
+    """A contact of an object in the hand with another, during one hold.
 
-    They are excused where the object leaves what it touched before, or is put down on it; others
-    have no distance. Along one contact the distances of several holds add up: letting go on the way
-    makes no new one.
+    Attributes:
+        samples: The samples at which the two touch.
+        dragged: How far the object is dragged along the other since it touches [m], shape (n,);
+            None where nothing excuses the contact.
+        leaves: Whether the object has touched the other since before it was gripped.
+    """
+
+    samples: slice
+    dragged: FloatArray | None
+    leaves: bool
+
+
+def _contacts_in_hand(run: Run, held: str, other: str) -> list[_Contact]:
+    """Contacts of an object in the hand with another.
+
+    They are excused where the object leaves what it touched before, or is put down on it. Along one
+    contact the distances of several holds add up: letting go on the way makes no new one.
     """
     if run.robot.gripper is None:
         return []
     holds = episodes(_holds(run, held))
     contacts = bridged(run.signals.times, episodes(force_between(run, {held}, {other}) > 0))
-    found: list[tuple[slice, FloatArray | None]] = []
+    found: list[_Contact] = []
     for start, stop in contacts:
         before = 0.0
         for hold_start, hold_stop in holds:
@@ -208,6 +235,7 @@ def _contacts_in_hand(run: Run, held: str, other: str) -> list[tuple[slice, Floa
             moved = before + dragged(run, held, other, first, last)
             before = float(moved[-1])
             put_down = stop > hold_stop and bool(is_below(run, other, held)[hold_stop - 1])
-            is_excused = start <= hold_start or put_down
-            found.append((slice(first, last), moved if is_excused else None))
+            leaves = start <= hold_start
+            is_excused = leaves or put_down
+            found.append(_Contact(slice(first, last), moved if is_excused else None, leaves))
     return found

@@ -8,6 +8,10 @@ over `SPAN`, stays below `FACTOR` times what they explain, plus `SLACK`:
 - what the hand holds presses another body with that weight; while the gripper moves, also with the
   grip, since fingers that close on an object push it about.
 
+- what leaves the body that it stood on when it was gripped presses that body, for at most `LEAVE`
+  in all, with the grip too: it stands slightly tilted in the fingers, and its lower edge is pressed
+  until it is free.
+
 The average is an impulse: contacts between stiff bodies peak at ten times the force of the grip for
 a millisecond, and say nothing. In the bundled picks it reaches 1.1 times what is explained. What
 the hand holds may stay in touch while it leaves its support or is put down, but not while it is
@@ -33,6 +37,8 @@ FACTOR = 2.0
 """As `on` requires half of the weight: an object is accelerated with at most gravity's."""
 SLACK = 1.0
 """What a position error of a tenth of a millimetre presses with [N]: the weight of 100 g."""
+LEAVE = 2 * SPAN
+"""Longer than an edge is pressed when an object leaves at once, in one average [s]."""
 DRAG = 0.02
 """Longer than contact points wander while an object is gripped, tilts and leaves [m]."""
 
@@ -85,6 +91,20 @@ def held_limit(run: Run, name: str, gripper_moves: BoolArray) -> FloatArray:
     """
     grip = np.where(gripper_moves, grip_force(run), 0.0)
     return FACTOR * (load_of(run, name) + grip) + SLACK
+
+
+def leaving_limit(run: Run, samples: slice, force: FloatArray, limit: FloatArray) -> FloatArray:
+    """Largest mean force with which a held object presses what it leaves [N].
+
+    Args:
+        run: The run with its recorded signals.
+        samples: The samples of the contact.
+        force: The mean force at these samples [N], shape (n,).
+        limit: What `held_limit` says of these samples, shape (n,).
+    """
+    times = run.signals.times[samples]
+    spent = np.cumsum(np.where(force > limit, np.diff(times, prepend=times[:1]), 0.0))
+    return limit + np.where(spent <= LEAVE, grip_force(run)[samples], 0.0)
 
 
 def dragged(run: Run, name: str, other: str, start: int, stop: int) -> FloatArray:

@@ -35,35 +35,31 @@ def values_of(node: Number, window: Window) -> Values:
         case Const(value=value, unit=unit):
             return Values(np.full(len(window.times), value), unit)
         case Signal():
-            return _recorded(node, window)
+            found = _recorded(node, window)
         case Arithmetic(operator=operator, operands=operands):
-            return _calculated(operator, [values_of(each, window) for each in operands])
+            found = _calculated(operator, [values_of(each, window) for each in operands])
+    return Values(np.where(np.isfinite(found.values), found.values, np.nan), found.unit)
+
+
+OPERATIONS: dict[str, np.ufunc] = {
+    "neg": np.negative,
+    "abs": np.abs,
+    "min": np.minimum,
+    "max": np.maximum,
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+}
 
 
 def _calculated(operator: str, operands: list[Values]) -> Values:
-    first, *others = [operand.values for operand in operands]
     units = [operand.unit for operand in operands]
     unit = next((each for each in units if each), "")
+    if (operator == "*" and all(units)) or (operator == "/" and units[1]):
+        unit = ""
     with np.errstate(divide="ignore", invalid="ignore"):
-        match operator:
-            case "neg":
-                return Values(-first, unit)
-            case "abs":
-                return Values(np.abs(first), unit)
-            case "min":
-                return Values(np.minimum(first, others[0]), unit)
-            case "max":
-                return Values(np.maximum(first, others[0]), unit)
-            case "+":
-                return Values(first + others[0], unit)
-            case "-":
-                return Values(first - others[0], unit)
-            case "*":
-                return Values(first * others[0], "" if all(units) else unit)
-            case _:
-                quotient = first / others[0]
-                known = np.where(np.isfinite(quotient), quotient, np.nan)
-                return Values(known, "" if units[1] else units[0])
+        return Values(OPERATIONS[operator](*(operand.values for operand in operands)), unit)
 
 
 def _recorded(node: Signal, window: Window) -> Values:
@@ -87,8 +83,7 @@ def _recorded(node: Signal, window: Window) -> Values:
         case "distance", (first, second):
             rows = recorded_distances(window.run, first, second)
             stack = np.stack([window.cut(values) for values in rows.values()])
-            known = np.where(np.isnan(stack), np.inf, stack).min(axis=0)
-            return Values(np.where(np.isinf(known), np.nan, known), "m")
+            return Values(np.where(np.isnan(stack), np.inf, stack).min(axis=0), "m")
         case name, (joint,):
             return _joint(name, joint, window)
         case _:

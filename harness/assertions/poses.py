@@ -122,6 +122,7 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
     The first sample is at rest by definition; where a pose is missing the speed is NaN.
     """
     linear, angular = np.zeros(len(poses)), np.zeros(len(poses))
+    missing = np.isnan(poses).any(axis=1)
     if len(poses) > 1:
         step = np.diff(run.signals.times)
         linear[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) / step
@@ -129,9 +130,9 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
         a, b = poses[:-1, 3:], poses[1:, 3:]
         chord = np.minimum(np.linalg.norm(b - a, axis=1), np.linalg.norm(b + a, axis=1))
         angular[1:] = 4 * np.arcsin(np.minimum(chord / 2, 1.0)) / step
-        appeared = np.isnan(linear[1:]) & ~np.isnan(poses[1:, 0])
-        linear[1:][appeared] = angular[1:][appeared] = 0.0
-    linear[np.isnan(poses[:, 0])] = angular[np.isnan(poses[:, 0])] = np.nan
+    appeared = np.isnan(linear) & ~missing
+    linear[appeared] = angular[appeared] = 0.0
+    linear[missing] = angular[missing] = np.nan
     return linear, angular
 
 

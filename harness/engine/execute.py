@@ -95,7 +95,7 @@ class _Runner:
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
-        if status == "failed" and not (self.keep_going and self.depth == 0):
+        if status == "failed" and (self.depth or not self.keep_going):
             if isinstance(inner, _RunEndedError):
                 raise inner
             raise _RunEndedError(failure or StepFailed("FAILURE", message), step.summary)

@@ -23,6 +23,7 @@ from harness.language.expectation import Quantity
 from harness.recording.run import ObjectRecord
 from harness.recording.verdict import Measure
 
+X, Y, Z = np.eye(3)
 PARALLEL = 1e-9
 """A direction with a smaller part along an axis runs parallel to the planes across it."""
 
@@ -139,11 +140,11 @@ def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:
         points: The points in the container's frame [m], shape (n, 3).
     """
     down, *around = (
-        np.any([_is_ahead(shape, points, np.array(way)) for shape in record.shapes], axis=0)
-        for way in ((0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
+        np.any([_is_ahead(shape, points, way) for shape in record.shapes], axis=0)
+        for way in (-Z, X, -X, Y, -Y)
     )
     enclosed = np.where(down | np.all(around, axis=0), 1.0, 0.0)
-    return np.where(np.isnan(points[:, 0]), np.nan, enclosed)
+    return np.where(np.isnan(points).any(axis=1), np.nan, enclosed)
 
 
 def _is_ahead(shape: Shape, points: FloatArray, way: FloatArray) -> BoolArray:

@@ -201,7 +201,7 @@ def _is_carried(run: Run, body: str) -> BoolArray:
 def _moved(run: Run, name: str, base: str, stop: int) -> float:
     """The largest distance of an object from its first place in a frame, before a sample [m]."""
     places = relative(frame_poses(run, base), object_poses(run, name))[:stop, :3]
-    known = places[~np.isnan(places[:, 0])]
+    known = places[~np.isnan(places).any(axis=1)]
     return float(np.linalg.norm(known - known[0], axis=1).max()) if len(known) else 0.0
 
 

@@ -16,10 +16,8 @@ import numpy as np
 from harness.core.errors import HarnessError
 from harness.core.printable import json_printable
 from harness.recording.arrays import arrays_of, write_npz
-from harness.recording.consistency import (
-    TABLES,
-)
-from harness.recording.files import write_files
+from harness.recording.consistency import TABLES
+from harness.recording.files import disk_advice, write_files
 from harness.recording.older_runs import FORMAT
 from harness.recording.plain import to_plain
 from harness.recording.run import Run
@@ -71,7 +69,7 @@ def write_run(folder: Path, stored: StoredRun, extra: Callable[[Path], None] | N
     except OSError as error:
         raise HarnessError(
             f"the report cannot be written to {folder}: {error.strerror or error};"
-            " free some space there, or choose another place with --report-dir"
+            f" {disk_advice(error)}choose another place with --report-dir"
         ) from error
     finally:
         if temporary is not None:

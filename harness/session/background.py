@@ -20,13 +20,21 @@ T = TypeVar("T")
 _TASKS = Path("/proc/self/task")
 """One entry for each thread of this process, threads of native libraries included."""
 
+_is_forking = True
+
+
+def compute_here() -> None:
+    """From now on, fork no process unless that is requested: every core has work already."""
+    global _is_forking
+    _is_forking = False
+
 
 class Background(Generic[T]):
     """The value of a function, from a fork of this process.
 
-    A process that has threads is not forked unless that is requested: it computes the value itself
-    when it is needed. The function must not have other effects, so that an interruption leaves
-    nothing half-written.
+    A process that has threads, or has called `compute_here`, is not forked unless that is
+    requested: it computes the value itself when it is needed. The function must not have other
+    effects, so that an interruption leaves nothing half-written.
     """
 
     def __init__(self, function: Callable[[Activity], T], *, despite_threads: bool = False) -> None:
@@ -34,12 +42,13 @@ class Background(Generic[T]):
 
         Args:
             function: Returns a value that can be pickled; reports its progress to its argument.
-            despite_threads: Whether a process with threads is forked too. A lock that another
-                thread holds then stays locked in the fork, so the value may never come.
+            despite_threads: Whether such a process is forked too. A lock that another thread holds
+                then stays locked in the fork, so the value may never come.
         """
         self._function: Callable[[Activity], T] | None = function
         self._pid = 0
-        if not despite_threads and len(list(_TASKS.iterdir())) > 1:
+        can_fork = _is_forking and len(list(_TASKS.iterdir())) == 1
+        if not (can_fork or despite_threads):
             return
         self._reading, writing = Pipe(duplex=False)
         with warnings.catch_warnings():

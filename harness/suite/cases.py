@@ -92,6 +92,13 @@ def share_results() -> None:
     open_folder()
 
 
+def compute_here() -> None:
+    """Let each case that this process forks do with one process, as every core has a case."""
+    from harness.session import background  # not before a case needs it
+
+    background.compute_here()
+
+
 def run_here(
     jobs: Sequence[RunRequest],
     *,
@@ -148,6 +155,8 @@ def run_isolated(
         server.prepare(read_ahead, _words(jobs), some)
         if len({job.file for job in jobs}) < len(jobs):
             server.prepare(share_results)
+        if min(workers, len(jobs)) >= len(os.sched_getaffinity(0)):
+            server.prepare(compute_here)
     try:
         while waiting or running:
             while waiting and len(running) < workers:

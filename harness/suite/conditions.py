@@ -10,6 +10,7 @@ import weakref
 from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
@@ -84,6 +85,14 @@ class FileConditions:
     def name(self, index: int) -> str:
         """The name of a case."""
         return self._names[index]
+
+    def index_of(self, name: str) -> int | None:
+        """The index of the case of a name; None where there is none."""
+        return self._indices.get(name)
+
+    @cached_property
+    def _indices(self) -> dict[str, int]:
+        return {name: index for index, name in enumerate(self._names)}
 
     def group(self, index: int) -> str:
         """The name of the parametrised case that a case is a sample of."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import heapq
 import os
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from harness.reporting.result import CaseResult
 from harness.suite.conditions import read_conditions
 from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
-from harness.suite.stream import FILE, Stream, entry_of, head_of, lines_of
+from harness.suite.stream import FILE, ResultHead, Stream, entry_of, head_of, lines_of
 from harness.suite.suite_run import SuiteOptions, SuiteRun
 
 
@@ -44,12 +45,13 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
     suite = SuiteRun(plan, SuiteOptions())
     stream = Stream(target, name=f".{FILE}.{os.getpid()}")
     suite.read_from(stream)
-    places: dict[str, dict[str, int]] = {}
-    for index, each in enumerate(plan):
-        places.setdefault(str(each.file), {})[each.name] = index
+    parts = [
+        _results_of(suite, folder, Path(record.root))
+        for folder, record in zip(folders, records, strict=True)
+    ]
     try:
-        for folder, record in zip(folders, records, strict=True):
-            _take_part(suite, stream, places, folder, Path(record.root))
+        for index, result, line in heapq.merge(*parts, key=_index):
+            suite.take(index, result, stream.append(line))
         stream.rename()
     finally:
         target.joinpath(f".{FILE}.{os.getpid()}").unlink(missing_ok=True)
@@ -65,25 +67,29 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
     return suite, first
 
 
-def _take_part(
-    suite: SuiteRun,
-    stream: Stream,
-    places: Mapping[str, Mapping[str, int]],
-    folder: Path,
-    root: Path,
-) -> None:
-    """Copy the results of a part; those with a report name where it is now."""
+def _results_of(
+    suite: SuiteRun, folder: Path, root: Path
+) -> Iterator[tuple[int, ResultHead, bytes]]:
+    """The results of a part with their lines; those with a report name where it is now.
+
+    Parts are written nearly in the order of the cases. Merged in this order, few results wait for
+    one before them, however many there are.
+    """
     if not (folder / FILE).is_file():
         return
     with (folder / FILE).open("rb") as file:
         for _, line in lines_of(file):
             head = head_of(line)
-            index = None if head is None else places.get(head.result.file, {}).get(head.result.case)
+            index = None if head is None else suite.plan.find(head.result.file, head.result.case)
             if head is None or index is None:
                 continue
             if head.result.report_dir and root != folder and (entry := entry_of(line)):
                 line = replace(entry, result=_moved(entry.result, root, folder)).line
-            suite.take(index, head.result, stream.append(line))
+            yield index, head.result, line
+
+
+def _index(found: tuple[int, ResultHead, bytes]) -> int:
+    return found[0]
 
 
 def _lacking(

@@ -162,6 +162,17 @@ class Plan(LazySequence[PlannedCase]):
         of = self.files[place]
         return PlannedCase(of, number - self._ends[place] + len(of.cases))
 
+    def find(self, file: str, name: str) -> int | None:
+        """The index of a case, by the file as the user named it; None where there is none."""
+        for of, end in zip(self.files, self._ends, strict=True):
+            position = of.cases.index_of(name) if str(of.file) == file else None
+            if position is not None:
+                number = end - len(of.cases) + position
+                index = bisect.bisect_left(self._numbers, number)
+                is_selected = index < len(self) and self._numbers[index] == number
+                return index if is_selected else None
+        return None
+
     def where(self, is_selected: Callable[[PlannedCase], bool]) -> Plan:
         """The cases of the plan that fulfil a condition."""
         chosen = (n for n, each in zip(self._numbers, self, strict=True) if is_selected(each))

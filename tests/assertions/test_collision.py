@@ -46,13 +46,15 @@ def touching(a, b, *spans, run=None, value=1.0, **changes):
 
 
 def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_duration():
-    run = touching("arm_link", "wall", (30, 41), (60, 62), value=12.0)
+    run = touching("arm_link", "wall", (30, 41), (60, 70), value=12.0)
     answer = verdict(run, NEVER)
     assert answer.status == "failed"
     assert (answer.margin, answer.unit, answer.time) == (-12.0, "N", pytest.approx(0.3))
     assert answer.reason == (
-        "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
+        "arm_link and wall collide from t=0.300 s for 0.2 s in all, with up to 12.0 N"
     )
+    once = verdict(touching("arm_link", "wall", (30, 41), value=12.0), NEVER)
+    assert once.reason == "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
     measure = answer.measures[0]
     assert (measure.detail, measure.limit, measure.comparison) == ("arm_link and wall", 0.0, "<=")
     assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"
@@ -272,17 +274,69 @@ def test_a_short_blow_is_judged_by_its_impulse():
     assert collides(held_down(40.0, span=(120, 121)))
 
 
+@pytest.mark.parametrize("blow", [(118, 121), (119, 122), (121, 124)])
+def test_the_largest_force_is_never_below_the_average_that_makes_a_collision(blow):
+    run = held_down(9.0, span=blow)
+    forces = run.signals.contact_forces["Table", "box"]
+    forces[blow[1] : blow[1] + 3] = 1.5
+    assert "with up to 9.0 N" in verdict(run, NEVER).reason
+
+
+@pytest.mark.parametrize("names", [("box", "wall"), ("box", "Table"), ("Table", "wall")])
+def test_objects_that_the_hand_never_holds_are_not_observable(names):
+    run = touching(*names, (30, 60), value=1000.0)
+    answer = verdict(run, Never(predicate=Collision(between=names)))
+    assert answer.status == "not observable"
+    assert "`in_contact` judges" in answer.reason
+    objects = (TABLE, BOX, WALL)
+    held = touching("box", "wall", (120, 130), run=lift_run(objects=objects), value=1000.0)
+    expected = {("box", "wall"): "failed", ("box", "Table"): "passed"}
+    answer = verdict(held, Never(predicate=Collision(between=names)))
+    assert answer.status == expected.get(names, "not observable")
+
+
+GRIP = np.tile([0.0, 20.0], (200, 1))
+"""Efforts; the gap changes by 2 m a metre: 10 N on each side."""
+
+
+@pytest.mark.parametrize(
+    ("newton", "samples", "expected"),
+    [(12.9, 4, False), (12.9, 8, True), (18.0, 4, False), (20.0, 4, True)],
+)
+def test_what_leaves_its_support_presses_it_with_the_grip_for_a_tenth_of_a_second(
+    newton, samples, expected
+):
+    run = held_down(newton, span=(120, 120 + samples), joint_efforts=GRIP)
+    assert collides(run) is expected
+    twice = held_down(newton, span=(160, 160 + samples), run=run)
+    twice.signals.contact_forces["Table", "box"][120 : 120 + samples] = newton
+    assert collides(twice), "the tenth of a second is of the whole contact"
+
+
+def test_what_is_put_down_presses_with_twice_its_weight_and_a_newton_at_most():
+    z = np.full(200, 0.1)
+    z[:100] = z[150:] = 0.02
+    base = lift_run(grip=(50, 180), joint_efforts=GRIP)
+    poses = base.signals.object_poses["box"].copy()
+    poses[:, 2] = z
+    placed = changed(base, object_poses={**base.signals.object_poses, "box": poses})
+    put_down = touching("Table", "box", (0, 100), (150, 200), run=placed)
+    assert not collides(put_down)
+    pressed = put_down.signals.contact_forces["Table", "box"].copy()
+    pressed[160:164] = 12.9
+    forces = {**put_down.signals.contact_forces, ("Table", "box"): pressed}
+    assert collides(changed(put_down, contact_forces=forces))
+
+
 def test_the_grip_explains_more_while_the_gripper_moves():
-    efforts = np.tile([0.0, 20.0], (200, 1))  # the gap changes by 2 m a metre: 10 N on each side
     gripping = (step("close", 39, 200, "gripper"),)
-    assert collides(held_down(20.0, joint_efforts=efforts))
-    assert not collides(held_down(20.0, joint_efforts=efforts, steps=gripping))
-    assert collides(held_down(24.0, joint_efforts=efforts, steps=gripping))
+    assert collides(held_down(20.0, joint_efforts=GRIP))
+    assert not collides(held_down(20.0, joint_efforts=GRIP, steps=gripping))
+    assert collides(held_down(35.0, joint_efforts=GRIP, steps=gripping))
 
 
 def test_a_link_of_the_hand_presses_with_its_grip_and_the_weight_at_most():
-    efforts = np.tile([0.0, 20.0], (200, 1))
-    run = lift_run(joint_efforts=efforts)
+    run = lift_run(joint_efforts=GRIP)
     assert not collides(touching("palm", "box", (90, 200), run=run, value=20.0))
     rammed = touching("palm", "box", (90, 200), run=run, value=24.0)
     assert collides(rammed)

@@ -134,9 +134,27 @@ def test_what_decides_a_formula_is_a_sample_with_its_margin(signal, formula):
     for holds in (True, False):
         value = (bounds.low if holds else bounds.high)[0]
         if math.isfinite(value):
-            node, index, _ = evaluation.decider(formula, 0, at_least=holds)
+            node, index, sign = evaluation.decider(formula, 0, at_least=holds)
             difference = {"x": x, "y": y}[node.left.name][index] - node.right.value
-            assert abs(difference) == pytest.approx(abs(value))
+            margin = difference if node.operator.startswith(">") else -difference
+            assert sign * margin == pytest.approx(value)
+
+
+def test_how_many_samples_are_known_is_counted_over_all_signals():
+    x = np.array([1.0, np.nan, np.nan, 0.0, 2.0])
+    y = np.array([1.0, 1.0, np.nan, np.nan, 1.0])
+    run = run_of(x, y, np.arange(5) * 0.1)
+    text = "eventually (x(tcp) > 1.5 and y(tcp) > 0.5)"
+    answer = verdict(run, Formula(formula=text))
+    assert (answer.observed.samples, answer.observed.unknown) == (2, 3)
+    answer = verdict(run, Formula(formula="x(tcp) > 0.5 implies time >= 0"))
+    assert answer.observed.premises == 4, "where it is not known it may hold"
+
+
+def test_an_infinite_number_is_not_known():
+    run = run_of(np.array([np.inf, 1.0]), np.zeros(2), np.arange(2) * 0.1)
+    answer = verdict(run, Formula(formula="always x(tcp) > 0"))
+    assert answer.status == "not observable"
 
 
 def _said(text, x, y, times):

@@ -173,6 +173,14 @@ def test_a_fault_that_is_set_again_in_the_next_step_ends_there():
     assert receipt(STALL, more=(again,), joint_commands=ramp(0, 0.5, 60, 70)).receipt == "no_effect"
 
 
+@pytest.mark.parametrize(("start", "landed"), [(19, False), (20, False), (21, True)])
+def test_a_fault_that_is_set_again_at_once_lasts_for_no_time(start, landed):
+    """The fault counts from sample 19 on; the joint is commanded to move from there to 20."""
+    again = step("again", start, 50, "inject", result={"faults": [STALL.plain()]})
+    answer = receipt(STALL, more=(again,), joint_commands=ramp(0, 0.5, 19, 20))
+    assert (answer.receipt == "landed") is landed
+
+
 def test_a_push_that_took_no_time_moved_nothing():
     first = step("first", 20, 20, "inject", result={"faults": [PUSH.plain()]})
     run = make_run(N, object_poses={"box": going(1.0, 20, 60)})

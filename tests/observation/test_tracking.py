@@ -65,6 +65,10 @@ def test_an_allowed_contact_is_reported_with_its_time_and_force(pair):
         (["robot", "box"], True),
         (["box", "robot"], True),
         (["palm", "box"], False),
+        (["box", "palm"], False),
+        (["Table", "arm_link"], False),
+        (["Table", "robot"], False),
+        (["arm_link", "robot"], False),
         (["arm_link", "Table"], False),
         (["robot", "Table"], False),
     ],
@@ -176,3 +180,13 @@ def test_an_object_that_the_fingers_never_held_is_a_belief():
     planner_only = replace(BOX, in_simulation=False)
     run = make_run(objects=(TABLE, planner_only), attachments=[attachment("box", 20, 80)])
     assert findings(run, "held") == []
+
+
+def test_a_pair_without_distances_in_a_motion_does_not_hide_the_next_one():
+    absent, near = np.full(N, np.nan), np.full(N, 0.5)
+    near[77] = 0.04
+    clearances = {("robot", "absent"): absent, ("robot", "box"): near, ("box", "Table"): near - 0.3}
+    run = make_run(steps=(step("rest", 0, 70), moved("go", 70, 101)), clearances=clearances)
+    [found] = findings(run, "clearance", lambda *_: {("robot", "box"): np.array([0.04])})
+    assert (found.time, found.values["actual"]) == (pytest.approx(0.77), 0.04)
+    assert findings(run, "clearance", lambda *_: {}) == [], "the set points' is not known"
