@@ -210,6 +210,16 @@ def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_ou
     assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
 
 
+def test_a_gripper_has_states_open_and_close_even_if_no_srdf_names_them(tmp_path):
+    write(tmp_path)
+    states = load_arm(tmp_path, srdf=None).states_of("gripper")
+    ends = {name: dict(state.positions) for name, state in states.items()}
+    assert ends == {"open": {"left_joint": 0.03}, "close": {"left_joint": 0.0}}
+    state = '<group_state name="Opened" group="hand"><joint name="left_joint" value="0.02"/>'
+    write(tmp_path, group=f"{GROUP}{state}</group_state>")
+    assert set(load_arm(tmp_path).states_of("hand")) == {"Opened", "close"}
+
+
 def test_fingers_that_no_group_names_are_found_too(tmp_path):
     write(tmp_path, group="")
     assert load_arm(tmp_path).gripper.group == "gripper"
