@@ -254,6 +254,16 @@ def test_a_whole_tool_that_a_wrist_turns_is_no_jaw_whatever_its_name(tmp_path):
     assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names[-1] == "tool_joint"
 
 
+def test_a_hand_whose_fingers_stand_still_is_no_part_of_the_arm(tmp_path):
+    """As in Talos' left arm, where only the link at the gripper's motor turns."""
+    crank = JAW.replace('name="jaw"', 'name="crank"').replace('"palm"', '"gripper_base"')
+    crank = crank.replace('"jaw_joint"', '"gripper_joint"').replace('link="jaw"', 'link="crank"')
+    write_arm(tmp_path, SIX.replace(HAND, crank.replace("0 1 0", "0 0 1")))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert any(note.startswith("'gripper' is not used as a gripper: the gap") for note in arm.notes)
+
+
 def test_a_jaw_without_shapes_is_no_joint_of_the_arm(tmp_path):
     """As in a description of the SO-100."""
     seen = JAW.replace("collision>", "visual>")

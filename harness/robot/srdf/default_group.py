@@ -17,8 +17,12 @@ DEFAULT_GROUP = "arm"
 FINGER_NAMES = re.compile(r"jaw|finger|claw|pinch", re.IGNORECASE)
 """Names by which a single movable jaw differs from an arm's last joint.
 
-A whole tool that a wrist turns can be called a gripper too, so that its shapes decide.
+A whole tool that a wrist turns can be called a gripper too: a jaw is then carried by a hand, or
+closes on the link that carries it.
 """
+
+HAND_NAMES = re.compile(r"grip|hand|palm", re.IGNORECASE)
+"""Names of the body of a hand."""
 
 LEAST_ARM = 2
 """Fewest joints that remain when a jaw is left out."""
@@ -106,7 +110,9 @@ def _is_jaw(joint: Joint, urdf: Urdf) -> bool:
     names = f"{joint.name} {joint.child}"
     if FINGER_NAMES.search(names):
         return True
-    return "grip" in names.lower() and is_gripper(urdf, (joint.name,))
+    if "grip" not in names.lower():
+        return False
+    return HAND_NAMES.search(joint.parent) is not None or is_gripper(urdf, (joint.name,))
 
 
 def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:
