@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from harness.robot.description import Joint
 from harness.robot.gripper.inferred_gripper import is_gripper
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
-from harness.robot.tree import carriers
+from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf
 
 DEFAULT_GROUP = "arm"
@@ -35,19 +35,10 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     several chains are longest, the group ends where they branch, as at fingers that move alone; of
     several arms it is the first.
     """
-    before = {joint.child: joint for joint in urdf.joints}
-
-    def chain(link: str) -> list[Joint]:
-        found: list[Joint] = []
-        while link in before:
-            found.append(before[link])
-            link = before[link].parent
-        return found[::-1]
-
-    if tip_link in before:
+    if tip_link in {joint.child for joint in urdf.joints}:
         tips = [tip_link]
     else:
-        chains = [chain(link.name) for link in urdf.links]
+        chains = [joints_to(link.name, urdf.joints) for link in urdf.links]
         tips = _tips([_without_fingers(each, urdf) for each in chains]) or _tips(chains)
     if not tips:
         return Srdf()
