@@ -309,7 +309,11 @@ class RobotDescription:
                 positions[index] = joint.mimic.multiplier * followed + joint.mimic.offset
         return positions
 
-    def start_positions(self) -> FloatArray:
-        """`start_state` in description order, mimic joints consistent, missing joints at zero."""
-        positions = np.array([self.start_state.get(name, 0.0) for name in self.joint_names])
-        return self.with_mimics(positions)
+    def start_positions(self, placed: Mapping[str, float] | None = None) -> FloatArray:
+        """`start_state` in description order, mimic joints consistent, missing joints at zero.
+
+        Args:
+            placed: Positions of joints that are elsewhere, by name.
+        """
+        named = {**self.start_state, **(placed or {})}
+        return self.with_mimics(np.array([named.get(name, 0.0) for name in self.joint_names]))
