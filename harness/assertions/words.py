@@ -215,7 +215,10 @@ def _hardly_observed(terms: Terms, samples: int, window: Window) -> tuple[Verdic
     count = len(window.times)
     if terms.word not in ("always", "never") or 1 < count < samples / LEAST_SHARE:
         return ()
-    message = f"what it is about was there at {samples} of {count} samples"
+    if count == 1:
+        message = f"the {'step' if terms.step else 'run'} takes no time: it has one sample only"
+    else:
+        message = f"what it is about was there at {samples} of {count} samples"
     return (VerdictWarning(HARDLY_OBSERVED, message),)
 
 
