@@ -137,6 +137,8 @@ class Gripper:
         max_effort: Largest effort of the joint.
         widths: Rows (joint position, pad gap [m]) with rising position, shape (N, 2); for `width`.
         friction: Sliding friction coefficient of the pads.
+        approach_axis: Unit approach axis in the TCP frame, shape (3,); None for the one that
+            `harness.robot.gripper.approach` derives.
     """
 
     group: str
@@ -150,6 +152,7 @@ class Gripper:
     max_effort: float
     widths: FloatArray
     friction: float = 1.0
+    approach_axis: FloatArray | None = None
 
     @property
     def links(self) -> tuple[str, ...]:
