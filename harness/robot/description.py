@@ -66,6 +66,7 @@ class Joint:
         lower: Lower position limit; -inf when continuous.
         upper: Upper position limit; inf when continuous.
         velocity: Velocity limit; inf when the description has none.
+        is_velocity_assumed: Whether no file has the velocity limit.
         acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
         effort: Effort limit from a data sheet.
         effort_source: Source of the effort limit.
@@ -89,6 +90,7 @@ class Joint:
     friction: float = 0.0
     mimic: Mimic | None = None
     command_interfaces: tuple[str, ...] = ()
+    is_velocity_assumed: bool = False
 
     @property
     def is_movable(self) -> bool:

@@ -115,6 +115,12 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     )
     links = [*sides[0], *sides[1], palm]
     pairs = [link_pair(a, b) for n, a in enumerate(links) for b in links[:n] if a != b]
+    if not np.isfinite(joint.effort):
+        unit = "N" if joint.kind == "prismatic" else "N m"
+        notes.append(
+            f"gripper '{group.name}': {joint.name} has no effort limit: {most:.3g} {unit} is"
+            f" assumed, {5 * GRIP_FORCE:g} N at each pad"
+        )
     notes.append(
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
