@@ -70,6 +70,7 @@ class Joint:
         lower: Lower position limit; -inf when continuous.
         upper: Upper position limit; inf when continuous.
         velocity: Velocity limit; inf when the description has none.
+        is_velocity_assumed: Whether no file has the velocity limit.
         acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
         effort: Effort limit from a data sheet.
         effort_source: Source of the effort limit.
@@ -93,6 +94,7 @@ class Joint:
     friction: float = 0.0
     mimic: Mimic | None = None
     command_interfaces: tuple[str, ...] = ()
+    is_velocity_assumed: bool = False
 
     @property
     def is_movable(self) -> bool:
@@ -141,6 +143,8 @@ class Gripper:
         max_effort: Largest effort of the joint.
         widths: Rows (joint position, pad gap [m]) with rising position, shape (N, 2); for `width`.
         friction: Sliding friction coefficient of the pads.
+        approach_axis: Unit approach axis in the TCP frame, shape (3,); None for the one that
+            `harness.robot.gripper.approach` derives.
     """
 
     group: str
@@ -154,6 +158,7 @@ class Gripper:
     max_effort: float
     widths: FloatArray
     friction: float = 1.0
+    approach_axis: FloatArray | None = None
 
     @property
     def links(self) -> tuple[str, ...]:
