@@ -147,7 +147,8 @@ class Placed(ObjectPredicate):
         here = present(run, name)
         judged = observed_for(run, here, STILL)
         if window.cut(here).any() and not window.cut(judged).any():
-            raise NotReached(f"what stands still is known after {1000 * STILL:.0f} ms, not before")
+            soon = f"what stands still is known after {1000 * STILL:.0f} ms, not before"
+            raise NotReached(window.cut_short or soon)
         return all_of(window, parts, text, present=window.cut(here), applies=window.cut(judged))
 
     def unchanged(self, window: Window) -> str:
