@@ -175,7 +175,22 @@ def pairs_of(firsts: Collection[str], seconds: Collection[str]) -> frozenset[tup
     )
 
 
-def skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+def unseen_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+    """Warnings of contacts between bodies that the physics cannot have, or may have missed."""
+    names = {name for pair in pairs for name in pair}
+    return (*shapeless(run, names), *_skipped_contacts(run, pairs))
+
+
+def shapeless(run: Run, names: Collection[str]) -> tuple[VerdictWarning, ...]:
+    """A warning where some of the bodies are links that nothing can touch."""
+    lacking = [link for link in run.robot.shapeless_links if link in names]
+    if not lacking:
+        return ()
+    which = f"{', '.join(lacking[:5])}{', ...' if len(lacking) > 5 else ''}"
+    return (VerdictWarning("no collision shapes", f"nothing can touch these links: {which}"),)
+
+
+def _skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
     """A warning for each object that may have passed through another between two samples.
 
     Contacts are looked for at each sample: an object that moves by more than the least widths of

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
@@ -28,8 +29,8 @@ GAP_SLACK = 0.001
 MAX_LEAN = 10.0  # [degrees]
 AJAR = 0.2
 """Share of its travel by which a jaw is open where its direction of closing is measured."""
-AT_THE_PALM = 1e-4
-"""Distance up to which a TCP is at the origin of the palm [m]."""
+IN_ONE_PLACE = 1e-4
+"""Distance up to which two points are in one place [m]."""
 HEADINGS = 4
 """Corrections of a gripper's heading, which follows from where its TCP is."""
 PITCH_JOINTS = 4
@@ -42,17 +43,17 @@ EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Unit approach and closing axes in the TCP frame, shape (3,) each.
 
-    The approach axis points from the palm to the TCP, or to the pads where those are in one place;
-    the closing axis from one pad to the other with the hand open: closed, the frames of the pads
-    may be in one place. With a single jaw the closing axis is normal to the palm's surface.
+    The closing axis leads from one pad to the other with the hand open: closed, the frames of the
+    pads may be in one place. With a single jaw it is normal to the palm's surface.
     """
-    palm, first, second = _in_tcp(cell, cell.gripper.open_position)
-    approach = -palm.translation
-    if np.linalg.norm(approach) < AT_THE_PALM:  # then it points to the middle of the pads' shapes
+    opened = _at(cell, cell.gripper.open_position)
+    approach = approach_axis(cell.description, cell.kinematics, cell.scene, opened)
+    _, first, second = _in_tcp(cell, cell.gripper.open_position)
+    closing = second.translation - first.translation
+    if np.linalg.norm(closing) < IN_ONE_PLACE:  # then from the middle of one pad's shapes
         placed = zip(cell.gripper.pads.values(), (first, second), strict=True)
         middles = [at.apply(cell.scene.corners(link)).mean(axis=0) for link, at in placed]
-        approach = np.mean(middles, axis=0)
-    closing = second.translation - first.translation
+        closing = middles[1] - middles[0]
     if cell.gripper.has_single_jaw:
         closing = _from_palm_to_jaw(cell)
         approach = approach - closing * float(closing @ approach) / float(closing @ closing)
@@ -75,7 +76,7 @@ def _from_palm_to_jaw(cell: Cell) -> FloatArray:
     palm = _in_tcp(cell, ends[0])[0]
     surface = cell.scene.nearest_on_link(gripper.palm_link, palm.inverse().apply(point))
     normal = point - palm.apply(surface)
-    return normal if np.linalg.norm(normal) > AT_THE_PALM else point
+    return normal if np.linalg.norm(normal) > IN_ONE_PLACE else point
 
 
 def _jaw(cell: Cell) -> str:
@@ -83,11 +84,16 @@ def _jaw(cell: Cell) -> str:
     return next(pad for pad in cell.gripper.pads.values() if pad != cell.gripper.palm_link)
 
 
+def _at(cell: Cell, position: float) -> FloatArray:
+    """The whole robot with its gripper's joint at a position, description order."""
+    state = cell.planning_start()
+    state[cell.description.joint_index[cell.gripper.joint]] = position
+    return cell.description.with_mimics(state)
+
+
 def _in_tcp(cell: Cell, position: float) -> tuple[SE3, SE3, SE3]:
     """The palm's and the pads' poses in the TCP frame at a position of the gripper's joint."""
-    gripper, state = cell.gripper, cell.planning_start()
-    state[cell.description.joint_index[gripper.joint]] = position
-    state = cell.description.with_mimics(state)
+    gripper, state = cell.gripper, _at(cell, position)
     world_to_tcp = cell.kinematics.link_pose(state, cell.description.tcp_link).inverse()
     palm, first, second = (
         world_to_tcp @ cell.kinematics.link_pose(state, link)

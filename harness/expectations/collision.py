@@ -14,7 +14,7 @@ from harness.assertions.contacts import (
     bodies,
     could_touch,
     pairs_of,
-    skipped_contacts,
+    unseen_contacts,
 )
 from harness.assertions.excused_force import SPAN
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
@@ -132,7 +132,7 @@ class Collision(Predicate):
             self._contacts(window),
             applies=together,
             pairs=len(possible),
-            warnings=skipped_contacts(run, possible),
+            warnings=unseen_contacts(run, possible),
         )
 
     def _contacts(self, window: Window) -> MarginSignal:

@@ -16,7 +16,7 @@ from harness.assertions.contacts import (
     force_between,
     pairs_of,
     sample_time,
-    skipped_contacts,
+    unseen_contacts,
 )
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
@@ -87,5 +87,5 @@ class InContact(Predicate):
         return replace(
             all_of(window, [part], text, applies=together),
             pairs=len(pairs),
-            warnings=skipped_contacts(run, pairs),
+            warnings=unseen_contacts(run, pairs),
         )

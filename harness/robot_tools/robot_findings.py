@@ -85,12 +85,10 @@ def limits(description: RobotDescription) -> RobotFinding:
 def states(description: RobotDescription) -> RobotFinding:
     """Whether the start and the named states are free of self-collision, inside the limits."""
     scene = CoalScene(description)
-    start = description.start_positions()
-    looked_at = {"the start": start}
+    looked_at = {"the start": description.start_positions()}
     for state in description.named_states:
-        given = dict(zip(description.joint_names, start, strict=True)) | dict(state.positions)
-        row = np.array([given[name] for name in description.joint_names])
-        looked_at[f"{state.name} ({state.group})"] = description.with_mimics(row)
+        row = description.start_positions(state.positions)
+        looked_at[f"{state.name} ({state.group})"] = row
     problems: dict[str, list[str]] = {}
     for name, row in looked_at.items():
         found = [f"{touch.first} touches {touch.second}" for touch in scene.touches(row)[:1]]

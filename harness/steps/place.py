@@ -13,7 +13,7 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
@@ -315,8 +315,6 @@ def _tcp_position(
         solutions = cell.kinematics.solve(group, goal, start, seed)
         if not solutions:
             break  # the search for an approach explains it
-        state = np.array(start)
-        state[list(cell.description.group_indices(group))] = solutions[0]
-        tcp = cell.kinematics.link_pose(cell.description.with_mimics(state), link)
+        tcp = cell.kinematics.link_pose(with_arm(solutions[0], start, group, cell), link)
         position = position + point - (tcp @ tcp_to_object).translation
     return position

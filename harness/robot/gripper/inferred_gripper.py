@@ -13,7 +13,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
-from harness.robot.description import Joint, Link, Mimic, PlanningGroup
+from harness.robot.description import Joint, Link, Mimic, NamedState, PlanningGroup
 from harness.robot.mesh_file import hull_of
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import DOT, box_corners, coal_geometry, hull_corners
@@ -55,6 +55,8 @@ class IntegratedGripper:
         urdf: The robot, with two independent fingers coupled.
         srdf: Its SRDF, with the group of the hand.
         center: Halfway between the pads, in palm axes [m], shape (3,).
+        body: Middle of the palm's shapes, in palm axes [m], shape (3,); its origin where it has
+            none, or is a pad itself.
         pairs: Links of the hand that may touch each other.
         notes: The assumptions, to which more are added.
     """
@@ -63,6 +65,7 @@ class IntegratedGripper:
     urdf: Urdf
     srdf: Srdf
     center: FloatArray
+    body: FloatArray
     pairs: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
 
@@ -112,13 +115,21 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     )
     links = [*sides[0], *sides[1], palm]
     pairs = [link_pair(a, b) for n, a in enumerate(links) for b in links[:n] if a != b]
+    if not np.isfinite(joint.effort):
+        unit = "N" if joint.kind == "prismatic" else "N m"
+        notes.append(
+            f"gripper '{group.name}': {joint.name} has no effort limit: {most:.3g} {unit} is"
+            f" assumed, {5 * GRIP_FORCE:g} N at each pad"
+        )
     notes.append(
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
     )
-    return IntegratedGripper(
-        facts, urdf, srdf, hand.center(pads, closed), tuple(pairs), tuple(notes)
-    )
+    has_body = hand.has_shape(palm) and palm not in pads
+    body = hand.middle(palm, closed) if has_body else np.zeros(3)
+    srdf = _with_states(srdf, facts)
+    center = hand.center(pads, closed)
+    return IntegratedGripper(facts, urdf, srdf, center, body, tuple(pairs), tuple(notes))
 
 
 def is_gripper(urdf: Urdf, joints: tuple[str, ...]) -> bool:
@@ -364,6 +375,18 @@ def _outermost(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, .
         return max(float(np.maximum(low * out, high * out).sum()) for low, high in boxes)
 
     return sorted(links, key=reach, reverse=True)
+
+
+def _with_states(srdf: Srdf, facts: GripperFacts) -> Srdf:
+    """The SRDF with states `open` and `close` of the hand, unless it has such ones."""
+    named = {state.name.lower() for state in srdf.states if state.group == facts.group}
+    ends = {"open": facts.open_position, "closed": facts.closed_position}
+    added = (
+        NamedState(STATES[word][0], facts.group, {facts.joint: position})
+        for word, position in ends.items()
+        if named.isdisjoint(STATES[word])
+    )
+    return replace(srdf, states=(*srdf.states, *added))
 
 
 def _state(srdf: Srdf, group: str, joint: str, word: str, default: float) -> float:

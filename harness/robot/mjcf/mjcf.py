@@ -17,7 +17,7 @@ from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Link, NamedState
 from harness.robot.mjcf.files import read_tree
-from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, with_mimics
+from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, pulled_pairs, with_mimics
 from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
 from harness.robot.srdf.srdf import link_pair
@@ -160,7 +160,7 @@ class _Reader:
         model = self.model
         for count, what in (
             (model.nu, "actuators are not used: the program drives every joint with its own servo"),
-            (model.ntendon, "tendons are ignored"),
+            (model.ntendon - len(pulled_pairs(model)), "tendons are ignored"),
             (model.nsensor, "sensors are ignored"),
             (_with_own_dynamics(model), "joints have an armature or a spring, which is ignored"),
             (int(model.body_geomnum[0]), "geoms of the world body are not part of the robot"),
