@@ -444,3 +444,18 @@ def test_what_a_step_put_into_a_container_is_in_it_since_then(put, since):
     later[:80, 0] = 0.3
     moved = changed(run, object_poses={**run.signals.object_poses, "box": later})
     assert verdict(moved, In(object="box", container="bin")).warnings == ()
+
+
+@pytest.mark.parametrize("hole", [slice(50, 60), slice(20, 21)])
+def test_an_until_whose_first_part_is_not_known_on_the_way_is_not_observable(hole):
+    poses = at(N, (0, 0, 0.02))
+    poses[hole] = np.nan
+    contact = {("palm", "box"): force(N, (150, N))}
+    run = make_run(object_poses={"box": poses}, contact_forces=contact)
+    spec = Until(predicate=Upright(object="box"), until=InContact(between=("palm", "Table")))
+    assert verdict(run, spec).status == "failed", "it never comes, whatever is not known"
+    spec = Until(predicate=Upright(object="box"), until=InContact(between=("palm", "box")))
+    answer = verdict(run, spec)
+    count = hole.stop - hole.start
+    assert answer.status == "not observable"
+    assert answer.reason == f"{count} samples are not known, and would decide it"
