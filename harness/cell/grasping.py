@@ -8,9 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
 from harness.core.quantity import distinct
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
@@ -28,8 +29,8 @@ GAP_SLACK = 0.001
 MAX_LEAN = 10.0  # [degrees]
 AJAR = 0.2
 """Share of its travel by which a jaw is open where its direction of closing is measured."""
-AT_THE_PALM = 1e-4
-"""Distance up to which a TCP is at the origin of the palm [m]."""
+IN_ONE_PLACE = 1e-4
+"""Distance up to which two points are in one place [m]."""
 HEADINGS = 4
 """Corrections of a gripper's heading, which follows from where its TCP is."""
 PITCH_JOINTS = 4
@@ -42,17 +43,17 @@ EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Unit approach and closing axes in the TCP frame, shape (3,) each.
 
-    The approach axis points from the palm to the TCP, or to the pads where those are in one place;
-    the closing axis from one pad to the other with the hand open: closed, the frames of the pads
-    may be in one place. With a single jaw the closing axis is normal to the palm's surface.
+    The closing axis leads from one pad to the other with the hand open: closed, the frames of the
+    pads may be in one place. With a single jaw it is normal to the palm's surface.
     """
-    palm, first, second = _in_tcp(cell, cell.gripper.open_position)
-    approach = -palm.translation
-    if np.linalg.norm(approach) < AT_THE_PALM:  # then it points to the middle of the pads' shapes
+    opened = _at(cell, cell.gripper.open_position)
+    approach = approach_axis(cell.description, cell.kinematics, cell.scene, opened)
+    _, first, second = _in_tcp(cell, cell.gripper.open_position)
+    closing = second.translation - first.translation
+    if np.linalg.norm(closing) < IN_ONE_PLACE:  # then from the middle of one pad's shapes
         placed = zip(cell.gripper.pads.values(), (first, second), strict=True)
         middles = [at.apply(cell.scene.corners(link)).mean(axis=0) for link, at in placed]
-        approach = np.mean(middles, axis=0)
-    closing = second.translation - first.translation
+        closing = middles[1] - middles[0]
     if cell.gripper.has_single_jaw:
         closing = _from_palm_to_jaw(cell)
         approach = approach - closing * float(closing @ approach) / float(closing @ closing)
@@ -75,7 +76,7 @@ def _from_palm_to_jaw(cell: Cell) -> FloatArray:
     palm = _in_tcp(cell, ends[0])[0]
     surface = cell.scene.nearest_on_link(gripper.palm_link, palm.inverse().apply(point))
     normal = point - palm.apply(surface)
-    return normal if np.linalg.norm(normal) > AT_THE_PALM else point
+    return normal if np.linalg.norm(normal) > IN_ONE_PLACE else point
 
 
 def _jaw(cell: Cell) -> str:
@@ -83,11 +84,16 @@ def _jaw(cell: Cell) -> str:
     return next(pad for pad in cell.gripper.pads.values() if pad != cell.gripper.palm_link)
 
 
+def _at(cell: Cell, position: float) -> FloatArray:
+    """The whole robot with its gripper's joint at a position, description order."""
+    state = cell.planning_start()
+    state[cell.description.joint_index[cell.gripper.joint]] = position
+    return cell.description.with_mimics(state)
+
+
 def _in_tcp(cell: Cell, position: float) -> tuple[SE3, SE3, SE3]:
     """The palm's and the pads' poses in the TCP frame at a position of the gripper's joint."""
-    gripper, state = cell.gripper, cell.planning_start()
-    state[cell.description.joint_index[gripper.joint]] = position
-    state = cell.description.with_mimics(state)
+    gripper, state = cell.gripper, _at(cell, position)
     world_to_tcp = cell.kinematics.link_pose(state, cell.description.tcp_link).inverse()
     palm, first, second = (
         world_to_tcp @ cell.kinematics.link_pose(state, link)
@@ -284,7 +290,9 @@ def _standing(
     """
     shape = obj.shapes[0] if has_simple_shape(obj) else _box_around(obj, cell)
     at = object_pose @ shape.pose
-    size = _extents(shape.geometry)
+    half = reach(shape.geometry, np.eye(3))
+    assert half is not None  # of no plane and no mesh
+    size = (2 * float(half[0]), 2 * float(half[1]), 2 * float(half[2]))
     vertical = int(np.argmax(np.abs(at.rotation[2])))
     lean = math.degrees(math.acos(min(1.0, abs(float(at.rotation[2, vertical])))))
     if lean > MAX_LEAN and not isinstance(shape.geometry, Sphere):
@@ -354,21 +362,6 @@ def _box_around(obj: WorldObject, cell: Cell) -> Shape:
     low, high = corners.min(axis=0), corners.max(axis=0)
     width, depth, height = (float(length) for length in high - low)
     return Shape(Box((width, depth, height)), axes @ SE3(np.eye(3), (low + high) / 2))
-
-
-def _extents(geometry: Geometry) -> tuple[float, float, float]:
-    """Size of a simple shape along its own axes [m]."""
-    match geometry:
-        case Box(size=size):
-            return size
-        case Cylinder(radius=radius, length=length):
-            return 2 * radius, 2 * radius, length
-        case Capsule(radius=radius, length=length):
-            return 2 * radius, 2 * radius, length + 2 * radius
-        case Sphere(radius=radius):
-            return 2 * radius, 2 * radius, 2 * radius
-        case _:
-            raise ValueError(f"{type(geometry).__name__} has no size")
 
 
 def _align(

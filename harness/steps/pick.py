@@ -85,7 +85,8 @@ class Pick(Step):
 
     An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
     object, or its upper part, with the first pitch of the gripper that works, from level (0) to
-    straight down (90 deg); `pitch` states one.
+    straight down (90 deg); `pitch` states one. It is the pitch of the approach axis, which leads
+    from the gripper's palm to its pads; `harness robot check` prints it.
 
     The planner's `padding` does not apply between the gripper and the object to grasp.
     """

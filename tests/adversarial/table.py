@@ -10,6 +10,7 @@ from harness.session.check import check_file
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
+from tests.adversarial.fixture_scenes import FIXTURE_SCENES
 from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
@@ -26,6 +27,7 @@ ALL_SCENES = (
     *CONTAINER_SCENES,
     *WINDOW_SCENES,
     *TRICK_SCENES,
+    *FIXTURE_SCENES,
 )
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"

@@ -217,7 +217,7 @@ SRDF_ROWS = (
     read("xacro elements", "rendered with `args`, by the rules of xacro files",
           '<group_state name="home" group="manipulator">\n    <joint name="turn" value="0.1"/>',
           XACRO_STATE, lambda arm: abs(arm.start_state["turn"] - 0.392699) < 1e-6),
-    read("`<group>` of a `<chain>`", "pose goals refer to its tip", GROUP,
+    read("`<group>` of a `<chain>`", "pose goals refer to its tip, or the gripper's TCP", GROUP,
           GROUP.replace("tool", "lower"), lambda arm: joints(arm) == ("turn", "bend")),
     read("of `<joint>`s", "", GROUP,
           '<group name="manipulator"><joint name="turn"/><joint name="bend"/></group>',

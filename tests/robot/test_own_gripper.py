@@ -1,15 +1,21 @@
 """The gripper that an imported arm brings: recognised from its SRDF, or named."""
 
 import math
+import shutil
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from harness.core.errors import RobotError
+from docs import ROOT
+from harness.cell.approach import approach_axis
+from harness.core.errors import RobotError, SpecError
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.language.scenario import RobotSpec
+from harness.planning.collision.scene import CoalScene
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
+from harness.robot_tools.robot_check import check_robot
 from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
@@ -111,6 +117,51 @@ def test_the_parent_of_the_end_effector_is_the_tcp_if_it_is_at_the_pads(tmp_path
     assert load_arm(tmp_path).tcp_link == "point"
     write(tmp_path, HAND + frames)
     assert load_arm(tmp_path).tcp_link == "between"
+
+
+PALM_AT_THE_TIPS = f"""  <link name="palm">{INERTIAL}<collision><origin xyz="0 0 -0.09"/>
+    <geometry><box size="0.06 0.08 0.08"/></geometry></collision></link>
+  <joint name="palm_joint" type="fixed"><parent link="tool"/><child link="palm"/>
+    <origin xyz="0 0 0.14"/></joint>
+"""
+TIPS = PALM_AT_THE_TIPS + (LEFT + RIGHT).replace(' 0.05"/>', ' -0.03"/>')
+"""The palm, and with it the fingers, have their origins where the fingers end."""
+
+
+def approach(arm):
+    state = arm.with_mimics(arm.start_positions())
+    axis = approach_axis(arm, PinocchioKinematics(arm), CoalScene(arm), state)
+    return axis / np.linalg.norm(axis)
+
+
+def test_a_gripper_approaches_from_the_body_of_its_palm_to_the_pads(tmp_path):
+    write(tmp_path, TIPS)
+    arm = load_arm(tmp_path)
+    assert arm.tcp_link == "hand_tcp"
+    assert approach(arm) == pytest.approx([0, 0, 1])
+    assert approach(load_arm(tmp_path, tcp_link="palm")) == pytest.approx([0, 0, 1])
+    report = check_robot(arm, "arm.urdf", samples=20).report
+    assert report.gripper.endswith("; approaches along +z of hand_tcp")
+
+
+def test_a_tip_that_the_srdf_states_at_the_pads_is_the_tcp_though_it_has_shapes(tmp_path):
+    write(tmp_path, TIPS, GROUP.replace('parent_link="tool"', 'parent_link="palm"'))
+    arm = load_arm(tmp_path)
+    assert (arm.tcp_link, arm.groups["manipulator"].tip_link) == ("palm", "palm")
+    srdf = SRDF.replace('tip_link="tool"', 'tip_link="palm"')
+    write_arm(tmp_path, (tmp_path / "arm.urdf").read_text(encoding="utf-8"), srdf)
+    assert load_arm(tmp_path).tcp_link == "palm"
+
+
+def test_a_robot_yaml_may_state_the_approach_axis(tmp_path):
+    folder = shutil.copytree(ROOT / "robots/open_manipulator_x", tmp_path / "arm")
+    text = (folder / "robot.yaml").read_text(encoding="utf-8")
+    stated = text.replace("\ngripper:\n", "\ngripper:\n  approach_axis: [0, 0, -2]\n")
+    (folder / "robot.yaml").write_text(stated, encoding="utf-8")
+    assert approach(load_robot(RobotSpec(model="arm"), tmp_path)) == pytest.approx([0, 0, -1])
+    (folder / "robot.yaml").write_text(stated.replace("-2]", "0]"), encoding="utf-8")
+    with pytest.raises(SpecError, match=r"approach_axis: .*no direction"):
+        load_robot(RobotSpec(model="arm"), tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -55,6 +55,8 @@ class IntegratedGripper:
         urdf: The robot, with two independent fingers coupled.
         srdf: Its SRDF, with the group of the hand.
         center: Halfway between the pads, in palm axes [m], shape (3,).
+        body: Middle of the palm's shapes, in palm axes [m], shape (3,); its origin where it has
+            none, or is a pad itself.
         pairs: Links of the hand that may touch each other.
         notes: The assumptions, to which more are added.
     """
@@ -63,6 +65,7 @@ class IntegratedGripper:
     urdf: Urdf
     srdf: Srdf
     center: FloatArray
+    body: FloatArray
     pairs: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
 
@@ -112,18 +115,21 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     )
     links = [*sides[0], *sides[1], palm]
     pairs = [link_pair(a, b) for n, a in enumerate(links) for b in links[:n] if a != b]
+    if not np.isfinite(joint.effort):
+        unit = "N" if joint.kind == "prismatic" else "N m"
+        notes.append(
+            f"gripper '{group.name}': {joint.name} has no effort limit: {most:.3g} {unit} is"
+            f" assumed, {5 * GRIP_FORCE:g} N at each pad"
+        )
     notes.append(
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
     )
-    return IntegratedGripper(
-        facts,
-        urdf,
-        _with_states(srdf, facts),
-        hand.center(pads, closed),
-        tuple(pairs),
-        tuple(notes),
-    )
+    has_body = hand.has_shape(palm) and palm not in pads
+    body = hand.middle(palm, closed) if has_body else np.zeros(3)
+    srdf = _with_states(srdf, facts)
+    center = hand.center(pads, closed)
+    return IntegratedGripper(facts, urdf, srdf, center, body, tuple(pairs), tuple(notes))
 
 
 def is_gripper(urdf: Urdf, joints: tuple[str, ...]) -> bool:

@@ -11,7 +11,7 @@ from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
-from harness.robot.urdf.joints import read_joint, resolved_mimics
+from harness.robot.urdf.joints import read_joint, resolved_mimics, zero_limits
 from harness.robot.urdf.links import LinkReader
 from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
@@ -75,7 +75,8 @@ def parse_urdf(
     reader = LinkReader(folder, packages, materials, notes)
     elements = _by_name(root)
     links = [reader.link(item) for item in root.findall("link")]
-    joints = [read_joint(item, notes) for item in root.findall("joint")]
+    joints = [read_joint(item) for item in root.findall("joint")]
+    notes += zero_limits(root.findall("joint"))
     if not links:
         root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:
