@@ -16,6 +16,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_check import check_robot
+from harness.robot_tools.robot_findings import states
 from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
@@ -462,3 +463,20 @@ def test_a_line_of_five_joints_keeps_the_gripper_upright(tmp_path):
     up = np.array([rotation_from_quat_wxyz(pose[3:])[2] for pose in poses])
     assert np.ptp(poses[:, 1]) > 0.1
     assert np.abs(up - up[0]).max() < 0.01
+
+
+BLOCK_AT = """<collision><origin xyz="{}"/><geometry><box size="0.02 0.06 0.06"/></geometry>
+    </collision>"""
+
+
+def test_a_state_of_the_gripper_is_good_wherever_the_arm_stands(tmp_path):
+    """At zero, an open finger touches the arm, as on a folded Panda."""
+    urdf = SIX
+    for link, place in (("c", "0 0.07 0.5"), ("d", "0.3 0 0")):
+        start = f'<link name="{link}">'
+        urdf = urdf.replace(start, start + BLOCK_AT.format(place))
+    write_arm(tmp_path, urdf)
+    arm = load_arm(tmp_path, srdf=None)
+    opened = arm.start_positions(arm.states_of("gripper")["open"].positions)
+    assert CoalScene(arm).touches(opened)
+    assert states(arm).is_good

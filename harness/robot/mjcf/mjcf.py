@@ -83,9 +83,11 @@ def _remove_textures(spec: Any) -> None:
 
 
 def _problem(message: str, root: XmlElement, path: Path) -> Problem:
-    """MuJoCo's message, at the line that it names."""
+    """MuJoCo's message with the element, at the line that it names."""
     lines = [line for line in message.splitlines() if line.strip()]
     text = lines[0].removeprefix("Error: ").removeprefix("XML Error: ")
+    named = re.search(r"Element name '([^']+)'", message)
+    text += f": '{named[1]}'" if named else ""
     found = re.search(r"line (\d+)", message)
     source: Source = root.place.source
     line = int(found[1]) if found else 0
