@@ -87,7 +87,7 @@ class Placed(ObjectPredicate):
     tolerance: PoseTolerance | None = Field(
         default=None,
         description="The tolerance of `pose`; by default 1 cm, and turns about the vertical are"
-        " free.",
+        " free. `{position: 5 mm}` requires the orientation too, to its default of 0.01 rad.",
     )
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
         default=0.005, description="The largest speed at which it counts as still [m/s]."

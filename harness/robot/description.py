@@ -301,6 +301,11 @@ class RobotDescription:
         """Indices of a group's joints in description order."""
         return tuple(self.joint_index[name] for name in self.groups[group].joint_names)
 
+    @property
+    def rejected_grippers(self) -> list[str]:
+        """Why parts that look like grippers are not used as such, one sentence each."""
+        return [note for note in self.notes if "is not used as a gripper" in note]
+
     def states_of(self, group: str) -> Mapping[str, NamedState]:
         """Named states of a group, by name."""
         return {state.name: state for state in self.named_states if state.group == group}

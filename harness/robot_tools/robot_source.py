@@ -21,7 +21,7 @@ from harness.robot.load import load_robot
 from harness.robot.xacro.file import is_xacro
 
 ROBOT_YAML = "robot.yaml"
-KINDS = {".urdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
+KINDS = {".urdf": "urdf", ".srdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
 OPTIONS = {
     "srdf": "--srdf",
     "packages": "--package-path",

@@ -69,9 +69,9 @@ class Place(Step):
     """Approach, lower, release, retreat; expands into the steps it is made of.
 
     Where the arm cannot lower the object to a `pose` without a rotation, or not open its hand
-    there, the object is turned about the vertical, if it is and looks the same then: by a half,
-    what is square by quarters, what is round by eighths; the step reports which `turn` of how many
-    `turns`.
+    there, the object is also tried turned about the vertical, provided that it stands upright and
+    looks the same after the turn: by half turns, square ones by quarters, round ones by eighths;
+    the step reports which `turn` of how many `turns`.
     A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
     position alone, with the pitch that the gripper has: the object turns with the arm.
     """

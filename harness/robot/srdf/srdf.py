@@ -90,7 +90,10 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
         root.refuse(f"the root element is <{root.tag}>, an SRDF's is <robot>")
     link = root.find("link")
     if link is not None:
-        link.refuse("this is a URDF", "its groups, states and allowed pairs are in an SRDF")
+        link.refuse(
+            "this is a URDF",
+            "its groups, states and allowed pairs are in an SRDF; a URDF is named by `urdf`",
+        )
     ignored = Counter(child.tag for child in root.children if child.tag not in READ)
     return Srdf(
         tuple(_group(item) for item in root.findall("group")),
