@@ -163,7 +163,7 @@ URDF_ROWS = (
     refused("lower = upper", "it cannot move", LIMIT, LIMIT.replace("-2", "2"), "cannot move"),
     read("`velocity`, `effort`", "0 is a placeholder and counts as none, reported",
           LIMIT, LIMIT.replace('velocity="2"', 'velocity="0"'),
-          lambda arm: any("a limit of 0 for its velocity" in note for note in arm.notes)),
+          lambda arm: any("a velocity limit of 0" in note for note in arm.notes)),
     read("`<mimic>`", "followed in planning and in physics, over several joints if need be",
           '<limit lower="0"', MIMIC + '<limit lower="0"',
           lambda arm: arm.joint_by_name["reach"].mimic is not None),
@@ -194,7 +194,7 @@ URDF_ROWS = (
              "one root link"),
     refused("a name twice", "", END, '<link name="tool"/>' + END, "is there twice"),
     refused("`xacro:` words", "the key `xacro` renders them", END, "<xacro:a/>" + END,
-             "this is a xacro file"),
+             "is xacro, and this is read as a URDF"),
     refused("DOCTYPE, entities", "", '<?xml version="1.0"?>', "<!DOCTYPE robot>", "a DOCTYPE"),
 )  # fmt: skip
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.core.errors import SpecError
+from harness.core.errors import SpecError, collected
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.world.notes import Notes
 from harness.world.sdf.elements import note_unread_elements
-from harness.world.sdf.model_path import ModelPath, model_file
+from harness.world.sdf.model_path import MissingFileError, ModelPath, model_file
 from harness.world.sdf.scope import WORLD, Named, SdfScope, check_frames
 from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
 
@@ -94,20 +94,25 @@ class SdfTree:
 
     def _fill(self, scope: SdfScope, files: tuple[Path, ...]) -> None:
         """Read the children of a scope's element."""
-        for child in scope.element.children:
-            match child.tag:
-                case "link":
-                    self._name(scope, Named("link", child, pose_of(child)))
-                case "joint":
-                    self._name(scope, self._joint(child, scope))
-                case "frame":
-                    note_unread_elements(child, "frame", self.notes)
-                    base = child.get("attached_to").strip()
-                    self._name(scope, Named("frame", child, pose_of(child), base))
-                case "model":
-                    self._model(scope, child, files)
-                case "include":
-                    self._include(scope, child, files)
+        children = scope.element.children
+        collected(lambda child: self._read(scope, child, files), children, MissingFileError)
+
+    def _read(self, scope: SdfScope, child: XmlElement, files: tuple[Path, ...]) -> None:
+        match child.tag:
+            case "link":
+                self._name(scope, Named("link", child, pose_of(child)))
+            case "joint":
+                self._name(scope, self._joint(child, scope))
+            case "frame":
+                note_unread_elements(child, "frame", self.notes)
+                base = child.get("attached_to").strip()
+                self._name(scope, Named("frame", child, pose_of(child), base))
+            case "model":
+                self._model(scope, child, files)
+            case "include":
+                self._include(scope, child, files)
+            case _:
+                pass
 
     def _name(self, scope: SdfScope, item: Named) -> str:
         name = item.element.need("name").strip()
