@@ -33,7 +33,7 @@ class Mutant:
     def difference(self, original: str) -> tuple[str, str]:
         """The line as it is and as it is mutated, without leading spaces."""
         changed = difflib.ndiff(original.splitlines(), self.source.splitlines())
-        lines = [line for line in changed if line[:2] in ("- ", "+ ")]
+        lines = [line for line in changed if line[:2] in ("- ", "+ ") and line[2:].strip()]
         before = next((line[2:].strip() for line in lines if line[0] == "-"), "")
         after = next((line[2:].strip() for line in lines if line[0] == "+"), "")
         return before, after
