@@ -62,6 +62,8 @@ at most, as an object that the next step adds, or over a step that takes no time
 | contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
 between two samples by more than its least width and the other's together: the physics looks for \
 contacts at the samples |
+| no collision shapes | `collision`, `in_contact` or `clearance` of a robot with moving links \
+that have no collision shapes: they pass through everything |
 
 A step that fails unexpectedly ends the run. Expectations that could still have become true are
 then `not reached` and name that step: `lifted`, `eventually`, and everything that is judged at

@@ -83,15 +83,15 @@ def why_not_excused(run: Run, pair: Pair) -> str:
     """
     links = frozenset(run.robot.link_names)
     things = [name for name in pair if name not in links]
-    if run.robot.gripper is None or not things:
+    if run.robot.gripper is None:
         return ""
     force = mean_force(run, *pair)
     beyond = np.zeros(len(force))
     limits = np.zeros(len(force))
-    if len(things) == 1:
-        (link,) = set(pair) - set(things)
-        limits = hand_limit(run, things[0])
-        beyond = np.where(_gripping(run, link, things[0]), force - limits, 0.0)
+    for link, thing in permutations(pair):
+        if link in links and thing not in links:
+            limits = hand_limit(run, thing)
+            beyond = np.where(_gripping(run, link, thing), force - limits, 0.0)
     for held, other in permutations(things, 2):
         for contact in _contacts_in_hand(run, held, other):
             if contact.dragged is None:
@@ -165,6 +165,11 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     return mask
 
 
+def held_by(run: Run, name: str) -> bool:
+    """Whether the hand ever holds an object."""
+    return run.robot.gripper is not None and bool(_holds(run, name).any())
+
+
 def _holds(run: Run, name: str) -> BoolArray:
     """Samples at which the hand holds an object, welds and short gaps included, shape (N,)."""
     mask = held_by_fingers(run, name) | welded(run, name)
@@ -199,7 +204,7 @@ class _Contact:
     """A contact of an object in the hand with another, during one hold.
 
     Attributes:
-        samples: Its samples.
+        samples: The samples at which the two touch.
         dragged: How far the object is dragged along the other since it touches [m], shape (n,);
             None where nothing excuses the contact.
         leaves: Whether the object has touched the other since before it was gripped.

@@ -165,16 +165,21 @@ class Predicate(Expectation, PredicateFields):
                 f" not one margin for each of {len(window.times)} samples"
             )
         quantity = self.quantities[0]
-        given = [(key, getattr(self, key, None)) for key in BOUNDS]
-        bounds = [(key, float(limit)) for key, limit in given if limit is not None]
-        key, limit = bounds[0] if len(bounds) == 1 else ("at_least", 0.0)
-        values = limit + margins if key == "at_least" else limit - margins
-        part = Part(quantity, values, limit, ">=" if key == "at_least" else "<=")
-        name = part.name if len(bounds) == 1 else f"the margin of {part.name}"
+        bounds = {key: getattr(self, key, None) for key in BOUNDS}
+        match bounds["at_least"], bounds["at_most"]:
+            case (float() | int()) as limit, None:
+                part = Part(quantity, limit + margins, limit, ">=")
+            case None, (float() | int()) as limit:
+                part = Part(quantity, limit - margins, limit, "<=")
+            case _:
+                part = Part(
+                    quantity, margins, 0.0, ">=", measured_name=f"the margin of {quantity.name}"
+                )
 
         def text(_: int, measure: Measure) -> str:
-            value, least = amount(measure.value, part.unit), amount(limit, part.unit)
-            return f"{name} is {value}, {key.replace('_', ' ')} {least} required"
+            value, limit = amount(measure.value, part.unit), amount(part.limit, part.unit)
+            bound = "at least" if part.comparison == ">=" else "at most"
+            return f"{part.name} is {value}, {bound} {limit} required"
 
         return all_of(window, [part], text)
 

@@ -30,7 +30,7 @@ import numpy as np
 
 from harness.assertions.formula_signals import values_of
 from harness.assertions.temporal import TIME_RESOLUTION, range_min
-from harness.assertions.text import amounts
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.assertions.words import ALREADY_TRUE
 from harness.core.types import BoolArray, FloatArray, IntArray
@@ -89,6 +89,10 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         missing = evaluation.first_unknown(root)
         if missing:
             raise NotObservable(missing)
+        near = Evaluation(window, is_near=True).bounds(root)
+        if near.low[0] > 0 or near.high[0] < 0:
+            cutoff = amount(window.run.signals.clearance_cutoff, "m")
+            raise NotObservable(f"distances were recorded up to {cutoff} only")
         raise NotReached("the time it is judged over ended before it was decided")
     holds = low > 0
     is_open = bool(window.cut_short) and not holds
@@ -97,8 +101,6 @@ def formula_verdict(text: str, window: Window) -> Verdict:
     value = low if holds else high
     comparison, index, sign = evaluation.decider(root, 0, at_least=holds)
     time = window.time(index)
-    if not math.isfinite(value) or comparison is None:
-        raise NotReached("nothing of it was there in the time it is judged over")
     left = values_of(comparison.left, window)
     right = values_of(comparison.right, window)
     unit = left.unit or right.unit or "1"
@@ -135,11 +137,13 @@ class Evaluation:
     Args:
         window: The samples of the window.
         is_open: Whether the window goes on after its last sample in a way that is not known.
+        is_near: Whether distances at the cutoff of the recording are no larger than it.
     """
 
-    def __init__(self, window: Window, *, is_open: bool = False) -> None:
+    def __init__(self, window: Window, *, is_open: bool = False, is_near: bool = False) -> None:
         self.window = window
         self.is_open = is_open
+        self.is_near = is_near
         self.times = window.times
         self._known: dict[int, tuple[Node, Bounds]] = {}
 
@@ -152,28 +156,36 @@ class Evaluation:
     def _calculated(self, node: Node) -> Bounds:
         match node:
             case Comparison():
-                left, right = values_of(node.left, self.window), values_of(node.right, self.window)
-                margin = left.values - right.values
-                margin = margin if node.operator.startswith(">") else -margin
-                # a difference of zero holds for `<=`, not for `<`, and `not` turns that around
-                margin = np.where(margin == 0, TINY if "=" in node.operator else -TINY, margin)
-                unknown = np.isnan(margin)
-                return Bounds(np.where(unknown, -np.inf, margin), np.where(unknown, np.inf, margin))
-            case Logic(operator="not", operands=(inner,)):
-                return -self.bounds(inner)
-            case Logic(operator=operator, operands=(first, second)):
-                left, right = self.bounds(first), self.bounds(second)
+                near, far = self._margin(node, are_far=False), self._margin(node, are_far=True)
+                far = near if self.is_near else far
+                unknown = np.isnan(near) | np.isnan(far)
+                return Bounds(
+                    np.where(unknown, -np.inf, np.minimum(near, far)),
+                    np.where(unknown, np.inf, np.maximum(near, far)),
+                )
+            case Logic(operator="not"):
+                return -self.bounds(node.operands[0])
+            case Logic(operator=operator):
+                left, right = map(self.bounds, node.operands)
                 if operator == "and":
                     return _each(np.minimum, left, right)
                 return _each(np.maximum, -left if operator == "implies" else left, right)
-            case Temporal(operator="always", operands=(inner,), interval=interval):
-                return self._always(self.bounds(inner), interval)
-            case Temporal(operator="eventually", operands=(inner,), interval=interval):
-                return self._eventually(self.bounds(inner), interval)
-            case Temporal(operands=(first, second), interval=interval):
-                return self._until(self.bounds(first), self.bounds(second), interval)
-            case _:
-                raise NotObservable("the formula has a part that cannot be judged")
+            case Temporal(operator="always"):
+                return self._always(self.bounds(node.operands[0]), node.interval)
+            case Temporal(operator="eventually"):
+                return self._eventually(self.bounds(node.operands[0]), node.interval)
+            case Temporal():
+                first, second = map(self.bounds, node.operands)
+                return self._until(first, second, node.interval)
+
+    def _margin(self, node: Comparison, *, are_far: bool) -> FloatArray:
+        left = values_of(node.left, self.window, are_far=are_far)
+        right = values_of(node.right, self.window, are_far=are_far)
+        with np.errstate(invalid="ignore"):
+            margin = left.values - right.values
+        margin = margin if node.operator.startswith(">") else -margin
+        # a difference of zero holds for `<=`, not for `<`, and `not` turns that around
+        return np.where(margin == 0, TINY if "=" in node.operator else -TINY, margin)
 
     # -- temporal words ---------------------------------------------------------------------------
 
@@ -216,15 +228,12 @@ class Evaluation:
         coming = self._eventually(second, interval)
         count = len(self.times)
         low = _unbounded(first.low, second.low, -np.inf)
-        high = _unbounded(first.high, second.high, -np.inf)
-        pending = _unbounded(first.high, second.high, np.inf)
+        high = _unbounded(first.high, second.high, np.inf)
         before = np.arange(count)
         reached = np.minimum(begin, count - 1)
         at_low = np.where(begin < count, low[reached], -np.inf)
-        at_high = np.where(begin <= last, high[reached], np.inf)
-        if self.is_open or not math.isinf(interval.last):
-            at_pending = np.where(begin < count, pending[reached], np.inf)
-            at_high = np.where(beyond, at_pending, at_high)
+        is_begun = (begin <= last) | (beyond & (begin < count))
+        at_high = np.where(is_begun, high[reached], np.inf)
         held_low = _minima(first.low, before, begin - 1)
         held_high = _minima(first.high, before, np.minimum(begin, count) - 1)
         return Bounds(
@@ -234,51 +243,35 @@ class Evaluation:
 
     # -- what decided -----------------------------------------------------------------------------
 
-    def decider(
-        self, node: Node, index: int, *, at_least: bool
-    ) -> tuple[Comparison | None, int, int]:
+    def decider(self, node: Node, index: int, *, at_least: bool) -> tuple[Comparison, int, int]:
         """The comparison and the sample that a bound comes from, and 1, or -1 under a `not`."""
         sign = 1
         while not isinstance(node, Comparison):
             target = self._bound(node, at_least)[index]
-            found = next(
-                (
-                    (part, int(place), flips)
-                    for part, places, flips in self._parts(node, index)
-                    for values in [self._bound(part, at_least != flips)]
-                    for place in places[np.flatnonzero(
-                        (-values[places] if flips else values[places]) == target)[:1]]
-                ),
-                None,
-            )  # fmt: skip
-            if found is None:
-                return None, index, sign
-            node, index, flips = found
+            node, index, flips = next(
+                (part, int(place), flips)
+                for part, places, flips in self._parts(node, index)
+                for place in places[self._bound(part, at_least, flips)[places] == target]
+            )
             at_least, sign = at_least != flips, -sign if flips else sign
         return node, index, sign
 
-    def _bound(self, node: Node, at_least: bool) -> FloatArray:
-        bounds = self.bounds(node)
+    def _bound(self, node: Node, at_least: bool, flips: bool = False) -> FloatArray:
+        bounds = -self.bounds(node) if flips else self.bounds(node)
         return bounds.low if at_least else bounds.high
 
-    def _parts(self, node: Node, index: int) -> list[tuple[Node, IntArray, bool]]:
+    def _parts(self, node: Logic | Temporal, index: int) -> list[tuple[Node, IntArray, bool]]:
         """Parts of a formula, the samples at which they matter to it, and whether negated."""
-        here = np.array([index])
-        match node:
-            case Logic(operator="not", operands=(inner,)):
-                return [(inner, here, True)]
-            case Logic(operator=operator, operands=(first, second)):
-                return [(first, here, operator == "implies"), (second, here, False)]
-            case Temporal(operator=operator, operands=operands, interval=interval):
-                spans = self.span(interval, is_always=operator == "always")
-                first, last = int(spans[0][index]), int(spans[1][index])
-                inside = np.arange(first, last + 1)
-                if operator != "until":
-                    return [(operands[0], inside, False)]
-                stop = len(self.times) if spans[2][index] else max(first, last)
-                return [(operands[1], inside, False), (operands[0], np.arange(index, stop), False)]
-            case _:
-                return []
+        *before, last_one = node.operands
+        if isinstance(node, Logic):
+            here, is_not = np.array([index]), node.operator == "not"
+            premises = [(part, here, node.operator == "implies") for part in before]
+            return [*premises, (last_one, here, is_not)]
+        spans = self.span(node.interval, is_always=node.operator == "always")
+        first, last = int(spans[0][index]), int(spans[1][index])
+        stop = len(self.times) if spans[2][index] else max(first, last)
+        earlier = [(part, np.arange(index, stop), False) for part in before]
+        return [(last_one, np.arange(first, last + 1), False), *earlier]
 
     # -- how much was observed --------------------------------------------------------------------
 

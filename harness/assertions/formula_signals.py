@@ -25,8 +25,14 @@ class Values:
     unit: str
 
 
-def values_of(node: Number, window: Window) -> Values:
+def values_of(node: Number, window: Window, *, are_far: bool = False) -> Values:
     """A number of a formula at each sample of a window; NaN where it is not known.
+
+    Args:
+        node: The number of a formula, with its operands.
+        window: The samples that it is calculated at.
+        are_far: Whether distances at the cutoff of the recording, which are at least as much, are
+            taken for infinite.
 
     Raises:
         NotObservable: The run did not record it.
@@ -35,35 +41,38 @@ def values_of(node: Number, window: Window) -> Values:
         case Const(value=value, unit=unit):
             return Values(np.full(len(window.times), value), unit)
         case Signal():
-            return _recorded(node, window)
+            found = _recorded(node, window)
+            values = np.where(np.isfinite(found.values), found.values, np.nan)
+            if are_far and node.name == "distance":
+                values[values >= window.run.signals.clearance_cutoff] = np.inf
+            return Values(values, found.unit)
         case Arithmetic(operator=operator, operands=operands):
-            return _calculated(operator, [values_of(each, window) for each in operands])
+            numbers = [values_of(each, window, are_far=are_far) for each in operands]
+            return _calculated(operator, numbers)
+
+
+OPERATIONS: dict[str, np.ufunc] = {
+    "neg": np.negative,
+    "abs": np.abs,
+    "min": np.minimum,
+    "max": np.maximum,
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+}
 
 
 def _calculated(operator: str, operands: list[Values]) -> Values:
-    first, *others = [operand.values for operand in operands]
     units = [operand.unit for operand in operands]
     unit = next((each for each in units if each), "")
+    if (operator == "*" and all(units)) or (operator == "/" and units[1]):
+        unit = ""
     with np.errstate(divide="ignore", invalid="ignore"):
-        match operator:
-            case "neg":
-                return Values(-first, unit)
-            case "abs":
-                return Values(np.abs(first), unit)
-            case "min":
-                return Values(np.minimum(first, others[0]), unit)
-            case "max":
-                return Values(np.maximum(first, others[0]), unit)
-            case "+":
-                return Values(first + others[0], unit)
-            case "-":
-                return Values(first - others[0], unit)
-            case "*":
-                return Values(first * others[0], "" if all(units) else unit)
-            case _:
-                quotient = first / others[0]
-                known = np.where(np.isfinite(quotient), quotient, np.nan)
-                return Values(known, "" if units[1] else units[0])
+        values = OPERATIONS[operator](*(operand.values for operand in operands))
+    if operator == "/":
+        values = np.where(operands[1].values == 0, np.nan, values)
+    return Values(values, unit)
 
 
 def _recorded(node: Signal, window: Window) -> Values:
@@ -87,8 +96,7 @@ def _recorded(node: Signal, window: Window) -> Values:
         case "distance", (first, second):
             rows = recorded_distances(window.run, first, second)
             stack = np.stack([window.cut(values) for values in rows.values()])
-            known = np.where(np.isnan(stack), np.inf, stack).min(axis=0)
-            return Values(np.where(np.isinf(known), np.nan, known), "m")
+            return Values(np.where(np.isnan(stack), np.inf, stack).min(axis=0), "m")
         case name, (joint,):
             return _joint(name, joint, window)
         case _:

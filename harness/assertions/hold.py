@@ -79,10 +79,10 @@ def between_fingers(run: Run, name: str) -> BoolArray:
 
 def why_not_between(run: Run, name: str, sample: int) -> str:
     """Why an object that two sides touch is not between them; empty where it is."""
-    sides = [press[sample : sample + 1] for press in _side_presses(run, name)]
+    sides = [press[[sample]] for press in _side_presses(run, name)]
     if cradled(run, name)[sample]:
         return "it lies on them and they do not close"
-    if len(sides) != 2 or between_fingers(run, name)[sample]:
+    if len(sides) > 2 or between_fingers(run, name)[sample]:
         return ""
     if not is_opposite(*sides)[0]:
         return "they press it from the same side"

@@ -7,7 +7,7 @@ import numpy as np
 from harness.assertions.temporal import TIME_RESOLUTION, episodes, trailing_max
 from harness.assertions.window import NotObservable, object_record
 from harness.core.pose_arrays import IDENTITY
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.step import step_class
 from harness.recording.run import Run
 from harness.recording.step_results import SceneChange
@@ -95,8 +95,8 @@ def frame_present(run: Run, frame: str) -> BoolArray:
     return np.ones(len(run.signals.times), dtype=bool)
 
 
-def start_poses(run: Run, name: str) -> FloatArray:
-    """Where the object started: its pose when it last appeared or was put somewhere, shape (N, 7).
+def start_samples(run: Run, name: str) -> IntArray:
+    """When the object last appeared or was put somewhere at each sample, -1 before, shape (N,).
 
     A start is the first sample at which it is present, and the first one after a step moved it,
     however little, or made it jump; without the latter, teleporting would be lifting.
@@ -112,7 +112,12 @@ def start_poses(run: Run, name: str) -> FloatArray:
             change = step.result.find(SceneChange)
             is_moved = change is not None and name in (change.moved or ())
             starts[moved] |= jumps[moved] > (0.0 if is_moved else JUMP)
-    latest = np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
+    return np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
+
+
+def start_poses(run: Run, name: str) -> FloatArray:
+    """The pose of an object at its last start, NaN before the first one, shape (N, 7)."""
+    poses, latest = object_poses(run, name), start_samples(run, name)
     return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
 
 
@@ -122,6 +127,7 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
     The first sample is at rest by definition; where a pose is missing the speed is NaN.
     """
     linear, angular = np.zeros(len(poses)), np.zeros(len(poses))
+    missing = np.isnan(poses).any(axis=1)
     if len(poses) > 1:
         step = np.diff(run.signals.times)
         linear[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) / step
@@ -129,9 +135,9 @@ def speeds(run: Run, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
         a, b = poses[:-1, 3:], poses[1:, 3:]
         chord = np.minimum(np.linalg.norm(b - a, axis=1), np.linalg.norm(b + a, axis=1))
         angular[1:] = 4 * np.arcsin(np.minimum(chord / 2, 1.0)) / step
-        appeared = np.isnan(linear[1:]) & ~np.isnan(poses[1:, 0])
-        linear[1:][appeared] = angular[1:][appeared] = 0.0
-    linear[np.isnan(poses[:, 0])] = angular[np.isnan(poses[:, 0])] = np.nan
+    appeared = np.isnan(linear) & ~missing
+    linear[appeared] = angular[appeared] = 0.0
+    linear[missing] = angular[missing] = np.nan
     return linear, angular
 
 

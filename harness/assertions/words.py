@@ -149,7 +149,7 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     warnings: tuple[VerdictWarning, ...] = ()
     if decision.holds:
         warnings = (
-            *(margins.warnings if terms.word == "never" else ()),
+            *(margins.warnings if terms.word in ("always", "never") else ()),
             *_already_true(terms, values, window),
             *_hardly_observed(terms, observed.samples, window),
         )

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
 from harness.core.quantity import distinct
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
@@ -25,8 +27,14 @@ JAW_CLEARANCE = 0.004
 GAP_SLACK = 0.001
 """How much a gap between the pads may differ from what the robot's table says [m]."""
 MAX_LEAN = 10.0  # [degrees]
-AT_THE_PALM = 1e-4
-"""Distance up to which a TCP is at the origin of the palm [m]."""
+AJAR = 0.2
+"""Share of its travel by which a jaw is open where its direction of closing is measured."""
+IN_ONE_PLACE = 1e-4
+"""Distance up to which two points are in one place [m]."""
+HEADINGS = 4
+"""Corrections of a gripper's heading, which follows from where its TCP is."""
+PITCH_JOINTS = 4
+"""Joints of an arm that can choose a pitch, and nothing else of a rotation."""
 UP = np.array([0.0, 0.0, 1.0])
 EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 """Turns about the vertical, least first, half a turn being as good as none [rad]."""
@@ -35,46 +43,57 @@ EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Unit approach and closing axes in the TCP frame, shape (3,) each.
 
-    The approach axis points from the palm to the TCP, or to the pads where those are in one place;
-    the closing axis from one pad to the other with the hand open: closed, the frames of the pads
-    may be in one place. A single jaw has the closing axis in which it moves.
+    The closing axis leads from one pad to the other with the hand open: closed, the frames of the
+    pads may be in one place. With a single jaw it is normal to the palm's surface.
     """
-    palm, first, second = _in_tcp(cell, cell.gripper.open_position)
-    approach = -palm.translation
-    if np.linalg.norm(approach) < AT_THE_PALM:  # then it points to the middle of the pads' shapes
+    opened = _at(cell, cell.gripper.open_position)
+    approach = approach_axis(cell.description, cell.kinematics, cell.scene, opened)
+    _, first, second = _in_tcp(cell, cell.gripper.open_position)
+    closing = second.translation - first.translation
+    if np.linalg.norm(closing) < IN_ONE_PLACE:  # then from the middle of one pad's shapes
         placed = zip(cell.gripper.pads.values(), (first, second), strict=True)
         middles = [at.apply(cell.scene.corners(link)).mean(axis=0) for link, at in placed]
-        approach = np.mean(middles, axis=0)
-    closing = second.translation - first.translation
-    if _has_single_jaw(cell):
-        closing = _jaw_travel(cell)
+        closing = middles[1] - middles[0]
+    if cell.gripper.has_single_jaw:
+        closing = _from_palm_to_jaw(cell)
         approach = approach - closing * float(closing @ approach) / float(closing @ closing)
     closing = closing - approach * float(closing @ approach) / float(approach @ approach)
     return approach / np.linalg.norm(approach), closing / np.linalg.norm(closing)
 
 
-def _jaw_travel(cell: Cell) -> FloatArray:
-    """How a single jaw opens: the displacement of its middle, TCP axes, shape (3,) [m]."""
-    pads = list(cell.gripper.pads.values())
-    number = next(n for n, pad in enumerate(pads) if pad != cell.gripper.palm_link)
-    middle = cell.scene.corners(pads[number]).mean(axis=0)
-    opened, closed = (
-        _in_tcp(cell, position)[1 + number].apply(middle)
-        for position in (cell.gripper.open_position, cell.gripper.closed_position)
+def _from_palm_to_jaw(cell: Cell) -> FloatArray:
+    """The normal of the palm's surface on which a single jaw closes, TCP axes, shape (3,) [m].
+
+    It is measured where the jaw's point that closes at the TCP is with the hand a little open.
+    """
+    gripper = cell.gripper
+    number = list(gripper.pads.values()).index(_jaw(cell))
+    ends = gripper.closed_position, gripper.open_position
+    closed, ajar = (
+        _in_tcp(cell, ends[0] + share * (ends[1] - ends[0]))[1 + number] for share in (0, AJAR)
     )
-    return opened - closed
+    point = (ajar @ closed.inverse()).translation
+    palm = _in_tcp(cell, ends[0])[0]
+    surface = cell.scene.nearest_on_link(gripper.palm_link, palm.inverse().apply(point))
+    normal = point - palm.apply(surface)
+    return normal if np.linalg.norm(normal) > IN_ONE_PLACE else point
 
 
-def _has_single_jaw(cell: Cell) -> bool:
-    """Whether the gripper's palm is one of its pads."""
-    return cell.gripper.palm_link in cell.gripper.pads.values()
+def _jaw(cell: Cell) -> str:
+    """The pad that moves relative to the palm."""
+    return next(pad for pad in cell.gripper.pads.values() if pad != cell.gripper.palm_link)
+
+
+def _at(cell: Cell, position: float) -> FloatArray:
+    """The whole robot with its gripper's joint at a position, description order."""
+    state = cell.planning_start()
+    state[cell.description.joint_index[cell.gripper.joint]] = position
+    return cell.description.with_mimics(state)
 
 
 def _in_tcp(cell: Cell, position: float) -> tuple[SE3, SE3, SE3]:
     """The palm's and the pads' poses in the TCP frame at a position of the gripper's joint."""
-    gripper, state = cell.gripper, cell.planning_start()
-    state[cell.description.joint_index[gripper.joint]] = position
-    state = cell.description.with_mimics(state)
+    gripper, state = cell.gripper, _at(cell, position)
     world_to_tcp = cell.kinematics.link_pose(state, cell.description.tcp_link).inverse()
     palm, first, second = (
         world_to_tcp @ cell.kinematics.link_pose(state, link)
@@ -99,7 +118,7 @@ def grasp_depth(cell: Cell, height: float) -> float:
         )
     )
     depth = min(GRASP_DEPTH, height / 2, height - tips - CLEARANCE)
-    return depth if _has_single_jaw(cell) else min(depth, -room - CLEARANCE)
+    return depth if cell.gripper.has_single_jaw else min(depth, -room - CLEARANCE)
 
 
 def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
@@ -138,10 +157,10 @@ def _room_for_width(cell: Cell, width: float) -> FloatArray:
     be nearer to the TCP than half of the object's width.
     """
     gripper = cell.gripper
-    if not _has_single_jaw(cell):
+    if not cell.gripper.has_single_jaw:
         return np.zeros(3)
     tcp = _in_tcp(cell, gripper.open_position)[0].inverse().translation
-    away = cell.scene.distance_to_link(gripper.palm_link, tcp)
+    away = float(np.linalg.norm(tcp - cell.scene.nearest_on_link(gripper.palm_link, tcp)))
     missing = 0.5 * width + JAW_CLEARANCE - away
     return max(missing, 0.0) * gripper_axes(cell)[1]
 
@@ -167,6 +186,47 @@ def _from_above(
     approach, closing = gripper_axes(cell)
     rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
     return [SE3(turn_about(UP, turn) @ rotation, point) for turn in turns]
+
+
+def grasps_at_pitches(
+    point: FloatArray, obj: WorldObject, pitches: Sequence[float], axis: FloatArray, cell: Cell
+) -> list[SE3]:
+    """T_world_tcp of grasps at a point (3,) by an arm that turns about the vertical at `axis` (3,).
+
+    The gripper points away from the axis and below the horizontal by each pitch [rad], its closing
+    axis level; then the same half a turn about the approach.
+    """
+    approach, closing = gripper_axes(cell)
+    shift = _room_for_width(cell, _width_across(obj, cell))
+    grasps: list[SE3] = []
+    for pitch, roll in itertools.product(pitches, (1.0, -1.0)):
+        tcp, rotation = point, np.eye(3)
+        for _ in range(HEADINGS):
+            heading = math.atan2(tcp[1] - axis[1], tcp[0] - axis[0])
+            ahead = np.array([math.cos(heading), math.sin(heading), 0.0])
+            along = math.cos(pitch) * ahead - math.sin(pitch) * UP
+            rotation = _align(approach, closing, along, roll * np.cross(UP, ahead))
+            tcp = point - rotation @ shift
+        grasps.append(SE3(rotation, tcp))
+    return grasps
+
+
+def _width_across(obj: WorldObject, cell: Cell) -> float:
+    """The narrower level side of an object, 0 where it leans or has none [m]."""
+    try:
+        _, _, size, _, level = _standing(obj, cell.frame(obj.name), cell)
+    except StepFailed:
+        return 0.0
+    return size[level[0]]
+
+
+def is_grasped_by_pitch(cell: Cell, group: str) -> bool:
+    """Whether a position and the pitch of the TCP's x axis state an arm's grasp.
+
+    They do for up to four joints, if the gripper points along that axis.
+    """
+    joints = len(cell.description.groups[group].joint_names)
+    return joints <= PITCH_JOINTS and gripper_axes(cell)[0][0] > math.cos(math.radians(MAX_LEAN))
 
 
 def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
@@ -230,7 +290,9 @@ def _standing(
     """
     shape = obj.shapes[0] if has_simple_shape(obj) else _box_around(obj, cell)
     at = object_pose @ shape.pose
-    size = _extents(shape.geometry)
+    half = reach(shape.geometry, np.eye(3))
+    assert half is not None  # of no plane and no mesh
+    size = (2 * float(half[0]), 2 * float(half[1]), 2 * float(half[2]))
     vertical = int(np.argmax(np.abs(at.rotation[2])))
     lean = math.degrees(math.acos(min(1.0, abs(float(at.rotation[2, vertical])))))
     if lean > MAX_LEAN and not isinstance(shape.geometry, Sphere):
@@ -300,21 +362,6 @@ def _box_around(obj: WorldObject, cell: Cell) -> Shape:
     low, high = corners.min(axis=0), corners.max(axis=0)
     width, depth, height = (float(length) for length in high - low)
     return Shape(Box((width, depth, height)), axes @ SE3(np.eye(3), (low + high) / 2))
-
-
-def _extents(geometry: Geometry) -> tuple[float, float, float]:
-    """Size of a simple shape along its own axes [m]."""
-    match geometry:
-        case Box(size=size):
-            return size
-        case Cylinder(radius=radius, length=length):
-            return 2 * radius, 2 * radius, length
-        case Capsule(radius=radius, length=length):
-            return 2 * radius, 2 * radius, length + 2 * radius
-        case Sphere(radius=radius):
-            return 2 * radius, 2 * radius, 2 * radius
-        case _:
-            raise ValueError(f"{type(geometry).__name__} has no size")
 
 
 def _align(

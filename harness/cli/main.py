@@ -102,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         run = _module(parsed.command).run
         json_only = only_json_on_stdout() if is_json else nullcontext()
         with _package_path(getattr(parsed, "package_folders", ())), json_only:
-            code = guarded(lambda: run(parsed), ticks=ticks)
+            code = guarded(lambda: _begun(run, parsed), ticks=ticks)
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon_stdout()  # the reader of a pipe has left
@@ -114,6 +114,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         complain(f"harness: {error}")
         return ERROR_EXIT_CODE
     return code
+
+
+def _begun(run: Callable[[argparse.Namespace], int], parsed: argparse.Namespace) -> int:
+    """Run a command that can write where its report goes."""
+    if getattr(parsed, "report_dir", None) and not getattr(parsed, "no_report", False):
+        from pathlib import Path
+
+        from harness.suite.folders import refuse_unwritable
+
+        refuse_unwritable(Path(parsed.report_dir))
+    return run(parsed)
 
 
 def _abandon_stdout() -> None:

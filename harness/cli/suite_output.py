@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, output, say, say_text
-from harness.suite.cases import progress_text
 
 if TYPE_CHECKING:
     from harness.reporting.suite.columns import Columns
@@ -127,6 +126,8 @@ def show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: f
     """What an interruption left undone, and how to go on; nothing where there was none."""
     if not suite.is_interrupted:
         return
+    from harness.suite.cases import progress_text
+
     after = f"interrupted after {seconds:.1f} s"
     if len(suite.jobs) == 1:
         where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())

@@ -13,12 +13,15 @@ HarnessError
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from harness.core.details import Detail, Details
 from harness.core.printable import columns_of, printable
+
+Item = TypeVar("Item")
+Found = TypeVar("Found")
 
 ErrorCode = Literal[
     "PLANNING_FAILED",
@@ -129,6 +132,27 @@ class SpecError(HarnessError):
             problems, key=lambda problem: (problem.path, problem.line, problem.column)
         )
         super().__init__("\n".join(map(str, self.problems)))
+
+
+def collected(
+    read: Callable[[Item], Found], items: Iterable[Item], kind: type[SpecError] = SpecError
+) -> list[Found]:
+    """What is read from each item.
+
+    Raises:
+        SpecError: Items have mistakes: those of all items together if they are of the kind, else
+            the first.
+    """
+    found: list[Found] = []
+    problems: list[Problem] = []
+    for item in items:
+        try:
+            found.append(read(item))
+        except kind as error:
+            problems += error.problems
+    if problems:
+        raise kind(problems)
+    return found
 
 
 class RobotError(HarnessError):

@@ -8,17 +8,24 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.collision import Pair, colliding, why_not_excused
-from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
+from harness.assertions.collision import Pair, colliding, held_by, why_not_excused
+from harness.assertions.contacts import (
+    DEBOUNCE,
+    bodies,
+    could_touch,
+    pairs_of,
+    unseen_contacts,
+)
+from harness.assertions.excused_force import SPAN
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
-from harness.assertions.temporal import episodes
+from harness.assertions.temporal import episodes, without_gaps
 from harness.assertions.text import amount
-from harness.assertions.window import Window
+from harness.assertions.window import NotObservable, Window
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.language.base import Flag, Name
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
@@ -42,21 +49,31 @@ LEFT = Quantity(
 class Collision(Predicate):
     """Two bodies touch that may not: no pair allows it, no grasp, no object on its support.
 
-    What the hand grips, and what it holds (welded or between the fingers) may touch what it stood
-    on until it leaves that, and what it is put down on. Such a contact is excused as far as
-    gripping, carrying and putting down explain it: its force, on average over 50 ms, is at most
-    twice the weight of the object and of what rests on it, plus the grip that the gripper's motor
-    exerts where a link of the hand presses or the gripper moves, plus 1 N (a tenth of a millimetre
-    of position error). An average is an impulse: a blow of a millisecond may peak higher. And the
-    object is dragged along the other body by less than 2 cm; along one contact the distances of
-    several holds add up. Beyond that it is a collision.
+    The robot and what its hand holds are judged, each with anything. Objects that the hand does not
+    hold may touch each other: with two objects of which it never holds one, the expectation is not
+    observable, and `in_contact` is the one to use.
+
+    The hand may touch what it grips. What it holds (welded or between the fingers) may touch what
+    it stood on until it leaves that, and what it is put down on. Such a contact is a collision in
+    two cases:
+
+    - Its force, on average over 50 ms, exceeds 1 N (a tenth of a millimetre of position error) plus
+      twice what explains it. The weight of the object and of what rests on it explains it, and,
+      where a link of the hand presses or a step moves the gripper, the grip that its motor exerts.
+      While the object leaves what it stood on, the grip is added once for at most 0.1 s in all: the
+      fingers press an object onto its support until it is free. An average is an impulse: a blow
+      of a millisecond may peak higher.
+
+    - The object is dragged along the other body by 2 cm or more; along one contact the distances of
+      several holds add up.
 
     Planner and physics leave out the contact of links that the SRDF excludes. Those that are apart
     with every joint at zero, and overlap by more than 1 mm during the run (convex hulls are not
     exact), are a finding of the run, and a collision where `count_allowed` says so.
 
-    It is judged while two of the bodies are in the physics: with an object that only the planner
-    knows it is not observable, before an object is there it is not reached.
+    A collision lasts through gaps of at most 10 ms, as a contact does. It is judged while two of
+    the bodies are in the physics: with an object that only the planner knows it is not observable,
+    before an object is there it is not reached.
     """
 
     short = "between"
@@ -104,13 +121,18 @@ class Collision(Predicate):
             if self.between is None
             else (bodies(run, word) for word in self.between)
         )
+        if not (first | second) & links and not any(held_by(run, name) for name in first | second):
+            raise NotObservable(
+                "the hand holds neither of the two during the run; `in_contact` judges whether"
+                " objects that it does not hold touch"
+            )
         possible = pairs_of(first, second)
         together = window.cut(could_touch(run, possible))
         return replace(
             self._contacts(window),
             applies=together,
             pairs=len(possible),
-            warnings=skipped_contacts(run, possible),
+            warnings=unseen_contacts(run, possible),
         )
 
     def _contacts(self, window: Window) -> MarginSignal:
@@ -118,18 +140,18 @@ class Collision(Predicate):
         run = window.run
         pairs = self._pairs(run)
         allowed_too = self.count_allowed
-        guilty = {pair: window.cut(colliding(run, pair, allowed_too)) for pair in pairs}
         unknown = np.zeros(len(window.times), dtype=bool)
         for pair in pairs:
             unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
         if unknown.any():
             values = np.where(unknown, np.nan, -1.0)
             return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
-        forces = {
-            pair: np.where(guilty[pair], window.cut(run.signals.contact_forces[pair]), 0.0)
-            for pair in pairs
-            if guilty[pair].any()
-        }
+        forces: dict[Pair, FloatArray] = {}
+        for pair in pairs:
+            force = _force(run, colliding(run, pair, allowed_too), run.signals.contact_forces[pair])
+            lasting = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
+            if (lasting > 0).any():
+                forces[pair] = lasting
         overlaps = _overlaps_at_start(window, forces)
         if overlaps:
             return _overlapped(forces, overlaps)
@@ -206,6 +228,19 @@ class Collision(Predicate):
         return best, name
 
 
+def _force(run: Run, guilty: BoolArray, forces: FloatArray) -> FloatArray:
+    """The force while two bodies collide, else 0 [N], shape (N,).
+
+    An average over the time before can make a contact a collision: its first sample has the largest
+    force of this time.
+    """
+    found = np.where(guilty, forces, 0.0)
+    for start, _ in episodes(guilty):
+        averaged = (run.signals.times > run.signals.times[start] - SPAN)[: start + 1]
+        found[start] = forces[: start + 1][averaged].max()
+    return found
+
+
 def _overlaps_at_start(window: Window, forces: dict[Pair, FloatArray]) -> dict[Pair, float]:
     """Depths [m] of the colliding pairs that overlap when the run begins, the deepest first."""
     found: dict[Pair, float] = {}
@@ -268,14 +303,16 @@ def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
         texts: list[str] = []
         first = {pair: int(np.argmax(force > 0)) for pair, force in forces.items()}
         for pair in sorted(forces, key=lambda pair: (first[pair], pair)):
-            start, stop = episodes(forces[pair] > 0)[0]
+            spans = episodes(forces[pair] > 0)
+            started = window.time(spans[0][0])
             largest = float(forces[pair].max())
-            lasted = window.time(stop - 1) - window.time(start)
+            lasted = sum(window.time(stop - 1) - window.time(start) for start, stop in spans)
+            in_all = " in all" if len(spans) > 1 else ""
             names = f"{pair[0]} and {pair[1]}"
             why = why_not_excused(window.run, pair)
-            measures.append(measured(FORCE, largest, 0.0, "<=", window.time(start), names))
+            measures.append(measured(FORCE, largest, 0.0, "<=", started, names))
             texts.append(
-                f"{names} collide from t={window.time(start):.3f} s for {amount(lasted, 's')},"
+                f"{names} collide from t={started:.3f} s for {amount(lasted, 's')}{in_all},"
                 f" with up to {amount(largest, 'N')}{f' ({why})' if why else ''}"
             )
         if total[index] <= 0:

@@ -42,23 +42,22 @@ class FractionCheck(Predicate):
         run = window.run
         least = np.full(len(run.signals.times), np.inf)
         reporters = [
-            (step, followed.fraction)
+            (step, last, followed.fraction)
             for step in run.steps
             if step.status != "not reached"
             and (followed := step.result.find(CartesianPathResult)) is not None
-            and window.start <= max(step.end_index - 1, step.start_index) < window.stop
+            and window.start <= (last := max(step.end_index - 1, step.start_index)) < window.stop
         ]
         if not reporters:
             refuse_unrecorded_steps(run)
             raise NotReached("no step of it followed a Cartesian path")
-        for step, share in reporters:
-            last = max(step.end_index - 1, step.start_index)
+        for _, last, share in reporters:
             least[last:] = np.minimum(least[last:], share)
         reported = window.cut(least)
         part = Part(FRACTION, reported, self.at_least, ">=", ceiling=1.0)
 
         def text(_: int, measure: Measure) -> str:
-            worst = min(reporters, key=lambda reporter: reporter[1])[0]
+            worst = min(reporters, key=lambda reporter: reporter[2])[0]
             followed, required = percentages(measure.value, self.at_least)
             return f"{followed} of the path of {worst.id} followed, {required} required"
 

@@ -10,11 +10,17 @@ from pydantic import Field
 
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import UP, object_poses, physical_poses, present
+from harness.assertions.poses import (
+    UP,
+    object_poses,
+    physical_poses,
+    present,
+    start_samples,
+)
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window, object_record
 from harness.cell.scope import At
-from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
+from harness.core.geometry import Shape, reach
 from harness.core.pose_arrays import angle_between, relative, rotate
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
@@ -23,6 +29,7 @@ from harness.language.expectation import Quantity
 from harness.recording.run import ObjectRecord
 from harness.recording.verdict import Measure
 
+X, Y, Z = np.eye(3)
 PARALLEL = 1e-9
 """A direction with a smaller part along an axis runs parallel to the planes across it."""
 
@@ -93,12 +100,11 @@ class In(ObjectPredicate):
         return all_of(window, parts, text, present=there)
 
     def unchanged(self, window: Window) -> str:
-        before = replace(window, start=0)
-        margins = self.margins(before).values
-        known = margins[~np.isnan(margins)]
-        if (known < 0).any():
+        begin = int(start_samples(window.run, self.object)[window.stop - 1])
+        if (self.margins(replace(window, start=begin)).values < 0).any():
             return ""
-        return f"{self.object} was in {self.container} since the run began"
+        since = "a step put it there" if begin else "the run began"
+        return f"{self.object} was in {self.container} since {since}"
 
 
 def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:
@@ -115,19 +121,9 @@ def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:
 
 
 def _corners(shape: Shape, name: str) -> tuple[FloatArray, FloatArray]:
-    axes = np.abs(shape.pose.rotation)
-    along = axes[:, 2]  # how much of the shape's own z axis points along each axis of the object
-    match shape.geometry:
-        case Box(size=size):
-            half = axes @ (0.5 * np.array(size))
-        case Sphere(radius=radius):
-            half = np.full(3, radius)
-        case Capsule(radius=radius, length=length):
-            half = 0.5 * length * along + radius
-        case Cylinder(radius=radius, length=length):
-            half = 0.5 * length * along + radius * np.sqrt(np.maximum(0.0, 1 - along**2))
-        case _:
-            raise NotObservable(f"the extent of '{name}' is not known: it is no box or cylinder")
+    half = reach(shape.geometry, shape.pose.rotation)  # along each axis of the object
+    if half is None:
+        raise NotObservable(f"the extent of '{name}' is not known: it is no box or cylinder")
     return shape.pose.translation - half, shape.pose.translation + half
 
 
@@ -139,11 +135,11 @@ def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:
         points: The points in the container's frame [m], shape (n, 3).
     """
     down, *around = (
-        np.any([_is_ahead(shape, points, np.array(way)) for shape in record.shapes], axis=0)
-        for way in ((0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
+        np.any([_is_ahead(shape, points, way) for shape in record.shapes], axis=0)
+        for way in (-Z, X, -X, Y, -Y)
     )
     enclosed = np.where(down | np.all(around, axis=0), 1.0, 0.0)
-    return np.where(np.isnan(points[:, 0]), np.nan, enclosed)
+    return np.where(np.isnan(points).any(axis=1), np.nan, enclosed)
 
 
 def _is_ahead(shape: Shape, points: FloatArray, way: FloatArray) -> BoolArray:

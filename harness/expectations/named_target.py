@@ -42,9 +42,8 @@ class NamedTarget(Predicate):
         """The worst joint's distance from the named state [rad or m]."""
         robot = window.run.robot
         hand = "" if robot.gripper is None else robot.gripper.group
-        candidates = [self.group] if self.group is not None else [robot.arm_group, hand]
-        candidates += [] if self.group is not None else sorted(robot.named_states)
-        for group in candidates:
+        every = [robot.arm_group, hand, *sorted(robot.named_states)]
+        for group in every if self.group is None else [self.group]:
             state = robot.named_states.get(group, {}).get(self.state)
             if state is not None:
                 is_given = "tolerance" in self.model_fields_set

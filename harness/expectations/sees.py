@@ -74,8 +74,9 @@ class HueRange(SpecModel):
         """The first and the last hue [deg], in [0, 360)."""
         if self.named is not None:
             return HUES[self.named]
-        low, high = self.hue or (0.0, 2 * math.pi)
-        return math.degrees(low) % 360.0, math.degrees(high) % 360.0
+        assert self.hue is not None  # the model has exactly one of them
+        low, high = np.degrees(self.hue) % 360.0
+        return float(low), float(high)
 
 
 class Sees(Predicate):

@@ -18,7 +18,7 @@ from harness.language.base import Fraction, PositiveLength, SpecModel
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose
 from harness.language.step import step_class
-from harness.recording.link_poses import replayed_link_poses as placed_links
+from harness.recording.link_poses import planned_tcp_poses
 from harness.recording.verdict import Measure
 
 SHORTEST = 1e-6
@@ -162,12 +162,8 @@ def _planned(window: Window) -> list[FloatArray]:
         raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
     planned = step.trajectory.positions
     rows = [0, len(planned) // 2, -1] if step_class(step.verb).is_arc else [0, -1]
-    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
-    positions = np.repeat(window.cut(run.signals.joint_positions)[:1], len(rows), axis=0)
-    for joint, values in zip(step.trajectory.joint_names, planned[rows].T, strict=True):
-        positions[:, columns[joint]] = values
-    tcp = placed_links(run.robot, positions, [run.robot.tcp_link]).get(run.robot.tcp_link)
-    if tcp is None or len(tcp) != len(rows):
+    tcp = planned_tcp_poses(run, step, step.trajectory.joint_names, planned[rows])
+    if tcp is None:
         raise NotObservable(f"how '{run.robot.tcp_link}' moves with the joints was not recorded")
     return [np.broadcast_to(point, (len(window.times), 3)) for point in tcp[:, :3]]
 

@@ -135,7 +135,7 @@ def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part
 def _between(
     quantity: Quantity, values: FloatArray, joint: JointRecord, slack: float
 ) -> list[Part]:
-    scale, unit = 0.5 * (joint.upper - joint.lower) or 1.0, joint_unit(joint)
+    scale, unit = 0.5 * (joint.upper - joint.lower), joint_unit(joint)
     lower, upper = joint.lower - slack, joint.upper + slack
     return [
         Part(quantity, values, lower, ">=", scale, detail=joint.name, measured_unit=unit),

@@ -14,10 +14,10 @@ import numpy as np
 from harness.core.geometry import Shape
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray
-from harness.planning.collision.geometry import coal_geometry
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.forward_kinematics import LinkPoses
+from harness.robot.solids import coal_geometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,10 +139,11 @@ class TrackedShape:
     upper: FloatArray
 
     def gap(self, points: FloatArray) -> FloatArray:
-        """Distance of points in the body frame, shape (N, 3), from the bounding box [m], (N,)."""
-        seen = (points - self.pose.getTranslation()) @ self.pose.getRotation()
-        outside = seen - np.clip(seen, self.lower, self.upper)
-        return np.sqrt(np.einsum("ij,ij->i", outside, outside))
+        """Distance of points in the body frame, (N, 3, K), from the bounding box [m], (N, K)."""
+        turned = self.pose.getRotation().T
+        seen = turned @ points - (turned @ self.pose.getTranslation())[:, None]
+        outside = seen - np.clip(seen, self.lower[:, None], self.upper[:, None])
+        return np.sqrt(np.einsum("ijk,ijk->ik", outside, outside))
 
 
 def tracked_shapes(body: str, shapes: Sequence[Shape]) -> tuple[TrackedShape, ...]:
@@ -176,7 +177,8 @@ def relative_track(first: BodyTrack, second: BodyTrack) -> BodyTrack:
 def centers_of(seen: BodyTrack, shapes: Sequence[TrackedShape]) -> FloatArray:
     """The centres of the balls about shapes of a body along its track [m], shape (N, 3, shapes)."""
     centers = np.column_stack([shape.center for shape in shapes])
-    return seen.translations[:, :, None] + seen.rotations @ centers
+    turned = seen.rotations.reshape(-1, 3) @ centers  # many times faster than one by one
+    return seen.translations[:, :, None] + turned.reshape(len(seen.rotations), 3, -1)
 
 
 def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArray:

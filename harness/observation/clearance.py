@@ -12,6 +12,7 @@ from harness.core.sharing import shared
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.observation.body_tracks import (
     BodyTrack,
+    TrackedShape,
     carried_track,
     link_track,
     links_with_shapes,
@@ -20,12 +21,7 @@ from harness.observation.body_tracks import (
     tracked_shapes,
 )
 from harness.observation.measured_clearance import MeasuredClearance
-from harness.observation.nearest import (
-    ShapePair,
-    largest_travel,
-    pairs_between,
-    smallest_distances,
-)
+from harness.observation.nearest import largest_travel, pairs_between, smallest_distances
 from harness.observation.sampled_clearance import (
     LARGEST_ERROR,
     around_smallest,
@@ -45,6 +41,9 @@ from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
+
+Bodies = tuple[Sequence[TrackedShape], Sequence[TrackedShape], BodyTrack]
+"""The shapes of a moving body and of another, and the track of the first as the other sees it."""
 
 
 class CoalClearance:
@@ -178,17 +177,17 @@ class CoalClearance:
     def _robot_to_itself(
         self, found: MeasuredClearance, links: LinkPoses, motion: Motion, cutoff: float
     ) -> None:
-        def pairs() -> Iterator[ShapePair]:
+        def bodies() -> Iterator[Bodies]:
             names = list(self._shapes)
             for later, second in enumerate(names):
                 for first in names[:later]:
                     if self._is_self_pair(first, second):
                         seen = relative_track(link_track(links, first), link_track(links, second))
-                        yield from pairs_between(self._shapes[first], self._shapes[second], seen)
+                        yield self._shapes[first], self._shapes[second], seen
 
         inputs = self.description.key, motion.joint_positions
         everywhere = np.ones(found.count, dtype=bool)
-        self._measure(found, (ROBOT, ROBOT), everywhere, inputs, pairs, cutoff)
+        self._measure(found, (ROBOT, ROBOT), everywhere, inputs, bodies, cutoff)
 
     def _robot_to_object(
         self,
@@ -202,19 +201,19 @@ class CoalClearance:
     ) -> None:
         track = track.part(there)
 
-        def pairs() -> Iterator[ShapePair]:
+        def bodies() -> Iterator[Bodies]:
             standing = self.description.static_links if record.is_static else frozenset()
             shapes = tracked_shapes(record.name, record.shapes)
             for link, link_shapes in self._shapes.items():
                 if link not in standing:
                     seen = relative_track(link_track(links, link).part(there), track)
-                    yield from pairs_between(link_shapes, shapes, seen)
+                    yield link_shapes, shapes, seen
 
         inputs = (
             *(self.description.key, motion.joint_positions[there]),
             *(record.shapes, record.is_static, track.rotations, track.translations),
         )
-        self._measure(found, (ROBOT, record.name), there, inputs, pairs, cutoff)
+        self._measure(found, (ROBOT, record.name), there, inputs, bodies, cutoff)
 
     def _held_to_objects(
         self,
@@ -242,27 +241,27 @@ class CoalClearance:
                 there &= ~_held(record.name, (attachment,), motion)
                 if record.name in same or not there.any():
                     continue
-                bodies = (name, shapes.get(name, ())), (record.name, record.shapes)
+                both = (name, shapes.get(name, ())), (record.name, record.shapes)
                 tracked = track.part(there), other.part(there)
-                self._object_to_object(found, there, bodies, tracked, cutoff)
+                self._object_to_object(found, there, both, tracked, cutoff)
 
     def _object_to_object(
         self,
         found: MeasuredClearance,
         there: BoolArray,
-        bodies: tuple[tuple[str, Sequence[Shape]], tuple[str, Sequence[Shape]]],
+        shapes: tuple[tuple[str, Sequence[Shape]], tuple[str, Sequence[Shape]]],
         tracks: tuple[BodyTrack, BodyTrack],
         cutoff: float,
     ) -> None:
         """Distances of two objects, where both are there."""
 
-        def pairs() -> Sequence[ShapePair]:
-            first, second = (tracked_shapes(*body) for body in bodies)
-            return pairs_between(first, second, relative_track(*tracks))
+        def bodies() -> Iterator[Bodies]:
+            first, second = (tracked_shapes(*each) for each in shapes)
+            yield first, second, relative_track(*tracks)
 
-        inputs = bodies, [(track.rotations, track.translations) for track in tracks]
-        (first, _), (second, _) = bodies
-        self._measure(found, (first, second), there, inputs, pairs, cutoff)
+        inputs = shapes, [(track.rotations, track.translations) for track in tracks]
+        (first, _), (second, _) = shapes
+        self._measure(found, (first, second), there, inputs, bodies, cutoff)
 
     def _measure(
         self,
@@ -270,7 +269,7 @@ class CoalClearance:
         key: Pair,
         there: BoolArray,
         inputs: tuple[object, ...],
-        pairs: Callable[[], Iterable[ShapePair]],
+        bodies: Callable[[], Iterable[Bodies]],
         cutoff: float,
     ) -> None:
         """Distances of two bodies, measured here or by a case in which they moved alike."""
@@ -278,12 +277,14 @@ class CoalClearance:
             return
 
         def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
-            every = list(pairs())
-            if not every:
+            some = [each for each in bodies() if each[0] and each[1]]
+            if not some:
                 return ()
-            distances, which = smallest_distances(every, cutoff)
+            every = [pair for each in some for pair in pairs_between(*each, cutoff)]
+            count = int(np.count_nonzero(there))
+            distances, which = smallest_distances(every, cutoff, count)
             of_pair = np.array([self._index.get(pair.first.body, -1) for pair in every] + [-1])
-            return distances, of_pair[which], largest_travel(every, cutoff)
+            return distances, of_pair[which], largest_travel(every, cutoff, count)
 
         result = shared("distances", lambda: (*inputs, cutoff), measured, is_often_needed=False)
         if result:

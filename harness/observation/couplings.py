@@ -17,7 +17,7 @@ TURNED_APART = 0.02
 
 def coupling_findings(run: Run, description: RobotDescription) -> tuple[Finding, ...]:
     """The mimic joint that deviated most from its coupling, if that is more than a servo's lag."""
-    positions, worst = run.signals.joint_positions, (0.0, 0, "")
+    positions, worst = run.signals.joint_positions, (1.0, 0, "")
     for column, joint in enumerate(description.movable_joints):
         if joint.mimic is None or not len(positions):
             continue
@@ -26,7 +26,7 @@ def coupling_findings(run: Run, description: RobotDescription) -> tuple[Finding,
         deviation = np.nan_to_num(np.abs(positions[:, column] - expected))
         share = deviation / APART.get(joint.kind, TURNED_APART)
         row = int(share.argmax())
-        if share[row] > max(1.0, worst[0]):
+        if share[row] > worst[0]:
             worst = (float(share[row]), row, joint.name)
     if not worst[2]:
         return ()

@@ -40,7 +40,7 @@ def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signa
     moving = LinkPoses(description, signals.joint_positions[samples])
     overlaps: dict[Pair, FloatArray] = {}
     for pair, pairs in _pairs_apart_by_design(description, moving):
-        distances, _ = smallest_distances(pairs, 0.0)
+        distances, _ = smallest_distances(pairs, 0.0, len(samples))
         if float(distances.min()) < -LEAST_DEPTH:
             overlaps[pair] = np.maximum(-between(samples, distances, count), 0.0)
     return replace(signals, link_overlaps=overlaps)

@@ -53,36 +53,41 @@ _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
 def pairs_between(
-    first: Sequence[TrackedShape], second: Sequence[TrackedShape], seen: BodyTrack
+    first: Sequence[TrackedShape],
+    second: Sequence[TrackedShape],
+    seen: BodyTrack,
+    cutoff: float = np.inf,
 ) -> list[ShapePair]:
-    """Every shape of one body against every shape of another.
+    """Shapes of one body against shapes of another, in their order.
 
     Args:
         first: The shapes of the moving body.
         second: The shapes of the other.
         seen: Track of the first body as seen from the second.
+        cutoff: Pairs that are never nearer than this [m], between samples neither, may be left out.
     """
     if not first or not second:
         return []
-    centers = centers_of(seen, first)
-    travelled = travels(seen, centers, np.array([shape.radius for shape in first]))
+    centers, radii = centers_of(seen, first), np.array([shape.radius for shape in first])
+    travelled = travels(seen, centers, radii)
     since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
-    pairs: list[ShapePair] = []
-    for column, a in enumerate(first):
-        for b in second:
-            gaps = np.repeat(b.gap(centers[::LOOKS, :, column]), LOOKS)[: len(travelled)]
-            least = gaps - since[:, column] - a.radius
-            pairs.append(ShapePair(a, b, seen, travelled[:, column], least))
-    return pairs
+    margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
+    found: list[tuple[int, ShapePair]] = []
+    for b in second:
+        gaps = np.repeat(b.gap(centers[::LOOKS]), LOOKS, axis=0)[: len(travelled)]
+        least = gaps - since - radii
+        near = np.flatnonzero(least.min(axis=0) - margin < cutoff).tolist()
+        found += [(i, ShapePair(first[i], b, seen, travelled[:, i], least[:, i])) for i in near]
+    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
 
 
-def largest_travel(pairs: Sequence[ShapePair], cutoff: float) -> FloatArray:
-    """The most that a pair moves since the sample before [m], shape (N,).
+def largest_travel(pairs: Sequence[ShapePair], cutoff: float, count: int) -> FloatArray:
+    """The most that a pair moves since the sample before [m], shape (count,).
 
     Pairs count where they may come nearer than the cutoff in between: two bodies that are d1 and d2
     apart and move by s against each other are at least (d1 + d2 - s) / 2 apart.
     """
-    moved = np.zeros(len(pairs[0].travel))
+    moved = np.zeros(count)
     for pair in pairs:
         steps = np.diff(pair.travel)
         is_near = pair.least[1:] + pair.least[:-1] - steps < 2 * cutoff
@@ -90,7 +95,9 @@ def largest_travel(pairs: Sequence[ShapePair], cutoff: float) -> FloatArray:
     return moved
 
 
-def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[FloatArray, IntArray]:
+def smallest_distances(
+    pairs: Sequence[ShapePair], cutoff: float, count: int
+) -> tuple[FloatArray, IntArray]:
     """The smallest distance over the pairs at every sample, and which pair it was.
 
     Conservative advancement: a pair measured at distance d is at least d minus what it has
@@ -98,13 +105,13 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
     cutoff. The result is exact to `STILL` wherever it is below the cutoff.
 
     Args:
-        pairs: All over the same N samples, none absent.
+        pairs: All over the same samples, none absent.
         cutoff: Larger distances are reported as the cutoff [m].
+        count: The number of samples.
 
     Returns:
-        Distances (N,), at most `cutoff`, and indices of pairs (N,), -1 at the cutoff.
+        Distances (count,), at most `cutoff`, and indices of pairs (count,), -1 at the cutoff.
     """
-    count = len(pairs[0].travel)
     nearest = np.full(count, cutoff)
     which = np.full(count, -1, dtype=np.int64)
     first = np.array([pair.distance(0) if pair.least.min() < cutoff else np.inf for pair in pairs])
@@ -131,7 +138,7 @@ def smallest_distances(pairs: Sequence[ShapePair], cutoff: float) -> tuple[Float
         if previous >= 0 and measured(previous) < best:  # most likely the smallest again
             best, best_pair = known[previous], previous
         bound = key - travelled[sample]
-        rivals = (bound < best).nonzero()[0]
+        rivals = np.flatnonzero(bound < best)
         bounds = bound[rivals]
         order = bounds.argsort(kind="stable")
         for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):

@@ -70,7 +70,8 @@ def parts_of_run(times: FloatArray, samples: IntArray) -> list[IntArray]:
     process, it is measured.
     """
     length = _part_length(_timestep(times))
-    bounds = [*range(0, len(times) - 1, length), len(times) - 1] if len(times) > 1 else [0, 0]
+    last = len(times) - 1
+    bounds = [*range(0, max(last, 1), length), last]
     at = np.searchsorted(samples, bounds)
     return [samples[first : last + 1] for first, last in pairwise(at.tolist())]
 

@@ -87,6 +87,6 @@ class PlanningScene(Protocol):
         """Corners of the boxes around a body's shapes, in its frame, shape (n, 3) [m]."""
         ...
 
-    def distance_to_link(self, link: str, point: FloatArray) -> float:
-        """Distance between a point in a link's frame and the link's shapes, 0 inside [m]."""
+    def nearest_on_link(self, link: str, point: FloatArray) -> FloatArray:
+        """The point of a link's shapes nearest to a point, itself inside, link axes, shape (3,)."""
         ...

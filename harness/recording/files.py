@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
@@ -39,6 +40,12 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
         path = folder / checked(name)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(files[name])
+
+
+def disk_advice(error: OSError) -> str:
+    """The beginning of the advice on a file that cannot be written."""
+    is_full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+    return "free some space there, or " if is_full else ""
 
 
 def checked(name: str) -> str:

@@ -1,10 +1,10 @@
-"""Acceleration limits of imported arms from their effort limits; URDF has no such limits."""
+"""Limits of imported arms that their files lack: what is assumed, and what efforts allow."""
 
 # pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,13 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.urdf.write import write_urdf
+
+ACCELERATION = (5.0, "rad/s^2"), (1.0, "m/s^2")
+"""Acceleration limits of revolute and of prismatic joints, which URDF lacks; 5 rad/s^2 as MoveIt's
+Setup Assistant suggests."""
+
+VELOCITY = (1.5, "rad/s"), (0.2, "m/s")
+"""Velocity limits of revolute and of prismatic joints without one in the file."""
 
 SAMPLES = 60
 """Number of random configurations, the same in every run, in which efforts are evaluated."""
@@ -36,7 +43,7 @@ def with_possible_accelerations(
         known: Joints whose acceleration is given and not assumed.
     """
     driven = [joint for joint in description.movable_joints if joint.mimic is None]
-    if not any(np.isfinite(joint.effort) for joint in driven):
+    if all(joint.name in known or not np.isfinite(joint.effort) for joint in driven):
         return description
     needed, gravity = _efforts(description)
     shares: dict[str, float] = {}
@@ -56,18 +63,45 @@ def with_possible_accelerations(
         replace(joint, acceleration=joint.acceleration * shares.get(joint.name, 1.0))
         for joint in description.joints
     )
-    notes += _assumptions(description.joints, shares)
     return replace(description, joints=joints, notes=(*description.notes, *notes))
 
 
-def _assumptions(joints: tuple[Joint, ...], shares: Mapping[str, float]) -> list[str]:
-    lowered = [
-        f"{joint.name} {joint.acceleration * shares[joint.name]:.2g}"
-        for joint in joints
-        if shares.get(joint.name, 1.0) < 1.0
-    ]
-    text = "no acceleration limits in the URDF: 5 rad/s^2 and 1 m/s^2 are assumed"
-    return [text + (f", and what efforts allow: {', '.join(lowered)}" if lowered else "")]
+def with_assumed_limits_listed(
+    description: RobotDescription, known: frozenset[str]
+) -> RobotDescription:
+    """The robot with notes on the velocity and acceleration limits that no file has.
+
+    Args:
+        description: The robot with all its limits.
+        known: Joints whose acceleration is given and not assumed.
+    """
+    driven = [joint for joint in description.movable_joints if joint.mimic is None]
+    slow = [joint for joint in driven if joint.is_velocity_assumed]
+    free = [joint for joint in driven if joint.name not in known]
+    notes: list[str] = []
+    if slow:
+        notes.append(f"no velocity limits of {_names(slow)}: {_both(VELOCITY, slow)}")
+    if free:
+        lowered = [
+            f"{joint.name} {joint.acceleration:.2g}"
+            for joint in free
+            if joint.acceleration < ACCELERATION[joint.kind == "prismatic"][0]
+        ]
+        whose = "" if len(free) == len(driven) else f" of {_names(free)}"
+        also = f", and what efforts allow: {', '.join(lowered)}" if lowered else ""
+        notes.append(f"no acceleration limits{whose}: {_both(ACCELERATION, free)}{also}")
+    return replace(description, notes=(*description.notes, *notes))
+
+
+def _names(joints: Sequence[Joint]) -> str:
+    return ", ".join(joint.name for joint in joints)
+
+
+def _both(limits: tuple[tuple[float, str], ...], joints: Sequence[Joint]) -> str:
+    """The limits that are assumed for joints."""
+    kinds = sorted({joint.kind == "prismatic" for joint in joints})
+    stated = [f"{limits[kind][0]:g} {limits[kind][1]}" for kind in kinds]
+    return f"{' and '.join(stated)} {'is' if len(joints) == 1 else 'are'} assumed"
 
 
 def _efforts(description: RobotDescription) -> tuple[FloatArray, FloatArray]:

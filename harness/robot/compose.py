@@ -198,6 +198,7 @@ def _allowed(
 
 
 def _gripper(facts: GripperFacts) -> Gripper:
+    axis = None if facts.approach_axis is None else np.array(facts.approach_axis)
     return Gripper(
         group=facts.group,
         joint=facts.joint,
@@ -210,6 +211,7 @@ def _gripper(facts: GripperFacts) -> Gripper:
         max_effort=facts.max_effort,
         widths=np.array(facts.widths),
         friction=facts.friction,
+        approach_axis=None if axis is None else axis / np.linalg.norm(axis),
     )
 
 

@@ -47,6 +47,10 @@ class Link:
     collisions: tuple[Shape, ...] = ()
 
 
+BODY_MASS = 0.01
+"""Least mass of a link that is a body where it is not drawn [kg]; frames have grams."""
+
+
 @dataclass(frozen=True)
 class Mimic:
     """`value = multiplier * joint + offset`, as in URDF."""
@@ -66,6 +70,7 @@ class Joint:
         lower: Lower position limit; -inf when continuous.
         upper: Upper position limit; inf when continuous.
         velocity: Velocity limit; inf when the description has none.
+        is_velocity_assumed: Whether no file has the velocity limit.
         acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
         effort: Effort limit from a data sheet.
         effort_source: Source of the effort limit.
@@ -89,6 +94,7 @@ class Joint:
     friction: float = 0.0
     mimic: Mimic | None = None
     command_interfaces: tuple[str, ...] = ()
+    is_velocity_assumed: bool = False
 
     @property
     def is_movable(self) -> bool:
@@ -137,6 +143,8 @@ class Gripper:
         max_effort: Largest effort of the joint.
         widths: Rows (joint position, pad gap [m]) with rising position, shape (N, 2); for `width`.
         friction: Sliding friction coefficient of the pads.
+        approach_axis: Unit approach axis in the TCP frame, shape (3,); None for the one that
+            `harness.robot.gripper.approach` derives.
     """
 
     group: str
@@ -150,11 +158,17 @@ class Gripper:
     max_effort: float
     widths: FloatArray
     friction: float = 1.0
+    approach_axis: FloatArray | None = None
 
     @property
     def links(self) -> tuple[str, ...]:
         """Finger links of both sides: the default touch_links of attached objects."""
         return tuple(link for side in self.sides.values() for link in side)
+
+    @property
+    def has_single_jaw(self) -> bool:
+        """Whether a jaw closes on the palm, which is then one of the pads."""
+        return self.palm_link in self.pads.values()
 
 
 @dataclass(frozen=True)
@@ -258,6 +272,26 @@ class RobotDescription:
                 static.add(joint.child)
         return frozenset(static)
 
+    @cached_property
+    def shapeless_links(self) -> tuple[str, ...]:
+        """Links that a joint moves and that nothing can touch.
+
+        Neither they nor what is fixed to them has collision shapes, though they are drawn or have a
+        mass of `BODY_MASS`: no frames.
+        """
+        moved_by: dict[str, str] = {}  # link -> the link that the last movable joint moves
+        for joint in self.joints:
+            first = joint.child if joint.is_movable else moved_by.get(joint.parent, "")
+            moved_by[joint.child] = first
+        links = [link for link in self.links if moved_by.get(link.name)]
+        solid = {moved_by[link.name] for link in links if link.collisions}
+        bodies = {
+            moved_by[link.name]
+            for link in links
+            if link.visuals or (link.inertial is not None and link.inertial.mass >= BODY_MASS)
+        }
+        return tuple(name for name in self.link_names if name in bodies - solid)
+
     @property
     def default_group(self) -> str:
         """Default group of steps: the arm, else the gripper."""
@@ -285,7 +319,11 @@ class RobotDescription:
                 positions[index] = joint.mimic.multiplier * followed + joint.mimic.offset
         return positions
 
-    def start_positions(self) -> FloatArray:
-        """`start_state` in description order, mimic joints consistent, missing joints at zero."""
-        positions = np.array([self.start_state.get(name, 0.0) for name in self.joint_names])
-        return self.with_mimics(positions)
+    def start_positions(self, placed: Mapping[str, float] | None = None) -> FloatArray:
+        """`start_state` in description order, mimic joints consistent, missing joints at zero.
+
+        Args:
+            placed: Positions of joints that are elsewhere, by name.
+        """
+        named = {**self.start_state, **(placed or {})}
+        return self.with_mimics(np.array([named.get(name, 0.0) for name in self.joint_names]))

@@ -11,6 +11,7 @@ import numpy as np
 from harness.core.errors import RobotError, RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
+from harness.robot.acceleration import ACCELERATION, VELOCITY
 from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.gripper.find_hand import hand_candidates, named_hand
@@ -22,18 +23,6 @@ from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf
-
-ACCELERATION = {"prismatic": 1.0}
-"""Acceleration limit of prismatic joints, which URDF lacks [m/s^2]."""
-
-TURNING_ACCELERATION = 5.0
-"""Acceleration limit of revolute joints [rad/s^2], as MoveIt's Setup Assistant suggests."""
-
-VELOCITY = {"prismatic": 0.2}
-"""Velocity limit of prismatic joints without one in the file [m/s]."""
-
-TURNING_VELOCITY = 1.5
-"""Velocity limit of revolute joints without one in the file [rad/s]."""
 
 DAMPED_SHARE = 0.5
 """Share of a joint's effort that its damping may take at the velocity limit."""
@@ -57,7 +46,9 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     """
     notes = [*urdf.notes, *srdf.notes]
     joints = with_reflected_friction(urdf.joints)
-    urdf = replace(urdf, joints=tuple(_limited(joint, notes) for joint in joints))
+    described_in = "the URDF" if spec.mjcf is None else "the MJCF"
+    limited = tuple(_limited(joint, described_in, notes) for joint in joints)
+    urdf = replace(urdf, joints=limited)
     groups = planning_groups(srdf, urdf.joints, source)
     arm = _arm_group(spec, srdf, groups, source)
     for key in ("tcp_link", "flange_link"):
@@ -91,7 +82,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         tcp_link=tcp_link,
         flange_link=spec.flange_link or tip,
         ik_solver="auto",
-        max_acceleration=TURNING_ACCELERATION,
+        max_acceleration=ACCELERATION[False][0],
         effort_source="",
         start_state=StartState(joints=start),
         gripper=gripper,
@@ -139,27 +130,25 @@ def _listed(pairs: Sequence[tuple[str, str]]) -> str:
     return ", ".join(f"{first} - {second}" for first, second in pairs)
 
 
-def _limited(joint: Joint, notes: list[str]) -> Joint:
-    """A joint with defaults for the limits that its file lacks."""
+def _limited(joint: Joint, source: str, notes: list[str]) -> Joint:
+    """A joint with defaults for the limits that its file, the source, lacks."""
     if not joint.is_movable:
         return joint
     joint = replace(
         joint,
-        acceleration=ACCELERATION.get(joint.kind, TURNING_ACCELERATION),
-        effort_source="the URDF" if np.isfinite(joint.effort) else "",
+        acceleration=ACCELERATION[joint.kind == "prismatic"][0],
+        effort_source=source if np.isfinite(joint.effort) else "",
     )
     if not np.isfinite(joint.velocity) and joint.mimic is None:
-        velocity = VELOCITY.get(joint.kind, TURNING_VELOCITY)
-        unit = "m/s" if joint.kind == "prismatic" else "rad/s"
-        notes.append(f"joint '{joint.name}' has no velocity limit: {velocity} {unit} is assumed")
-        joint = replace(joint, velocity=velocity)
+        velocity = VELOCITY[joint.kind == "prismatic"][0]
+        joint = replace(joint, velocity=velocity, is_velocity_assumed=True)
     most = DAMPED_SHARE * joint.effort / joint.damping if joint.damping > 0 else np.inf
     if joint.velocity > most:
         notes.append(
             f"joint '{joint.name}': its damping takes {joint.damping * joint.velocity:.3g} of its "
             f"effort of {joint.effort:.3g} at {joint.velocity:.3g}; at most {most:.3g} is planned"
         )
-        joint = replace(joint, velocity=most)
+        joint = replace(joint, velocity=most, is_velocity_assumed=False)
     return joint
 
 

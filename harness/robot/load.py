@@ -17,7 +17,7 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import LARGEST_FILE, read_xml
 from harness.language.files.yaml_file import read_text
 from harness.language.scenario import RobotSpec
-from harness.robot.acceleration import with_possible_accelerations
+from harness.robot.acceleration import with_assumed_limits_listed, with_possible_accelerations
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
 from harness.robot.collision_shapes import with_collision_shapes
@@ -149,8 +149,11 @@ def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) ->
         description = replace(description, notes=(*description.notes, note))
     description, known = with_moveit_files(description, spec.moveit, base_dir)
     if spec.model is None and main is not None:
+        known |= {name for name, limits in spec.joint_limits.items() if limits.max_acceleration}
         description = with_possible_accelerations(description, known)
     description = with_options(description, spec)
+    if spec.model is None and main is not None:
+        description = with_assumed_limits_listed(description, known)
     links = spec.collision
     if not isinstance(links, str):
         parts = [part for part in (main, tool) if part is not None]

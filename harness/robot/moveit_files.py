@@ -6,6 +6,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from harness.language.files.source import Located
 from harness.robot.description import Joint
 from harness.robot.yaml_data import known_entry, number, read_data, refuse
@@ -21,7 +23,7 @@ def with_joint_limits(
     """The joints with the limits of a joint_limits.yaml, and those with an acceleration there.
 
     Positions, velocities and efforts only narrow the limits of the robot's file; accelerations,
-    which it lacks, are used unchanged.
+    and velocities that are assumed because it lacks them, are used unchanged.
 
     Raises:
         SpecError: A joint is unknown, or a limit is not a number; at line and column.
@@ -46,8 +48,9 @@ def _limited(joint: Joint, item: Located, notes: list[str]) -> Joint:
         _value(item, key) for key in ("velocity", "acceleration", "effort")
     )
     lower, upper = _value(item, "position", "min_position"), _value(item, "position")
+    widest_velocity = np.inf if joint.is_velocity_assumed else joint.velocity
     for what, value, widest in (
-        ("velocity", velocity, joint.velocity),
+        ("velocity", velocity, widest_velocity),
         ("effort", effort, joint.effort),
         ("position", upper, joint.upper),
         ("position", None if lower is None else -lower, -joint.lower),
@@ -67,7 +70,8 @@ def _limited(joint: Joint, item: Located, notes: list[str]) -> Joint:
         joint,
         lower=bounds[0],
         upper=bounds[1],
-        velocity=min(joint.velocity, velocity or joint.velocity),
+        velocity=joint.velocity if velocity is None else min(velocity, widest_velocity),
+        is_velocity_assumed=joint.is_velocity_assumed and velocity is None,
         acceleration=acceleration or joint.acceleration,
         effort=min(joint.effort, effort or joint.effort),
     )

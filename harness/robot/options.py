@@ -96,10 +96,11 @@ def _within(description: RobotDescription, name: str, position: float, where: st
 
 
 def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
-    """A joint with tighter limits; its acceleration, which URDF lacks, may have any value."""
+    """A joint with tighter limits; those that its file lacks may have any value."""
+    widest_velocity = np.inf if joint.is_velocity_assumed else joint.velocity
     for key, value, widest in (
         ("max_position", limits.max_position, joint.upper),
-        ("max_velocity", limits.max_velocity, joint.velocity),
+        ("max_velocity", limits.max_velocity, widest_velocity),
         ("max_effort", limits.max_effort, joint.effort),
     ):
         if value is not None and value > widest:
@@ -126,6 +127,7 @@ def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
         lower=lower,
         upper=upper,
         velocity=limits.max_velocity or joint.velocity,
+        is_velocity_assumed=joint.is_velocity_assumed and limits.max_velocity is None,
         acceleration=limits.max_acceleration or joint.acceleration,
         effort=limits.max_effort or joint.effort,
         effort_source="the scenario" if limits.max_effort else joint.effort_source,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import yaml
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
@@ -79,9 +79,21 @@ class GripperFacts(SpecModel):
     friction: Annotated[float, Field(ge=0)] = Field(
         default=1.0, description="Sliding friction coefficient of the pads."
     )
+    approach_axis: Xyz | None = Field(
+        default=None,
+        description="Direction in which it approaches an object, in the axes of the TCP; by "
+        "default from the palm to the pads.",
+    )
     widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] = Field(
         description="Rows of joint position and gap between the pads [m], with rising position."
     )
+
+    @field_validator("approach_axis")
+    @classmethod
+    def _some_direction(cls, axis: Xyz | None) -> Xyz | None:
+        if axis is not None and not any(axis):
+            raise ValueError("(0, 0, 0) is no direction")
+        return axis
 
 
 class Placement(SpecModel):

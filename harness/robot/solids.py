@@ -59,18 +59,21 @@ def hull_corners(solid: Any) -> FloatArray:
     return box_corners(solid)
 
 
-def distance_to_point(shapes: Iterable[Shape], point: FloatArray) -> float:
-    """Distance between a point and the nearest of a body's shapes, 0 inside one [m]."""
+def nearest_point(shapes: Iterable[Shape], point: FloatArray) -> FloatArray:
+    """The point of shapes that is nearest to a point, that point inside one, shape (3,) [m]."""
     import coal
 
     dot, at = coal.Sphere(DOT), coal.Transform3s(np.eye(3), np.asarray(point, dtype=float))
-    nearest = np.inf
+    nearest = coal.DistanceResult()
     for shape in shapes:
         placed = coal.Transform3s(np.asarray(shape.pose.rotation), shape.pose.translation)
         result, request = coal.DistanceResult(), coal.DistanceRequest()
         coal.distance(coal_geometry(shape), placed, dot, at, request, result)
-        nearest = min(nearest, float(result.min_distance))
-    return max(nearest, 0.0)
+        if result.min_distance <= 0:
+            return np.array(point, dtype=float)
+        if result.min_distance < nearest.min_distance:
+            nearest = result
+    return np.array(nearest.getNearestPoint1())
 
 
 @cache

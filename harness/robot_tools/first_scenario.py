@@ -95,7 +95,8 @@ def _trouble(text: str, candidate: Path) -> tuple[str, bool]:
     if result.outcome == "passed":
         return "", True
     failed = [step.message for step in result.steps if step.message]
-    judged = [f"{each.expectation}: {each.reason}" for each in result.verdicts]
+    wrong = [each for each in result.verdicts if each.status != "passed"]
+    judged = [f"{each.expectation}: {each.reason}" for each in wrong]
     return (failed or [*judged, result.message])[0], True
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from harness.cell.approach import approach_axis
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import (
@@ -15,6 +17,7 @@ from harness.planning.collision.pair_statistics import (
     sample_robot_positions,
     self_touches,
 )
+from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.trial import try_ik
 from harness.reporting.robot_report import GroupLine, RobotFinding, RobotReport
@@ -24,6 +27,8 @@ from harness.session.record import robot_record
 
 KINEMATIC_SAMPLES = 20
 IK_SAMPLES = 100
+ALONG_AN_AXIS = math.cos(math.radians(5))
+"""Cosine down to which a direction is reported as that of an axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +76,7 @@ def check_robot(
         groups=_groups(description),
         arm_group=description.arm_group,
         tcp_link=description.tcp_link,
-        gripper=_gripper(description),
+        gripper=_gripper(description, kinematics),
         findings=findings,
         notes=tuple(note for note in description.notes if note not in reported),
         proposal=_proposal(touches) if propose else {},
@@ -135,13 +140,29 @@ def _follows(joint: Joint) -> str:
     return f"follows {joint.mimic.joint} times {joint.mimic.multiplier:g}{offset}"
 
 
-def _gripper(description: RobotDescription) -> str:
+def _gripper(description: RobotDescription, kinematics: PinocchioKinematics) -> str:
     gripper = description.gripper
     if gripper is None:
         return ""
     sides = [" and ".join(links) for links in gripper.sides.values()]
     unit = "N" if description.joint_by_name[gripper.joint].kind == "prismatic" else "N m"
-    return (
+    text = (
         f"{gripper.joint} closes {' against '.join(sides)},"
-        f" {1e3 * gripper.widths[:, 1].max():.0f} mm apart, at most {gripper.max_effort:g} {unit}"
+        f" {1e3 * gripper.widths[:, 1].max():.0f} mm apart, at most {gripper.max_effort:.4g} {unit}"
     )
+    if not description.tcp_link:
+        return text
+    state = description.start_positions()
+    state[description.joint_index[gripper.joint]] = gripper.open_position
+    opened = description.with_mimics(state)
+    axis = approach_axis(description, kinematics, CoalScene(description), opened)
+    return f"{text}; approaches along {_direction(axis)} of {description.tcp_link}"
+
+
+def _direction(axis: FloatArray) -> str:
+    """A direction as `+z`, or as the unit vector that is not along an axis."""
+    unit = axis / np.linalg.norm(axis)
+    largest = int(np.abs(unit).argmax())
+    if abs(unit[largest]) >= ALONG_AN_AXIS:
+        return f"{'+' if unit[largest] > 0 else '-'}{'xyz'[largest]}"
+    return f"({', '.join(f'{value + 0.0:.2f}' for value in unit)})"

@@ -33,6 +33,10 @@ CLEAR = 0.25
 
 HEADINGS = (0.0, 0.5 * math.pi)
 WIDEST_BOX, TALLEST_BOX = 0.05, 0.08  # [m]
+JAW_TURN = 0.35
+"""Angle by which a single jaw is open at the width of the box; more, and it presses down [rad]."""
+SLIDING = 0.3
+"""Friction of a box that a single jaw pushes against the palm; with more it jams on the stand."""
 MOTIONS = 10
 
 MARGIN = 0.02
@@ -85,7 +89,42 @@ class Candidates:
                 x, y = round(level * math.cos(heading), 2), round(level * math.sin(heading), 2)
                 place = (x, y, round(height * self._reach, 2))
                 if np.linalg.norm(np.array(place) - hand) > CLEAR * self._reach:
-                    yield _pick(place, self._base, self._reach, description.gripper)
+                    yield self._pick(place, description.gripper)
+
+    def _pick(self, place: tuple[float, float, float], gripper: Gripper) -> dict[str, str]:
+        """What fills the template: a box on a stand, its size by the gripper's opening."""
+        x, y, top = place[0], place[1], self._base + place[2]
+        width, travel = self._box_width(gripper), _travel(self._reach)
+        height = min(TALLEST_BOX, 2.0 * width)
+        numbers = {
+            "base": self._base,
+            "x": x,
+            "y": y,
+            "stand": round(min(0.2, 0.25 * self._reach), 2),
+            "stand_height": top,
+            "stand_middle": top / 2,
+            "box_middle": top + height / 2,
+            "width": width,
+            "height": height,
+            "friction": SLIDING if gripper.has_single_jaw else 1.0,
+            "travel": travel,
+            "above": travel / 2,
+        }
+        return {key: f"{value + 0.0:.4g}" for key, value in numbers.items()}
+
+    def _box_width(self, gripper: Gripper) -> float:
+        """Width of a box that the gripper can hold, in whole millimetres [m]."""
+
+        def gap(position: float) -> float:
+            return float(np.interp(position, gripper.widths[:, 0], gripper.widths[:, 1]))
+
+        opened, closed = gripper.open_position, gripper.closed_position
+        least, opening = gap(closed), gap(opened)
+        width = min(WIDEST_BOX, max(0.6 * opening, 0.5 * (least + opening)))
+        turns = self._description.joint_by_name[gripper.joint].kind != "prismatic"
+        if gripper.has_single_jaw and turns:
+            width = min(width, gap(closed + math.copysign(JAW_TURN, opened - closed)))
+        return math.floor(1e3 * width) / 1e3
 
     def _places(self, gripper: Gripper) -> list[tuple[float, float]]:
         """Distances and heights that most random configurations reach, the most first.
@@ -180,30 +219,3 @@ class Candidates:
 def _travel(reach: float) -> float:
     """Length of the approach and of the lift of an arm with a reach [m]."""
     return round(min(0.1, 0.1 * reach), 2)
-
-
-def _pick(
-    place: tuple[float, float, float], base: float, reach: float, gripper: Gripper
-) -> dict[str, str]:
-    """What fills the template: a box on a stand, its size by the gripper's opening."""
-    x, y, top = place[0], place[1], base + place[2]
-    ends = (gripper.closed_position, gripper.open_position)
-    least, opening = np.interp(ends, gripper.widths[:, 0], gripper.widths[:, 1])
-    width = max(0.6 * float(opening), 0.5 * float(least + opening))
-    width = math.floor(1e3 * min(WIDEST_BOX, width)) / 1e3
-    height = min(TALLEST_BOX, 2.0 * width)
-    travel = _travel(reach)
-    numbers = {
-        "base": base,
-        "x": x,
-        "y": y,
-        "stand": round(min(0.2, 0.25 * reach), 2),
-        "stand_height": top,
-        "stand_middle": top / 2,
-        "box_middle": top + height / 2,
-        "width": width,
-        "height": height,
-        "travel": travel,
-        "above": travel / 2,
-    }
-    return {key: f"{value + 0.0:.4g}" for key, value in numbers.items()}

@@ -14,13 +14,13 @@ import numpy as np
 from harness.core.types import FloatArray, IntArray
 from harness.simulation.model import PhysicsModel
 
-ROWS = 4096
-"""Samples by which the arrays grow."""
+ROWS = 2**16
+"""Samples for which the first arrays have room; what is not used takes no memory."""
 
 CONTACTS_PER_ROW = 24
 """Contacts per sample for which the first arrays have room; more make them grow sooner."""
 
-BLOCK = 2**19
+BLOCK = 2**17
 """Contacts that are sorted at a time."""
 
 MOST_UNRESOLVED = 4096
@@ -236,8 +236,9 @@ class ContactRecord:
         while row < len(ends):
             begin = self._begin(first + row)
             stop = max(row + 1, int(np.searchsorted(ends, begin + BLOCK, side="right")))
-            for numbers, contacts in self._sorted(begin, int(ends[stop - 1])):
-                yield numbers, np.searchsorted(ends, contacts, side="right"), contacts
+            rows = np.repeat(np.arange(row, stop), np.diff(ends[row:stop], prepend=begin))
+            for numbers, contacts in self._sorted(begin, begin + len(rows)):
+                yield numbers, rows[contacts - begin], contacts
             row = stop
 
     def _sorted(self, begin: int, end: int) -> Iterator[tuple[tuple[int, int], Array]]:
@@ -245,8 +246,8 @@ class ContactRecord:
         if begin == end:
             return
         size = self._physics.model.nbody
-        bodies = self._physics.model.geom_bodyid[self._geoms[begin:end]]
-        codes = bodies.min(axis=1) * size + bodies.max(axis=1)
+        one, other = self._physics.model.geom_bodyid[self._geoms[begin:end].T]
+        codes = np.minimum(one, other) * size + np.maximum(one, other)
         order = np.argsort(codes, kind="stable")
         pairs, starts = np.unique(codes[order], return_index=True)
         parts = np.split(order + begin, starts[1:])

@@ -11,12 +11,14 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import (
     check_opening,
     grasp_points,
+    grasps_at_pitches,
     gripper_axes,
     has_simple_shape,
+    is_grasped_by_pitch,
     top_grasps,
     top_grasps_at,
 )
@@ -29,6 +31,7 @@ from harness.core.types import FloatArray
 from harness.language.base import Angle, JointEffort, Name, PositiveLength, SpecModel
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
+from harness.ports.goals import PoseGoal
 from harness.recording.explanation import ApproachFailure, Explanation, NearestState
 from harness.steps.grasp import Grasp, GripperAction, check_graspable
 from harness.steps.gripper import Gripper
@@ -42,6 +45,8 @@ TRAVELS = 3
 """Lengths of an approach that are tried where the file leaves a choice."""
 PITCHES = [math.radians(degrees) for degrees in (0, 15, 30, 45, 60, 75, 90)]
 """Of the gripper of an arm of fewer than six joints, in the order in which they are tried."""
+MAX_TURN = math.radians(15)
+"""Heading off the direction to the object up to which an arm of few joints grasps it [rad]."""
 
 
 class Travel(SpecModel):
@@ -80,7 +85,8 @@ class Pick(Step):
 
     An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
     object, or its upper part, with the first pitch of the gripper that works, from level (0) to
-    straight down (90 deg); `pitch` states one.
+    straight down (90 deg); `pitch` states one. It is the pitch of the approach axis, which leads
+    from the gripper's palm to its pads; `harness robot check` prints it.
 
     The planner's `padding` does not apply between the gripper and the object to grasp.
     """
@@ -171,14 +177,15 @@ def check_travel(travel: Travel | None, at: At, key: str) -> None:
 def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
     """The free motion to where the approach begins, and the straight one to the grasp."""
     goals = grasp_goals(step, cell)
+    group = group_of(cell, step.group)
     approaches = [
-        Approach(back_off(goal, length, step, cell), goal, number)
+        Approach(as_reached(back_off(goal, length, step, cell), group, cell), goal, number)
         for length in travel_lengths(step.approach)
         for number, goal in enumerate(goals)
     ]
     cell.report(GraspChoice(len(goals)))
     search = GraspSearch(
-        group_of(cell, step.group),
+        group,
         cell.with_open_gripper(cell.planning_start()),
         cell.current.options,
         then=lambda state: _can_lift(lift, state, cell),
@@ -309,11 +316,32 @@ def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
     if given is None or has_simple_shape(obj):
         check_opening(obj, object_pose, cell)
     points = grasp_points(obj, object_pose, cell) if given is None else [given.translation]
+    pitches = PITCHES if step.pitch is None else [step.pitch]
+    group = group_of(cell, step.group)
+    if not is_grasped_by_pitch(cell, group):
+        axis = turning_axis(cell, step.group)
+        return [
+            as_reached(TcpGoal(world_pose_spec(pose)), group, cell)
+            for point in points
+            for pose in grasps_at_pitches(point, obj, pitches, axis, cell)
+        ]
     return [
         TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
         for x, y, z in points
-        for pitch in (PITCHES if step.pitch is None else [step.pitch])
+        for pitch in pitches
     ]
+
+
+def as_reached(goal: TcpGoal, group: str, cell: Cell) -> TcpGoal:
+    """A pose goal with the heading that an arm of few joints has there; other goals as they are."""
+    if not isinstance(goal.target, Pose) or arm_has_six_joints(cell.description, group):
+        return goal
+    link, pose = cell.description.tcp_link, goal.target.se3()
+    start, near = cell.planning_start(), PoseGoal(link, pose, orientation_tolerance=MAX_TURN)
+    for positions in cell.kinematics.solve(group, near, start, cell.current.options.seed, enough=1):
+        reached = cell.kinematics.link_pose(with_arm(positions, start, group, cell), link)
+        return TcpGoal(world_pose_spec(SE3(reached.rotation, pose.translation)))
+    return goal
 
 
 def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoal:
@@ -328,7 +356,7 @@ def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoa
         return TcpGoal(world_pose_spec(SE3(at.rotation, at.translation - distance * along)))
     point, pitch = np.array(target.target.xyz), float(target.pitch or 0.0)
     if along is None:
-        away = point - _turning_axis(cell, step.group)
+        away = point - turning_axis(cell, step.group)
         heading = math.atan2(away[1], away[0])
         level = math.cos(pitch)
         along = np.array([level * math.cos(heading), level * math.sin(heading), -math.sin(pitch)])
@@ -336,7 +364,7 @@ def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoa
     return TcpGoal(Position(xyz=(x, y, z)), pitch)
 
 
-def _turning_axis(cell: Cell, group: str | None) -> FloatArray:
+def turning_axis(cell: Cell, group: str | None) -> FloatArray:
     """A point on the axis about which the arm turns to a heading: its first joint's, shape (3,)."""
     first = cell.description.groups[group_of(cell, group)].joint_names[0]
     return cell.frame(cell.description.joint_by_name[first].child).translation

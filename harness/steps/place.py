@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -11,8 +13,8 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
-from harness.cell.grasping import UP, gripper_axes, matrix_pitch, turn_about
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
+from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.core.details import Detail
@@ -23,7 +25,7 @@ from harness.core.types import FloatArray
 from harness.language.base import Name
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
-from harness.ports.goals import PositionGoal
+from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.recording.explanation import Explanation
@@ -31,13 +33,16 @@ from harness.recording.goal_failures import CollisionFailure, TouchRecord
 from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (
+    MAX_TURN,
     Travel,
+    as_reached,
     check_travel,
     fails_at_start_of_approach,
     millimetres,
     nearest_state,
     relative_step,
     travel_lengths,
+    turning_axis,
     with_advice,
     world_pose_spec,
 )
@@ -272,13 +277,31 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
     tcp_to_object = tcp.inverse() @ cell.scene.object_pose(name, start)
     if arm_has_six_joints(cell.description, step.group):
         return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
-    pitch = matrix_pitch(tcp.rotation)
-    x, y, z = _tcp_position(target.translation, tcp_to_object, pitch, step, cell)
-    return TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
+    if is_grasped_by_pitch(cell, group_of(cell, step.group)):
+        pitch = matrix_pitch(tcp.rotation)
+        goal_at = partial(PositionGoal, cell.description.tcp_link, pitch=pitch)
+        x, y, z = _tcp_position(target.translation, tcp_to_object, goal_at, step, cell)
+        return TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
+    axis = turning_axis(cell, step.group)
+
+    def turned(position: FloatArray) -> PoseGoal:
+        headings = [math.atan2(*(at - axis)[1::-1]) for at in (tcp.translation, position)]
+        rotation = turn_about(UP, headings[1] - headings[0]) @ tcp.rotation
+        pose = SE3(rotation, position)
+        return PoseGoal(cell.description.tcp_link, pose, orientation_tolerance=MAX_TURN)
+
+    position = _tcp_position(target.translation, tcp_to_object, turned, step, cell)
+    return as_reached(
+        TcpGoal(world_pose_spec(turned(position).pose)), group_of(cell, step.group), cell
+    )
 
 
 def _tcp_position(
-    point: FloatArray, tcp_to_object: SE3, pitch: float, step: Place, cell: Cell
+    point: FloatArray,
+    tcp_to_object: SE3,
+    goal_at: Callable[[FloatArray], PoseGoal | PositionGoal],
+    step: Place,
+    cell: Cell,
 ) -> FloatArray:
     """TCP position at which the object's origin is at a point, for arms that choose their own yaw.
 
@@ -288,12 +311,10 @@ def _tcp_position(
     group, start = group_of(cell, step.group), cell.planning_start()
     link, position = cell.description.tcp_link, np.array(point)
     for _ in range(REFINEMENTS):
-        goal = PositionGoal(link, position, pitch)
-        solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
+        goal, seed = goal_at(position), cell.current.options.seed
+        solutions = cell.kinematics.solve(group, goal, start, seed)
         if not solutions:
             break  # the search for an approach explains it
-        state = np.array(start)
-        state[list(cell.description.group_indices(group))] = solutions[0]
-        tcp = cell.kinematics.link_pose(cell.description.with_mimics(state), link)
+        tcp = cell.kinematics.link_pose(with_arm(solutions[0], start, group, cell), link)
         position = position + point - (tcp @ tcp_to_object).translation
     return position

@@ -2,12 +2,31 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 from harness.core.resources import data_folder
-from harness.suite.discovery import SUFFIX
+from harness.suite.discovery import SUFFIX, UsageError
+
+
+def refuse_unwritable(root: Path) -> None:
+    """See before anything runs that a folder can be written into, or made where it is missing.
+
+    Raises:
+        UsageError: It cannot.
+    """
+    place = root
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    what = f"--report-dir: nothing can be written into '{root}'"
+    if not place.is_dir():
+        raise UsageError(f"{what}, as '{place}' is a file; choose a folder")
+    try:
+        Path(tempfile.mkdtemp(prefix=".armharness-", dir=place)).rmdir()
+    except OSError as error:
+        raise UsageError(f"{what}: {error.strerror} in '{place}'; choose another folder") from None
 
 
 def report_folders(files: Sequence[Path], root: Path) -> list[Path]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from harness.recording.run import Outcome
+if TYPE_CHECKING:
+    from harness.recording.run import Outcome
 
 EXIT_CODES: dict[Outcome, int] = {"passed": 0, "failed": 1, "invalid": 2, "error": 3}
 USAGE_EXIT_CODE = 2

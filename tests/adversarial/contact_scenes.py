@@ -84,6 +84,22 @@ CONTACT_SCENES = (
         truth=lambda run: bool((touches(run, "red_box", "stand") > 20 * 0.49).sum() > 500),
     ),
     Scene(
+        "gripped box pressed onto its stand with less than the grip",
+        "the closed hand leans on the stand that the box stood on, with a tenth of what it grips",
+        "objects:\n" + RED_BOX.replace("0.041", "0.061") + "  - {name: stand, in: simulation, "
+        "static: true, box: {size: [0.06, 0.06, 0.02]}, pose: {xyz: [0.25, 0, 0.01]}}\nsteps:"
+        + FIRMLY.replace("0.06]", "0.08]")
+        + "  - lin: {position: {xyz: [0.25, 0, 0.0794]}}\n  - wait: 0.5 s\n"
+        + UP,
+        "the box touches nothing that it did not touch before it was gripped",
+        lambda run: robot_never_touches(run, "stand"),
+        ("never: collision",),
+        ("never: {collision: {between: [robot, stand]}}",),
+        truth=lambda run: bool(
+            4 * 0.49 < np.median(touches(run, "red_box", "stand")[-1250:-850]) < 20
+        ),
+    ),
+    Scene(
         "held box dragged along a rug",
         "the gripper carries the box 8 cm aside without taking it off the rug",
         "objects:\n" + RED_BOX.replace("0.041", "0.0417") + "  - {name: rug, in: simulation, "
@@ -127,6 +143,21 @@ CONTACT_SCENES = (
         (),
         ("never: collision", "placed: red_box"),
         truth=lambda run: bool(np.abs(acceleration(run, "red_box")[-200:]).max() < 0.5),
+    ),
+    Scene(
+        "box lifted off the bench that the fingers press it onto",
+        "closing fingers push the box onto the bench, and it is lifted before that has decayed",
+        "objects:\n  - {name: bench, static: true, pose: {xyz: [0.5, 0, 0.1]}, "
+        "box: {size: [0.4, 0.8, 0.2]}}\n  - {name: part, pose: {xyz: [0.45, 0.1, 0.23]}, "
+        "box: {size: [0.03, 0.03, 0.06]}, mass: 0.2, friction: 0.8}\nsteps: [{pick: part}]\n",
+        "after the gripper has closed, the bench bears more than twice the weight: too strict",
+        lambda run: bool(
+            touches(run, "bench", "part")[run.steps[-1].start_index :].max() > 2 * 1.96
+        ),
+        (),
+        ("never: collision", "lifted: part"),
+        truth=lambda run: bool(rose(run, "part", 0.05) and touches(run, "bench", "part")[-1] == 0),
+        robot="{model: ur5e, gripper: rh_p12_rn_a}",
     ),
     Scene(
         "ball shot up through the half-open hand",

@@ -20,6 +20,7 @@ from harness.recording.run import AttachmentRecord, ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SavedResult
+from tests.approved import SAID, verdict_text
 
 DT = 0.01
 LINKS = ("world", "base_link", "arm_link", "palm", "left_finger", "right_finger")
@@ -222,6 +223,7 @@ def verdict(run, spec, step_id=""):
     if answer.status == "failed" and not np.isnan(answer.margin):
         assert answer.margin <= 0, answer
     assert answer.reason, answer
+    SAID.append(verdict_text(answer))
     return answer
 
 

@@ -46,13 +46,15 @@ def touching(a, b, *spans, run=None, value=1.0, **changes):
 
 
 def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_duration():
-    run = touching("arm_link", "wall", (30, 41), (60, 62), value=12.0)
+    run = touching("arm_link", "wall", (30, 41), (60, 70), value=12.0)
     answer = verdict(run, NEVER)
     assert answer.status == "failed"
     assert (answer.margin, answer.unit, answer.time) == (-12.0, "N", pytest.approx(0.3))
     assert answer.reason == (
-        "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
+        "arm_link and wall collide from t=0.300 s for 0.2 s in all, with up to 12.0 N"
     )
+    once = verdict(touching("arm_link", "wall", (30, 41), value=12.0), NEVER)
+    assert once.reason == "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
     measure = answer.measures[0]
     assert (measure.detail, measure.limit, measure.comparison) == ("arm_link and wall", 0.0, "<=")
     assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"
@@ -270,6 +272,27 @@ def test_what_the_hand_holds_presses_with_twice_its_weight_and_a_newton_at_most(
 def test_a_short_blow_is_judged_by_its_impulse():
     assert not collides(held_down(5.0, span=(120, 121)))
     assert collides(held_down(40.0, span=(120, 121)))
+
+
+@pytest.mark.parametrize("blow", [(118, 121), (119, 122), (121, 124)])
+def test_the_largest_force_is_never_below_the_average_that_makes_a_collision(blow):
+    run = held_down(9.0, span=blow)
+    forces = run.signals.contact_forces["Table", "box"]
+    forces[blow[1] : blow[1] + 3] = 1.5
+    assert "with up to 9.0 N" in verdict(run, NEVER).reason
+
+
+@pytest.mark.parametrize("names", [("box", "wall"), ("box", "Table"), ("Table", "wall")])
+def test_objects_that_the_hand_never_holds_are_not_observable(names):
+    run = touching(*names, (30, 60), value=1000.0)
+    answer = verdict(run, Never(predicate=Collision(between=names)))
+    assert answer.status == "not observable"
+    assert "`in_contact` judges" in answer.reason
+    objects = (TABLE, BOX, WALL)
+    held = touching("box", "wall", (120, 130), run=lift_run(objects=objects), value=1000.0)
+    expected = {("box", "wall"): "failed", ("box", "Table"): "passed"}
+    answer = verdict(held, Never(predicate=Collision(between=names)))
+    assert answer.status == expected.get(names, "not observable")
 
 
 GRIP = np.tile([0.0, 20.0], (200, 1))

@@ -241,3 +241,25 @@ def test_the_command_is_the_module():
 def test_options_of_a_ros_2_robot_are_refused_without_one(option, capsys):
     assert main(["run", "lessons/04_gripper_alone", *option]) == 2
     assert "need --robot ros2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["run", "bench", "search"])
+@pytest.mark.parametrize("place", ["file", "file/below", "/proc/below"])
+def test_a_place_that_takes_no_report_is_refused_before_anything_runs(
+    command, place, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("")
+    (tmp_path / "a.scenario.yaml").write_text("this is no scenario")
+    assert main([command, "a.scenario.yaml", "--report-dir", place]) == 2
+    said = capsys.readouterr()
+    assert f"--report-dir: nothing can be written into '{place}'" in said.err
+    assert said.out == ""
+    assert [each.name for each in tmp_path.iterdir()].count("file") == 1
+
+
+def test_a_place_for_reports_does_not_matter_where_none_is_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "reports").write_text("a file")
+    assert main(["run", "missing.scenario.yaml", "--no-report"]) == 2
+    assert "--report-dir" not in capsys.readouterr().err

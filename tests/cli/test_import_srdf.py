@@ -43,7 +43,7 @@ def imported(folder):
 def test_the_folder_is_the_same_robot(folder, capsys):
     assert main(["import", "srdf", "arm.srdf", "--robot", "arm.urdf", "-o", "three"]) == 0
     said = capsys.readouterr().out
-    assert "note: no acceleration limits in the URDF" in said
+    assert "note: no acceleration limits: 5 rad/s^2" in said
     assert said.endswith(
         "wrote three/robot.yaml, three/three.urdf, three/three.srdf; `robot: {model: three}`\n"
     )

@@ -9,7 +9,14 @@ from harness.language.reading.load import load_scenario
 from harness.robot_tools import first_scenario
 from harness.robot_tools.first_scenario import _trouble
 from tests.robot.arm_files import SRDF, URDF, write_arm
-from tests.robot.test_own_gripper import JAW, SIX, SIX_SRDF, SIX_WITH_JAW
+from tests.robot.test_own_gripper import (
+    FIVE_WITH_TURNING_JAW,
+    JAW,
+    SIX,
+    SIX_SRDF,
+    SIX_WITH_JAW,
+    SIX_WITH_TURNING_JAW,
+)
 
 FILE = Path("sub/first.scenario.yaml")
 
@@ -61,7 +68,11 @@ def test_a_motion_says_why_it_is_no_pick_and_that_it_passed(capsys):
     assert "it was run once and passed" in said
 
 
-@pytest.mark.parametrize("urdf", [SIX, SIX_WITH_JAW], ids=["fingers", "jaw"])
+@pytest.mark.parametrize(
+    "urdf",
+    [SIX, SIX_WITH_JAW, SIX_WITH_TURNING_JAW, FIVE_WITH_TURNING_JAW],
+    ids=["fingers", "jaw", "turning jaw", "turning jaw of five joints"],
+)
 def test_a_gripper_without_an_srdf_gets_a_pick_that_passes(capsys, folder, urdf):
     write_arm(folder, urdf)
     assert new("arm.urdf").steps[0].verb == "pick"

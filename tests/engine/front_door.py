@@ -4,6 +4,7 @@ import textwrap
 
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
+from tests.approved import SAID, problem_text
 from tests.running import run_case
 
 UR = "{model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}"
@@ -29,7 +30,9 @@ def run(folder, steps, **words):
 
 def check(folder, steps, **words):
     """What a check finds."""
-    return check_file(file_of(folder, steps, **words))
+    report = check_file(file_of(folder, steps, **words))
+    SAID.extend(problem_text(each).replace(str(folder), "FOLDER") for each in report.problems)
+    return report
 
 
 def problems(folder, steps, **words):

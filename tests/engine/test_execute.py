@@ -139,6 +139,8 @@ def test_a_step_that_takes_longer_than_its_timeout_fails_whatever_it_is_made_of(
       expect_error: TIMED_OUT
     - wait: 0.2 s
       timeout: 0.2 s
+    - wait: 0.54 s
+      timeout: 0.5 s
     """
     result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}")
     assert result.outcome == "passed", [step.message for step in result.steps]

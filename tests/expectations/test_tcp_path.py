@@ -162,6 +162,24 @@ def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
     assert beyond.margin == pytest.approx(0.001 - 0.004)
 
 
+@pytest.mark.parametrize("planned", [[0.0, 0.4, 1.5], [0.0, 0.2, 0.9, 1.2, 1.5]])
+def test_a_circ_step_s_own_path_is_the_arc_from_its_start_to_its_goal(planned):
+    """The palm turns about the world's z axis, 0.2 m away from it."""
+    places = (
+        LinkPlacement("arm_link", "world", (0, 0, 0, 1, 0, 0, 0), "shoulder", False, (0, 0, 1)),
+        LinkPlacement("palm", "arm_link", (0.2, 0, 0, 1, 0, 0, 0)),
+    )
+    for last, status in ((1.5, "passed"), (1.4, "failed")):
+        run = sliding(np.zeros(200), planned, "circ")
+        run = replace(run, robot=replace(ROBOT, placements=places))
+        run = changed(run, tcp_pose=around(0.2, 0.0, last).signals.tcp_pose)
+        assert verdict(run, TcpPath(), "go").status == status
+    answer = verdict(
+        changed(run, tcp_pose=around(0.2, 0.0, 1.45).signals.tcp_pose), TcpPath(), "go"
+    )
+    assert answer.margin == pytest.approx(1.45 / 1.5 - 0.95)
+
+
 def test_a_step_without_a_path_of_its_own_is_not_observable():
     run = sliding(np.linspace(0.0, 0.2, 200), [0.0, 0.2])
     assert verdict(run, TcpPath()).status == "not observable"

@@ -154,17 +154,18 @@ def test_the_gap_is_that_to_the_box_about_a_shape():
         rng = np.random.default_rng(8)
         own = rng.uniform(-0.4, 0.4, (30, 3))
         expected = np.linalg.norm(own - np.clip(own, -half, half), axis=1)
-        assert shape.gap(place.apply(own)) == pytest.approx(expected)
+        assert shape.gap(place.apply(own)[:, :, None])[:, 0] == pytest.approx(expected)
         assert np.linalg.norm(shape.center - place.translation) == pytest.approx(0, abs=1e-9)
     assert box.radius == pytest.approx(np.linalg.norm([0.05, 0.1, 0.15]))
     assert list(links_with_shapes({"a": SHAPES, "b": ()})) == ["a"]
 
 
-def pairs(seed, step, apart=0.5):
+def pairs(seed, step, apart=0.5, cutoff=np.inf):
     poses = random_poses(seed, 120, step)
     poses[:, 0] += apart
     seen = track_of_poses(poses)
-    return pairs_between(tracked_shapes("a", SHAPES), tracked_shapes("b", SHAPES[::-1]), seen)
+    bodies = tracked_shapes("a", SHAPES), tracked_shapes("b", SHAPES[::-1])
+    return pairs_between(*bodies, seen, cutoff)
 
 
 @pytest.mark.parametrize(("seed", "step"), [(1, 0.02), (2, 0.002), (3, 0.05), (4, 0.0)])
@@ -172,7 +173,7 @@ def pairs(seed, step, apart=0.5):
 def test_the_smallest_of_all_distances_is_found_up_to_the_cutoff(seed, step, cutoff):
     found = pairs(seed, step)
     every = np.array([[pair.distance(k) for pair in found] for k in range(120)])
-    distances, which = smallest_distances(found, cutoff)
+    distances, which = smallest_distances(found, cutoff, 120)
     assert distances == pytest.approx(np.minimum(every.min(axis=1), cutoff), abs=2e-6)
     assert (which >= 0).tolist() == (distances < cutoff).tolist()
     assert (which[distances >= cutoff] == -1).all()
@@ -183,16 +184,52 @@ def test_the_smallest_of_all_distances_is_found_up_to_the_cutoff(seed, step, cut
         assert pair.least.max() > every[:, index].min() - 1.0
 
 
+@pytest.mark.parametrize(("seed", "step"), [(2, 0.002), (4, 0.0)])
+def test_pairs_that_stay_apart_are_left_out_without_effect(seed, step):
+    every, near = pairs(seed, step), pairs(seed, step, cutoff=0.3)
+    assert 0 < len(near) < len(every)
+    found, rest = (smallest_distances(each, 0.3, 120) for each in (every, near))
+    assert found[0].tolist() == rest[0].tolist()
+    travels_of = [largest_travel(each, 0.3, 120).tolist() for each in (every, near)]
+    assert travels_of[0] == travels_of[1]
+    for index, other in zip(found[1].tolist(), rest[1].tolist(), strict=True):
+        if index >= 0:
+            assert (every[index].first.center == near[other].first.center).all()
+            assert (every[index].second.center == near[other].second.center).all()
+    assert pairs(seed, step, apart=5.0, cutoff=0.3) == []
+
+
 def test_the_largest_travel_is_that_of_the_pairs_that_may_come_near():
     found = pairs(1, 0.02)
     steps = np.array([np.diff(pair.travel) for pair in found])
-    every = largest_travel(found, np.inf)
+    every = largest_travel(found, np.inf, 120)
     assert every.tolist() == [0.0, *steps.max(axis=0).tolist()]
-    assert not largest_travel(found, -10.0).any()
+    assert not largest_travel(found, -10.0, 120).any()
     near = [
         pair.least[1:] + pair.least[:-1] - moved < 2 * 0.2
         for pair, moved in zip(found, steps, strict=True)
     ]
-    assert largest_travel(found, 0.2)[1:] == pytest.approx(np.where(near, steps, 0.0).max(axis=0))
+    expected = np.where(near, steps, 0.0).max(axis=0)
+    assert largest_travel(found, 0.2, 120)[1:] == pytest.approx(expected)
     still = BodyTrack(np.tile(np.eye(3), (2, 1, 1)), np.ones((2, 3)))
     assert pairs_between((), tracked_shapes("b", SHAPES), still) == []
+
+
+@pytest.mark.parametrize("length", [40, 1200])
+def test_a_body_that_comes_near_while_the_nearest_one_stands_still_is_found(length):
+    """One ball stands 10 cm away; another passes at 5 cm, first or last of the two."""
+    ball = tracked_shapes("ball", (Shape(Sphere(0.01)),))
+    still, passing = np.zeros((length, 7)), np.zeros((length, 7))
+    still[:, 3] = passing[:, 3] = 1.0
+    still[:, 0], passing[:, 1] = 0.12, 0.07
+    passing[:, 0] = np.linspace(-1.0, 1.0, length)
+    found = [
+        pairs_between(ball, ball, track_of_poses(poses), np.inf)[0] for poses in (still, passing)
+    ]
+    expected = np.minimum(0.1, np.linalg.norm(passing[:, :3], axis=1) - 0.02)
+    for order in (found, found[::-1]):
+        distances, which = smallest_distances(order, 1.0, length)
+        assert distances == pytest.approx(expected, abs=2e-6)
+        near = distances < 0.1 - 1e-5
+        assert {order[index] is found[1] for index in which[near].tolist()} == {True}
+        assert near.any()

@@ -5,6 +5,7 @@ import pytest
 
 from harness.observation.fault_effects import COMMANDED, with_receipts
 from harness.recording.faults import InjectedFault, faults_of
+from tests.approved import SAID, finding_text
 from tests.assertions.synthetic_run import BOX, DT, ROBOT, TABLE, at, force, make_run, step
 
 N = 100
@@ -14,6 +15,7 @@ def receipts(faults, run, more=()):
     """The faults of the first step with their receipts, and the findings."""
     first = step("first", 10, 20, "inject", result={"faults": [each.plain() for each in faults]})
     steps, findings = with_receipts((first, *more), run.signals, ROBOT, (TABLE, BOX))
+    SAID.extend(map(finding_text, findings))
     return faults_of(steps[0]), findings
 
 
@@ -171,6 +173,14 @@ def test_steps_without_faults_stay_as_they_are_and_each_fault_has_its_receipt():
 def test_a_fault_that_is_set_again_in_the_next_step_ends_there():
     again = step("again", 40, 50, "inject", result={"faults": [STALL.plain()]})
     assert receipt(STALL, more=(again,), joint_commands=ramp(0, 0.5, 60, 70)).receipt == "no_effect"
+
+
+@pytest.mark.parametrize(("start", "landed"), [(19, False), (20, False), (21, True)])
+def test_a_fault_that_is_set_again_at_once_lasts_for_no_time(start, landed):
+    """The fault counts from sample 19 on; the joint is commanded to move from there to 20."""
+    again = step("again", start, 50, "inject", result={"faults": [STALL.plain()]})
+    answer = receipt(STALL, more=(again,), joint_commands=ramp(0, 0.5, 19, 20))
+    assert (answer.receipt == "landed") is landed
 
 
 def test_a_push_that_took_no_time_moved_nothing():

@@ -7,6 +7,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.observation.tracking import as_commanded, held_finding, plan_against_physics
+from tests.approved import SAID, finding_text
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -28,7 +29,9 @@ def none_nearer(_):
 
 
 def findings(run, kind, distances=none_nearer):
-    return [each for each in plan_against_physics(run, run.signals, distances) if each.kind == kind]
+    every = plan_against_physics(run, run.signals, distances)
+    SAID.extend(map(finding_text, every))
+    return [each for each in every if each.kind == kind]
 
 
 def test_the_joint_furthest_from_its_command_is_named_and_fingers_are_not():
@@ -65,6 +68,10 @@ def test_an_allowed_contact_is_reported_with_its_time_and_force(pair):
         (["robot", "box"], True),
         (["box", "robot"], True),
         (["palm", "box"], False),
+        (["box", "palm"], False),
+        (["Table", "arm_link"], False),
+        (["Table", "robot"], False),
+        (["arm_link", "robot"], False),
         (["arm_link", "Table"], False),
         (["robot", "Table"], False),
     ],
@@ -176,3 +183,13 @@ def test_an_object_that_the_fingers_never_held_is_a_belief():
     planner_only = replace(BOX, in_simulation=False)
     run = make_run(objects=(TABLE, planner_only), attachments=[attachment("box", 20, 80)])
     assert findings(run, "held") == []
+
+
+def test_a_pair_without_distances_in_a_motion_does_not_hide_the_next_one():
+    absent, near = np.full(N, np.nan), np.full(N, 0.5)
+    near[77] = 0.04
+    clearances = {("robot", "absent"): absent, ("robot", "box"): near, ("box", "Table"): near - 0.3}
+    run = make_run(steps=(step("rest", 0, 70), moved("go", 70, 101)), clearances=clearances)
+    [found] = findings(run, "clearance", lambda *_: {("robot", "box"): np.array([0.04])})
+    assert (found.time, found.values["actual"]) == (pytest.approx(0.77), 0.04)
+    assert findings(run, "clearance", lambda *_: {}) == [], "the set points' is not known"

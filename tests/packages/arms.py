@@ -128,7 +128,7 @@ ARMS = (
     _data("z1_description/urdf/z1.urdf", "z1"),
     _plan("franka_robot_model/fr3.urdf", "xacro"),
     _plan("franka_robot_model/dual_fr3.urdf", "xacro"),
-    _plan("kinova_robot_model/kinova_robotiq.urdf", tcp_link="end_effector_link"),
+    _plan("kinova_robot_model/kinova_robotiq.urdf"),
     _plan("so101_robot_model/so101.urdf"),
     _plan("ur_robot_model/ur5_gripper.urdf"),
     PackageArm("airo-models", "arms/ur3e/ur3e.urdf"),
@@ -151,19 +151,17 @@ WITH_GRIPPER = tuple(
     if arm.file.rpartition("/")[2]
     in {
         "panda.urdf",
+        "so101.urdf",
         "z1.urdf",
         "fr3.urdf",
+        "kinova_robotiq.urdf",
         "px100.urdf.xacro",
         "vx300s.urdf.xacro",
         "wx250s.urdf.xacro",
         "panda_arm_hand.urdf.xacro",
     }
 )
-"""Arms with fingers, for which the page says whether a generated scenario picks a box.
-
-The SO-101 is not among them: `harness new` tries its picks for minutes, and 20 s of CPU time go
-into its convex parts the first time.
-"""
+"""Arms with fingers, for which the page says whether a generated scenario picks a box."""
 
 ELSEWHERE = {
     "mujoco-menagerie, robot-descriptions, panda-gym": "have no data: robots are downloaded when "

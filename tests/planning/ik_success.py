@@ -43,11 +43,11 @@ joint limits. The last column is an upper bound of the error of the solutions.
 | --- | --- | --- | --- | --- | --- | --- | --- |
 {rows}
 
-Arms with fewer than six joints cannot reach every pose. With four or five joints the solver uses
-the position and the pitch of a `pose`, with three its position. The remaining error is in the
-record of the step (`ik_solutions`, `residual`) and must be within the goal's `tolerance`; otherwise
-the step fails with GOAL_CONSTRAINTS_VIOLATED. The poses in the table are reachable: they are those
-of joint positions of the arm.
+Arms with fewer than six joints cannot reach every pose. With five joints the solver uses all of a
+`pose` but its turn about the vertical, with four its position and pitch, with three its position.
+The remaining error is in the record of the step (`ik_solutions`, `residual`) and must be within the
+goal's `tolerance`; otherwise the step fails with GOAL_CONSTRAINTS_VIOLATED. The poses in the table
+are reachable: they are those of joint positions of the arm.
 
 `{renew}` writes this page; `python -m pytest -m measured` compares it with new measurements.
 """

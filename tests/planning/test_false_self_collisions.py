@@ -11,7 +11,7 @@ from harness.language.scenario import RobotSpec
 from harness.planning.collision.scene import CoalScene
 from harness.robot.load import load_robot
 from harness.robot.mesh_file import read_triangles
-from harness.robot.solids import distance_to_point
+from harness.robot.solids import nearest_point
 
 SAMPLES = 600
 STATED = {"ur3e": 0.012, "ur5e": 0.008}
@@ -73,11 +73,12 @@ def test_the_shapes_cover_the_meshes(name):
     description = load_robot(RobotSpec(model=name))
     generator = np.random.default_rng(3)
     farthest = [
-        distance_to_point(link.collisions, shape.pose.apply(point))
+        float(np.linalg.norm(at - nearest_point(link.collisions, at)))
         for link in description.links
         for shape in link.visuals
         if isinstance(shape.geometry, Mesh)
         for point in generator.choice(read_triangles(shape.geometry).vertices, 100)
+        for at in [shape.pose.apply(point)]
     ]
     assert len(farthest) == 700
     assert max(farthest) <= COVERED

@@ -163,7 +163,7 @@ URDF_ROWS = (
     refused("lower = upper", "it cannot move", LIMIT, LIMIT.replace("-2", "2"), "cannot move"),
     read("`velocity`, `effort`", "0 is a placeholder and counts as none, reported",
           LIMIT, LIMIT.replace('velocity="2"', 'velocity="0"'),
-          lambda arm: any("a limit of 0 for its velocity" in note for note in arm.notes)),
+          lambda arm: any("a velocity limit of 0" in note for note in arm.notes)),
     read("`<mimic>`", "followed in planning and in physics, over several joints if need be",
           '<limit lower="0"', MIMIC + '<limit lower="0"',
           lambda arm: arm.joint_by_name["reach"].mimic is not None),
@@ -194,7 +194,7 @@ URDF_ROWS = (
              "one root link"),
     refused("a name twice", "", END, '<link name="tool"/>' + END, "is there twice"),
     refused("`xacro:` words", "the key `xacro` renders them", END, "<xacro:a/>" + END,
-             "this is a xacro file"),
+             "is xacro, and this is read as a URDF"),
     refused("DOCTYPE, entities", "", '<?xml version="1.0"?>', "<!DOCTYPE robot>", "a DOCTYPE"),
 )  # fmt: skip
 
@@ -217,7 +217,7 @@ SRDF_ROWS = (
     read("xacro elements", "rendered with `args`, by the rules of xacro files",
           '<group_state name="home" group="manipulator">\n    <joint name="turn" value="0.1"/>',
           XACRO_STATE, lambda arm: abs(arm.start_state["turn"] - 0.392699) < 1e-6),
-    read("`<group>` of a `<chain>`", "pose goals refer to its tip", GROUP,
+    read("`<group>` of a `<chain>`", "pose goals refer to its tip, or the gripper's TCP", GROUP,
           GROUP.replace("tool", "lower"), lambda arm: joints(arm) == ("turn", "bend")),
     read("of `<joint>`s", "", GROUP,
           '<group name="manipulator"><joint name="turn"/><joint name="bend"/></group>',

@@ -3,6 +3,7 @@
 Each in seconds and in bounded memory. (SDF: tests/world/test_sdf_bad_input.py.)
 """
 
+import re
 import subprocess
 import sys
 import time
@@ -138,7 +139,7 @@ CASES = {
         ),
         (
             "arm.xml", 'size="0.02 0.03 0.1"', 'size="0.02 0.03 0.1" mass="0"',
-            "12:9: MuJoCo: mass and inertia of moving",
+            "12:9: MuJoCo: mass and inertia of moving bodies must be larger than mjMINVAL: 'lower'",
         ),
     ],
     "an include of itself": [
@@ -270,3 +271,35 @@ def test_a_bomb_takes_little_memory(tmp_path, file):
     out, peak = checked(write(tmp_path, file, BOMB + FILES[file].partition("?>")[2]))
     assert "a DOCTYPE" in out.splitlines()[0]
     assert peak < MEMORY
+
+
+GONE = TOUCHED.format("gone.stl") + TOUCHED.format("package://three/lost.stl")
+
+
+def test_all_missing_meshes_are_reported_together(tmp_path, capsys):
+    urdf = FILES["arm.urdf"].replace(SHAPE, SHAPE + GONE)
+    assert main(["check", str(write(tmp_path, "arm.urdf", urdf))]) == 2
+    said = capsys.readouterr().out
+    assert said.count("'gone.stl' is not there") == urdf.count("gone.stl") == 3
+    assert said.count("package 'three' is not found") == 3
+
+
+def test_all_missing_meshes_of_an_mjcf_are_reported_together(tmp_path, capsys):
+    mesh = '<mesh name="t" file="gone.obj"/><mesh name="lost" file="lost.obj"/>'
+    mjcf = re.sub(r"<mesh [^>]*/>", mesh, FILES["arm.xml"], count=1)
+    assert main(["check", str(write(tmp_path, "arm.xml", mjcf))]) == 2
+    said = capsys.readouterr().out
+    assert "'gone.obj' is not there" in said
+    assert "'lost.obj' is not there" in said
+
+
+SUBSTITUTED = FILES["arm.urdf"].replace(SHAPE, SHAPE + TOUCHED.format("$(find gone)/a.stl"))
+
+
+def test_a_urdf_with_substitutions_is_a_xacro_file(tmp_path, capsys):
+    assert main(["check", str(write(tmp_path, "arm.urdf", SUBSTITUTED))]) == 2
+    said = capsys.readouterr().out
+    assert "`$(find gone)` is xacro, and this is read as a URDF" in said
+    assert "name the file with `xacro`, not with `urdf`" in said
+    assert main(["robot", "check", str(tmp_path / "arm.urdf")]) == 2
+    assert "the package 'gone' is not found" in capsys.readouterr().err

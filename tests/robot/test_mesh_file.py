@@ -8,8 +8,8 @@ import trimesh
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape
-from harness.planning.collision.geometry import coal_geometry
 from harness.robot.mesh_file import exact_surface, hull_points, read_triangles
+from harness.robot.solids import coal_geometry
 from harness.simulation.geoms import add_mesh
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]], dtype=float)

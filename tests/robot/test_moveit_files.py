@@ -9,6 +9,7 @@ from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports.goals import PoseGoal
 from harness.robot.load import load_robot
+from tests.robot.arm_files import URDF, load_arm, write_arm
 
 LIMITS = """\
 default_velocity_scaling_factor: 0.1
@@ -58,6 +59,32 @@ def test_joint_limits_narrow_the_robots_own(tmp_path, wrapper):
     assert wrist.velocity < 4
     assert any("wrist_1_joint has a wider velocity limit" in note for note in arm.notes)
     assert 'upper="2.0"' in arm.urdf
+
+
+def test_limits_that_are_assumed_give_way_to_those_of_a_file(tmp_path):
+    """A velocity of 0 in the URDF is none; what is assumed instead must not narrow a real limit."""
+    write_arm(tmp_path, URDF.replace('velocity="0.3"', 'velocity="0"'))
+    assert load_arm(tmp_path).joint_by_name["reach"].velocity == 0.2
+    given = "{has_velocity_limits: true, max_velocity: 1.0, has_acceleration_limits: true,"
+    given += " max_acceleration: 0.5}"
+    text = "joint_limits:\n" + "".join(f"  {n}: {given}\n" for n in ("turn", "bend", "reach"))
+    (tmp_path / "joint_limits.yaml").write_text(text, encoding="utf-8")
+    arm = load_arm(tmp_path, moveit={"joint_limits": "joint_limits.yaml"})
+    assert [arm.joint_by_name[name].velocity for name in ("turn", "bend", "reach")] == [1, 1, 1]
+    assert not [note for note in arm.notes if "assumed" in note or "wider" in note]
+    limits = {"reach": {"max_velocity": 0.7, "max_acceleration": 2.0}}
+    stated = load_arm(tmp_path, joint_limits=limits)
+    assert stated.joint_by_name["reach"].velocity == 0.7
+    assert stated.notes[-1] == "no acceleration limits of turn, bend: 5 rad/s^2 are assumed"
+    with pytest.raises(RobotError, match="max_velocity: 3 is more than the robot's 2;"):
+        load_arm(tmp_path, joint_limits={"turn": {"max_velocity": 3.0}})
+
+
+def test_what_is_assumed_for_an_arm_without_efforts_is_listed(tmp_path):
+    write_arm(tmp_path, URDF.replace(' effort="30"', "").replace(' effort="80"', ""))
+    assert load_arm(tmp_path).notes == (
+        "no acceleration limits: 5 rad/s^2 and 1 m/s^2 are assumed",
+    )
 
 
 @pytest.mark.parametrize("only", ["true", "false"])

@@ -1,14 +1,22 @@
 """The gripper that an imported arm brings: recognised from its SRDF, or named."""
 
 import math
+import shutil
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from harness.core.errors import RobotError
+from docs import ROOT
+from harness.cell.approach import approach_axis
+from harness.core.errors import RobotError, SpecError
+from harness.core.spatial import rotation_from_quat_wxyz
 from harness.language.scenario import RobotSpec
+from harness.planning.collision.scene import CoalScene
+from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
+from harness.robot_tools.robot_check import check_robot
+from harness.robot_tools.robot_findings import states
 from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
@@ -112,6 +120,51 @@ def test_the_parent_of_the_end_effector_is_the_tcp_if_it_is_at_the_pads(tmp_path
     assert load_arm(tmp_path).tcp_link == "between"
 
 
+PALM_AT_THE_TIPS = f"""  <link name="palm">{INERTIAL}<collision><origin xyz="0 0 -0.09"/>
+    <geometry><box size="0.06 0.08 0.08"/></geometry></collision></link>
+  <joint name="palm_joint" type="fixed"><parent link="tool"/><child link="palm"/>
+    <origin xyz="0 0 0.14"/></joint>
+"""
+TIPS = PALM_AT_THE_TIPS + (LEFT + RIGHT).replace(' 0.05"/>', ' -0.03"/>')
+"""The palm, and with it the fingers, have their origins where the fingers end."""
+
+
+def approach(arm):
+    state = arm.with_mimics(arm.start_positions())
+    axis = approach_axis(arm, PinocchioKinematics(arm), CoalScene(arm), state)
+    return axis / np.linalg.norm(axis)
+
+
+def test_a_gripper_approaches_from_the_body_of_its_palm_to_the_pads(tmp_path):
+    write(tmp_path, TIPS)
+    arm = load_arm(tmp_path)
+    assert arm.tcp_link == "hand_tcp"
+    assert approach(arm) == pytest.approx([0, 0, 1])
+    assert approach(load_arm(tmp_path, tcp_link="palm")) == pytest.approx([0, 0, 1])
+    report = check_robot(arm, "arm.urdf", samples=20).report
+    assert report.gripper.endswith("; approaches along +z of hand_tcp")
+
+
+def test_a_tip_that_the_srdf_states_at_the_pads_is_the_tcp_though_it_has_shapes(tmp_path):
+    write(tmp_path, TIPS, GROUP.replace('parent_link="tool"', 'parent_link="palm"'))
+    arm = load_arm(tmp_path)
+    assert (arm.tcp_link, arm.groups["manipulator"].tip_link) == ("palm", "palm")
+    srdf = SRDF.replace('tip_link="tool"', 'tip_link="palm"')
+    write_arm(tmp_path, (tmp_path / "arm.urdf").read_text(encoding="utf-8"), srdf)
+    assert load_arm(tmp_path).tcp_link == "palm"
+
+
+def test_a_robot_yaml_may_state_the_approach_axis(tmp_path):
+    folder = shutil.copytree(ROOT / "robots/open_manipulator_x", tmp_path / "arm")
+    text = (folder / "robot.yaml").read_text(encoding="utf-8")
+    stated = text.replace("\ngripper:\n", "\ngripper:\n  approach_axis: [0, 0, -2]\n")
+    (folder / "robot.yaml").write_text(stated, encoding="utf-8")
+    assert approach(load_robot(RobotSpec(model="arm"), tmp_path)) == pytest.approx([0, 0, -1])
+    (folder / "robot.yaml").write_text(stated.replace("-2]", "0]"), encoding="utf-8")
+    with pytest.raises(SpecError, match=r"approach_axis: .*no direction"):
+        load_robot(RobotSpec(model="arm"), tmp_path)
+
+
 @pytest.mark.parametrize(
     ("name", "place"), [("flange_tcp", "0 0 0.01"), ("tcp", "0 0 0.2"), ("other", "0 0.04 0.05")]
 )
@@ -187,23 +240,36 @@ def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     assert arm.groups["gripper"].joint_names == (joint,)
 
 
+FLAT = (
+    '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+    '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
+    "</geometry></collision></link>"
+)
+TURNING_JAW = (
+    PALM.replace(f'<link name="palm">{INERTIAL}</link>', FLAT.format("palm", -0.01))
+    + FLAT.format("jaw", 0.01)
+    + '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
+    '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
+)
+"""As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
+
+
 def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_outer_half(tmp_path):
-    """As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
-    flat = (
-        '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
-        '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
-        "</geometry></collision></link>"
-    )
-    hinge = (
-        '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
-        '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
-    )
-    fixed = PALM.replace(f'<link name="palm">{INERTIAL}</link>', flat.format("palm", -0.01))
-    write(tmp_path, fixed + flat.format("jaw", 0.01) + hinge, group="")
+    write(tmp_path, TURNING_JAW, group="")
     gripper = load_arm(tmp_path, srdf=None).gripper
     assert (gripper.closed_position, gripper.widths[0, 1]) == pytest.approx((0, 0), abs=1e-6)
     corner = 0.05 * math.sin(1.2)
     assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
+
+
+def test_a_gripper_has_states_open_and_close_even_if_no_srdf_names_them(tmp_path):
+    write(tmp_path)
+    states = load_arm(tmp_path, srdf=None).states_of("gripper")
+    ends = {name: dict(state.positions) for name, state in states.items()}
+    assert ends == {"open": {"left_joint": 0.03}, "close": {"left_joint": 0.0}}
+    state = '<group_state name="Opened" group="hand"><joint name="left_joint" value="0.02"/>'
+    write(tmp_path, group=f"{GROUP}{state}</group_state>")
+    assert set(load_arm(tmp_path).states_of("hand")) == {"Opened", "close"}
 
 
 def test_fingers_that_no_group_names_are_found_too(tmp_path):
@@ -226,6 +292,37 @@ def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):
     write_arm(tmp_path)
     assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names == ("turn", "bend", "reach")
     assert load_arm(tmp_path, srdf=None).gripper is None
+
+
+SHAPE = """<collision><origin xyz="0.03 0 0.05"/><geometry><box size="0.08 0.06 0.1"/></geometry>
+    </collision>"""
+
+
+def test_a_whole_tool_that_a_wrist_turns_is_no_jaw_whatever_its_name(tmp_path):
+    urdf = SIX.replace(HAND, "").replace('"tool"', '"gripper_base"')
+    for link in ("e", "gripper_base"):
+        urdf = urdf.replace(f'<link name="{link}">', f'<link name="{link}">{SHAPE}')
+    write_arm(tmp_path, urdf)
+    assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names[-1] == "tool_joint"
+
+
+def test_a_hand_whose_fingers_stand_still_is_no_part_of_the_arm(tmp_path):
+    """As in Talos' left arm, where only the link at the gripper's motor turns."""
+    crank = JAW.replace('name="jaw"', 'name="crank"').replace('"palm"', '"gripper_base"')
+    crank = crank.replace('"jaw_joint"', '"gripper_joint"').replace('link="jaw"', 'link="crank"')
+    write_arm(tmp_path, SIX.replace(HAND, crank.replace("0 1 0", "0 0 1")))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert any(note.startswith("'gripper' is not used as a gripper: the gap") for note in arm.notes)
+
+
+def test_a_jaw_without_shapes_is_no_joint_of_the_arm(tmp_path):
+    """As in a description of the SO-100."""
+    seen = JAW.replace("collision>", "visual>")
+    write_arm(tmp_path, SIX.replace(HAND, seen))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert any("its fingers have no collision shapes" in note for note in arm.notes)
 
 
 def test_a_named_group_is_the_gripper_without_an_end_effector(tmp_path):
@@ -293,6 +390,13 @@ def test_a_hand_that_starts_closed_takes_a_box_from_above(tmp_path):
 
 
 SIX_WITH_JAW = SIX.replace(HAND, JAW)
+SIX_WITH_TURNING_JAW = SIX.replace(HAND, TURNING_JAW)
+FIVE_WITH_TURNING_JAW = (
+    SIX_WITH_TURNING_JAW.replace('name="d_joint" type="revolute"', 'name="d_joint" type="fixed"')
+    .replace("</robot>", FRAME.format("jaw_tip_tcp", "0.002 0 0.09", "") + "</robot>")
+    .replace('rpy="0 0 1"', 'rpy="0 0 1.2"')
+)
+"""The TCP's z axis points out of the hand, its x axis across it."""
 BLOCK = """
     objects:
       - name: block
@@ -328,3 +432,51 @@ def test_a_palm_near_the_pads_does_not_touch_what_is_grasped(tmp_path):
     robot = "{urdf: arm.urdf, srdf: arm.srdf}"
     result, _ = run(tmp_path, PICK, robot=robot, rest=BLOCK)
     assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+def test_an_arm_of_five_joints_puts_down_what_its_jaw_took(tmp_path):
+    """Its TCP's z axis points out of the hand, so that a pitch of the x axis says nothing."""
+    write_arm(tmp_path, FIVE_WITH_TURNING_JAW)
+    rest = """
+        objects:
+          - {name: block, pose: {xyz: [0.25, 0, 0.217]}, box: {size: [0.015, 0.015, 0.034]},
+             mass: 0.05, friction: 0.3}
+          - {name: stand, static: true, pose: {xyz: [0.25, 0, 0.1]}, box: {size: [0.2, 0.2, 0.2]}}
+          - {name: shelf, static: true, pose: {xyz: [0, 0.3, 0.1]}, box: {size: [0.2, 0.2, 0.2]}}
+        expect:
+          - placed: {object: block, on: shelf}
+    """
+    steps = PICK + "\n- place: {object: block, pose: {xyz: [0, 0.3, 0.217]}}"
+    result, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}", rest=rest)
+    assert result.outcome == "passed", [step.message for step in result.steps]
+    assert saved.signals.object_poses["block"][-1, :2] == pytest.approx([0, 0.3], abs=0.01)
+
+
+def test_a_line_of_five_joints_keeps_the_gripper_upright(tmp_path):
+    write_arm(tmp_path, FIVE_WITH_TURNING_JAW)
+    steps = """
+        - move_to: {joints: {b_joint: 0.6, c_joint: 1.5, e_joint: 0.5}}
+        - move_relative: {direction: {xyz: [0.3, 1, 0]}, distance: 0.15}
+    """
+    _, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}")
+    poses = saved.signals.tcp_pose[saved.signals.times > saved.steps[1].start_time]
+    up = np.array([rotation_from_quat_wxyz(pose[3:])[2] for pose in poses])
+    assert np.ptp(poses[:, 1]) > 0.1
+    assert np.abs(up - up[0]).max() < 0.01
+
+
+BLOCK_AT = """<collision><origin xyz="{}"/><geometry><box size="0.02 0.06 0.06"/></geometry>
+    </collision>"""
+
+
+def test_a_state_of_the_gripper_is_good_wherever_the_arm_stands(tmp_path):
+    """At zero, an open finger touches the arm, as on a folded Panda."""
+    urdf = SIX
+    for link, place in (("c", "0 0.07 0.5"), ("d", "0.3 0 0")):
+        start = f'<link name="{link}">'
+        urdf = urdf.replace(start, start + BLOCK_AT.format(place))
+    write_arm(tmp_path, urdf)
+    arm = load_arm(tmp_path, srdf=None)
+    opened = arm.start_positions(arm.states_of("gripper")["open"].positions)
+    assert CoalScene(arm).touches(opened)
+    assert states(arm).is_good

@@ -14,6 +14,7 @@ from harness.robot.groups import planning_groups
 from harness.robot.srdf.srdf import parse_srdf, write_srdf
 from harness.robot.urdf.urdf import parse_urdf
 from harness.robot.urdf.write import rpy_from_rotation, write_urdf
+from tests.robot.arm_files import URDF
 from tests.robot.models import robot
 
 LIMIT = '<limit lower="-1" upper="1" velocity="1" effort="1"/>'
@@ -142,3 +143,20 @@ def test_what_an_srdf_gets_wrong_is_named(old, new, words):
         planning_groups(parse_srdf(SRDF.replace(old, new), "arm.srdf"), joints, "arm.srdf")
     for word in words:
         assert word in str(caught.value)
+
+
+def test_all_empty_ranges_of_ros2_control_are_reported_with_both_sources():
+    def joint(name, low, high):
+        bounds = f'<param name="min">{low}</param><param name="max">{high}</param>'
+        interface = f'<command_interface name="position">{bounds}</command_interface>'
+        return f'<joint name="{name}">{interface}</joint>'
+
+    blocks = joint("turn", 2.044, 0.54) + joint("bend", 2.486, 2.885)
+    control = f'<ros2_control name="c" type="system">{blocks}</ros2_control></robot>'
+    with pytest.raises(SpecError) as caught:
+        parse_urdf(URDF.replace("</robot>", control), Path(), "arm.urdf")
+    assert [problem.message for problem in caught.value.problems] == [
+        "joint 'turn': its `min` of 2.044 in ros2_control is not below its `max` of 0.54",
+        "joint 'bend': ros2_control allows 2.486 to 2.885, and its <limit> -2 to 2:"
+        " nothing is in both",
+    ]

@@ -105,6 +105,29 @@ def test_what_cannot_be_rendered_is_refused_at_its_place(
     assert time.process_time() - began < 5
 
 
+GAZEBO = "<gazebo><plugin><parameters>$(find gone)/a.yaml</parameters></plugin></gazebo></robot>"
+
+
+def test_a_package_that_only_another_program_needs_may_be_missing(tmp_path):
+    write(tmp_path, ARM.replace("</robot>", GAZEBO))
+    assert "1 <gazebo> element ignored" in load(tmp_path).notes
+
+
+@pytest.mark.parametrize("name", ["mesh.stl", "limb.xacro"])
+def test_a_missing_package_is_reported_once_and_in_plain_words(tmp_path, name):
+    use = f'<xacro:include filename="$(find gone)/{name}"/>'
+    if name == "mesh.stl":
+        mesh = f'<mesh filename="$(find gone)/{name}"/>'
+        use = f'<link name="l"><visual><geometry>{mesh}</geometry></visual></link>'
+    write(tmp_path, ARM.replace("</robot>", f"{use}</robot>"))
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path)
+    assert caught.value.problems[0].message == (
+        "cannot be rendered: the package 'gone' is not found; give the folder that holds it with "
+        "--package-path, in `packages` of `robot:` or in HARNESS_PACKAGE_PATH, or install it"
+    )
+
+
 def test_a_macro_without_an_end_is_refused(tmp_path):
     endless = '<xacro:limb name="a" parent="b" length="1"/></xacro:macro>'
     write(tmp_path, limb=LIMB.replace("</xacro:macro>", endless))

@@ -92,6 +92,27 @@ def test_a_mistake_is_reported_at_its_line(tmp_path, text, line, message):
     assert (problem.path, problem.line) == (str(tmp_path / "world.sdf"), line)
 
 
+def test_all_missing_models_and_meshes_are_reported_together(tmp_path):
+    includes = "<include><uri>model://a</uri></include><include><uri>model://b</uri></include>"
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path, text_with("world", includes))
+    assert [problem.message for problem in caught.value.problems] == [
+        "`model://a` is not found",
+        "`model://b` is not found",
+    ]
+    shapes = "".join(
+        f"<collision name='{name}'><geometry><mesh><uri>{name}.stl</uri></mesh></geometry>"
+        "</collision>"
+        for name in ("c", "d")
+    )
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path, text_with("link", shapes))
+    assert [problem.message for problem in caught.value.problems] == [
+        "`c.stl` is not found",
+        "`d.stl` is not found",
+    ]
+
+
 def test_models_that_include_each_other_are_reported_with_the_circle(tmp_path):
     (tmp_path / "loop").mkdir()
     loop = "<sdf version='1.9'><model name='a'>\n<include><uri>model://loop</uri></include></model></sdf>"

@@ -168,7 +168,7 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
 
 
 def _is_redundant(dof: int) -> bool:
-    """Whether an arm has more joints than `link_goal` fixes: a pose, or a position and a pitch."""
+    """Whether an arm may have more joints than `link_goal` fixes: five do with a vertical tool."""
     return dof > 6 or dof == 5
 
 

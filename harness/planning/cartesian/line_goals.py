@@ -11,6 +11,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import pitch_of
+from harness.planning.ik.task import TILT_JOINTS
 from harness.planning.task import PlanningTask
 from harness.ports.goals import Goal, JointGoal, PoseGoal, PositionGoal
 
@@ -41,6 +42,8 @@ def end_pose(
     if task.space.dof < 6:
         pitch = pitch_of(now.rotation) if goal.pitch is None else goal.pitch
         reduced = PositionGoal(goal.link, goal.position, pitch)
+        if task.space.dof == TILT_JOINTS:
+            reduced = PoseGoal(goal.link, SE3(turned, np.asarray(goal.position)))
         solutions = kinematics.solve(task.space.group, reduced, whole, task.options.seed)
         if solutions:
             end = task.space.whole(solutions[0])

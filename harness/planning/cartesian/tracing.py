@@ -17,7 +17,8 @@ from harness.core.types import FloatArray
 from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
-from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of
+from harness.planning.ik.numeric import LinkGoal, LinkTask, TiltGoal, pitch_of
+from harness.planning.ik.task import TILT_JOINTS, WHOLE_POSE_JOINTS
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motions import JumpThreshold
 from harness.recording.motion_failures import TraceFailure
@@ -127,7 +128,8 @@ def trace(
 ) -> Trace:
     """Follow a way from the start's branch of inverse kinematics until its end, or what stops it.
 
-    Arms with fewer than six joints keep position and pitch; their yaw follows from the position.
+    The yaw of arms with fewer than six joints follows from the position; those of four keep the
+    pitch alone.
 
     Where a curve through the joint positions leaves the way between them, as near a singularity,
     the poses are taken nearer to each other; the trace ends where that does not help.
@@ -202,10 +204,12 @@ def _off_between(path: LinkPath, traced: Trace, checker: MotionChecker) -> Float
     )
 
 
-def link_goal(link: str, pose: SE3, dof: int) -> LinkGoal:
-    """What the joints must do for a pose: all of it, or its position and pitch."""
-    if dof >= 6:
+def link_goal(link: str, pose: SE3, dof: int) -> LinkGoal | TiltGoal:
+    """What the joints must do for a pose: all of it, or what few of them can choose."""
+    if dof >= WHOLE_POSE_JOINTS:
         return PoseGoal(link, pose)
+    if dof == TILT_JOINTS:
+        return TiltGoal.of(link, pose)
     return PositionGoal(link, pose.translation, pitch_of(pose.rotation))
 
 

@@ -15,7 +15,7 @@ from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.compiled import Certify
-from harness.planning.collision.convex_tree import ConvexTree, concatenate, shapes_tree
+from harness.planning.collision.convex_tree import ConvexTree, concatenate
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
 
@@ -173,7 +173,8 @@ class MovingJoints:
 
     def body_poses(self, bodies: tuple[Body, ...]) -> FloatArray:
         """Poses of bodies relative to the moving joints that carry them, shape (B, 12)."""
-        rows = [_flat(self._seen(self.above[body.joint], body.joint)) for body in bodies]
+        joints = [body.rigid.joint for body in bodies]
+        rows = [_flat(self._seen(self.above[joint], joint)) for joint in joints]
         return np.array(rows).reshape(-1, 12)
 
     def path(self, joint: int) -> list[int]:
@@ -201,9 +202,10 @@ class _Layout:
     def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
         self._paths = {carrier: moving.path(carrier) for carrier in (-1, *moving.above)}
         self._index = {body.name: number for number, body in enumerate(model.bodies)}
-        self._carrier = [moving.above[body.joint] for body in model.bodies]
+        self._carrier = [moving.above[body.rigid.joint] for body in model.bodies]
         self._has_plane = [
-            any(isinstance(shape.geometry, Plane) for shape in body.shapes) for body in model.bodies
+            any(isinstance(shape.geometry, Plane) for shape in body.rigid.shapes)
+            for body in model.bodies
         ]
         self._key_of: dict[tuple[int, int], int] = {}
         keys: list[tuple[int, ...]] = []
@@ -261,9 +263,10 @@ def _layout(model: CollisionModel, moving: MovingJoints) -> _Layout:
 def _trees(model: CollisionModel) -> tuple[ConvexTree, IntArray, FloatArray]:
     """The trees of a scene's bodies, one after another, their roots and boxes; cached per scene."""
     if model not in _tree_cache:
-        trees = [shapes_tree(body.shapes) for body in model.bodies]
+        trees = [body.rigid.tree for body in model.bodies]
         roots = np.cumsum([0, *(len(tree.nodes) for tree in trees)])[:-1]
-        _tree_cache[model] = concatenate(trees), roots, np.array([tree.box() for tree in trees])
+        boxes = np.array([body.rigid.box for body in model.bodies])
+        _tree_cache[model] = concatenate(trees), roots, boxes
     return _tree_cache[model]
 
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,9 @@ import pinocchio as pin
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
-from harness.planning.model.robot_model import RobotModel
+from harness.planning.collision.convex_tree import ConvexTree, shapes_tree
+from harness.planning.model.robot_model import RobotModel, pin_from_se3
+from harness.robot.solids import coal_geometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,22 +70,63 @@ class Payload:
 
 
 @dataclass(frozen=True, eq=False)
+class RigidShapes:
+    """Shapes that move together; scenes share them as long as they are the same.
+
+    Attributes:
+        joint: Pinocchio's joint they move with; 0 stands still.
+        shapes: The shapes, placed on the joint.
+    """
+
+    joint: int
+    shapes: tuple[Shape, ...]
+
+    def add_to(self, geometry: pin.GeometryModel, name: str) -> range:
+        """Add the shapes to a geometry model; returns their indices there."""
+        start = geometry.ngeoms
+        for number, shape in enumerate(self.shapes):
+            solid, place = coal_geometry(shape), pin_from_se3(shape.pose)
+            added = pin.GeometryObject(f"{name}#{number}", self.joint, place, solid)
+            geometry.addGeometryObject(added)
+        return range(start, geometry.ngeoms)
+
+    @cached_property
+    def tree(self) -> ConvexTree:
+        """Their tree in the frame of the joint."""
+        return shapes_tree(self.shapes)
+
+    @cached_property
+    def box(self) -> FloatArray:
+        """The lower and the upper corner of the box about them in the joint's frame, shape (6,)."""
+        return self.tree.box()
+
+
+def rigid_shapes(
+    robot: RobotModel, link: str | None, pose: SE3, shapes: Sequence[Shape]
+) -> RigidShapes:
+    """Shapes of a body at a pose in a link's frame, or in the world where the link is None."""
+    joint, T_joint_body = 0, pose
+    if link is not None:
+        joint, T_joint_body = robot.parent_joint(link), robot.placement(link) @ pose
+    placed = tuple(replace(shape, pose=T_joint_body @ shape.pose) for shape in shapes)
+    return RigidShapes(joint, placed)
+
+
+@dataclass(frozen=True, eq=False)
 class Body:
     """A link or an object as a set of geometries that move together.
 
     Attributes:
         name: The name of the link or the object.
-        joint: Pinocchio's joint it moves with; 0 stands still.
-        geometries: Indices into the geometry model.
-        shapes: The same, placed on the joint.
+        rigid: Its shapes, and the joint that moves them.
+        geometries: Indices of the shapes in the geometry model.
         is_link: A link of the robot.
         is_held: Whether this is an attached object.
     """
 
     name: str
-    joint: int
-    geometries: tuple[int, ...]
-    shapes: tuple[Shape, ...]
+    rigid: RigidShapes
+    geometries: range
     is_link: bool
     is_held: bool
 
@@ -103,7 +146,7 @@ class BodyPair:
     first: str
     second: str
     keeps_padding: bool
-    rows: tuple[int, ...]
+    rows: list[int]
 
 
 @dataclass(eq=False)
@@ -143,7 +186,6 @@ class CollisionModel:
         found = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
         of_row = np.zeros(len(self.rows))
         for pair, margin in zip(self.pairs, margins, strict=True):
-            for row in pair.rows:
-                of_row[row] = margin
+            of_row[pair.rows] = margin
         found[self.rows[:, 0], self.rows[:, 1]] = of_row
         return found

@@ -14,8 +14,9 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
-from harness.planning.collision.geometry import geometry_object
+from harness.planning.collision.collision_model import rigid_shapes
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.srdf.srdf import link_pair
@@ -119,17 +120,11 @@ class _Checker:
     def __init__(self, description: RobotDescription) -> None:
         self._robot = RobotModel(description)
         self._geometry = pin.GeometryModel()
-        shaped: dict[str, list[int]] = {}
+        shaped: dict[str, range] = {}
         for link in description.links:
-            for shape in link.collisions:
-                name = f"{link.name} {self._geometry.ngeoms}"
-                joint, placement = (
-                    self._robot.parent_joint(link.name),
-                    self._robot.placement(link.name),
-                )
-                placed = geometry_object(name, joint, placement, shape)
-                index = self._geometry.addGeometryObject(placed)
-                shaped.setdefault(link.name, []).append(index)
+            if link.collisions:
+                rigid = rigid_shapes(self._robot, link.name, SE3.identity(), link.collisions)
+                shaped[link.name] = rigid.add_to(self._geometry, link.name)
         carrier = carriers(description.joints, WORLD)
         names = list(shaped)
         pairs = [

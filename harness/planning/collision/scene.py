@@ -15,22 +15,23 @@ from harness.core.exact_key import exact_key
 from harness.core.geometry import Plane, Shape
 from harness.core.sharing import shared
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.planning.collision.collision_model import (
     Body,
     BodyPair,
     CollisionModel,
     Payload,
+    RigidShapes,
     SceneObject,
     SceneState,
+    rigid_shapes,
 )
-from harness.planning.collision.geometry import geometry_object
 from harness.planning.model.robot_model import RobotModel
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
-from harness.robot.solids import box_corners, coal_geometry, distance_to_point
+from harness.robot.solids import box_corners, coal_geometry, nearest_point
 
 ROBOT = "robot"
 """Stands for every link of the robot in allowed pairs."""
@@ -47,6 +48,12 @@ class CoalScene:
         self.description = description
         self.robot = RobotModel(description)
         self._objects: dict[str, SceneObject] = {}
+        self._rigid: dict[str, tuple[SceneObject, RigidShapes]] = {}
+        self._links = {
+            link.name: rigid_shapes(self.robot, link.name, SE3.identity(), link.collisions)
+            for link in description.links
+            if link.collisions
+        }
         self._allowed: set[tuple[str, str]] = {
             _sorted(*pair) for pair in description.allowed_collisions
         }
@@ -209,9 +216,9 @@ class CoalScene:
         ]
         return np.concatenate(corners) if corners else np.zeros((1, 3))
 
-    def distance_to_link(self, link: str, point: FloatArray) -> float:
-        """Distance between a point in a link's frame and the link's shapes, 0 inside [m]."""
-        return distance_to_point(self.shapes_of(link), point)
+    def nearest_on_link(self, link: str, point: FloatArray) -> FloatArray:
+        """The point of a link's shapes nearest to a point, itself inside, link axes, shape (3,)."""
+        return nearest_point(self.shapes_of(link), point)
 
     def shapes_of(self, body: str) -> tuple[Shape, ...]:
         """The shapes of a link or an object, in its frame."""
@@ -250,11 +257,6 @@ class CoalScene:
         points = np.stack([nearest.getNearestPoint1(), nearest.getNearestPoint2()])
         return touch, points
 
-    def is_allowed(self, first: str, second: str) -> bool:
-        """Whether the robot's description or the scene lets two bodies touch."""
-        links = self.description.link_names
-        return self._allows(first, second, first in links, second in links)
-
     def _allows(self, first: str, second: str, first_is_link: bool, second_is_link: bool) -> bool:
         key = _sorted(first, second)
         if key in self._allowed or key in self._extra:
@@ -275,15 +277,14 @@ class CoalScene:
     def _build(self) -> CollisionModel:
         geometry = pin.GeometryModel()
         bodies = [
-            self._add_body(geometry, link.name, link.name, SE3.identity(), link.collisions, True)
-            for link in self.description.links
-            if link.collisions
+            Body(name, rigid, rigid.add_to(geometry, name), is_link=True, is_held=False)
+            for name, rigid in self._links.items()
         ]
-        bodies += [
-            self._add_body(geometry, name, obj.link, obj.pose, obj.shapes, False)
-            for name, obj in self._objects.items()
-            if obj.shapes
-        ]
+        for name, obj in self._objects.items():
+            if obj.shapes:
+                rigid, is_held = self._rigid_object(name), obj.link is not None
+                rows = rigid.add_to(geometry, name)
+                bodies.append(Body(name, rigid, rows, is_link=False, is_held=is_held))
         checked = [
             (first, second)
             for later, second in enumerate(bodies)
@@ -292,16 +293,16 @@ class CoalScene:
         ]
         is_checked = np.zeros((geometry.ngeoms, geometry.ngeoms), dtype=bool)
         for first, second in checked:
-            a, b = first.geometries, second.geometries
-            is_checked[a[0] : a[-1] + 1, b[0] : b[-1] + 1] = True
+            is_checked[_block(first, second)] = True
         geometry.setCollisionPairs(is_checked)
         rows = np.argwhere(is_checked)
-        row_of = {(a, b): row for row, (a, b) in enumerate(rows.tolist())}
+        row_of = np.zeros(is_checked.shape, dtype=np.int64)
+        row_of[is_checked] = np.arange(len(rows))
         pairs = tuple(self._pair(first, second, row_of) for first, second in checked)
         return CollisionModel(self.robot, geometry, tuple(bodies), pairs, rows)
 
-    def _pair(self, first: Body, second: Body, row_of: Mapping[tuple[int, int], int]) -> BodyPair:
-        rows = tuple(row_of[a, b] for a in first.geometries for b in second.geometries)
+    def _pair(self, first: Body, second: Body, row_of: IntArray) -> BodyPair:
+        rows = row_of[_block(first, second)].ravel().tolist()
         robot_side = [body for body in (first, second) if body.is_link or body.is_held]
         padded = _sorted(first.name, second.name) not in self._unpadded
         # Links come before objects; a held object comes before what it could hit.
@@ -309,30 +310,17 @@ class CoalScene:
             first, second = second, first
         return BodyPair(first.name, second.name, padded and len(robot_side) == 1, rows)
 
-    def _add_body(
-        self,
-        geometry: pin.GeometryModel,
-        name: str,
-        link: str | None,
-        pose: SE3,
-        shapes: Sequence[Shape],
-        is_link: bool,
-    ) -> Body:
-        joint, T_joint_body = 0, pose
-        if link is not None:
-            joint = self.robot.parent_joint(link)
-            T_joint_body = self.robot.placement(link) @ pose
-        indices = tuple(
-            geometry.addGeometryObject(
-                geometry_object(f"{name}#{number}", joint, T_joint_body, shape)
-            )
-            for number, shape in enumerate(shapes)
-        )
-        placed = tuple(replace(shape, pose=T_joint_body @ shape.pose) for shape in shapes)
-        return Body(name, joint, indices, placed, is_link, not is_link and link is not None)
+    def _rigid_object(self, name: str) -> RigidShapes:
+        """The shapes of an object where it is now; the same ones until it changes."""
+        obj = self._objects[name]
+        known = self._rigid.get(name)
+        if known is None or known[0] is not obj:
+            rigid = rigid_shapes(self.robot, obj.link, obj.pose, obj.shapes)
+            known = self._rigid[name] = obj, rigid
+        return known[1]
 
     def _is_checked(self, first: Body, second: Body) -> bool:
-        if first.joint == second.joint or self._allows(
+        if first.rigid.joint == second.rigid.joint or self._allows(
             first.name, second.name, first.is_link, second.is_link
         ):
             return False
@@ -350,6 +338,12 @@ class CoalScene:
                 ObjectFailure(name, tuple(self._objects)),
             )
         return self._objects[name]
+
+
+def _block(first: Body, second: Body) -> tuple[slice, slice]:
+    """The geometries of two bodies as rows and columns."""
+    a, b = first.geometries, second.geometries
+    return slice(a.start, a.stop), slice(b.start, b.stop)
 
 
 def _sorted(first: str, second: str) -> tuple[str, str]:

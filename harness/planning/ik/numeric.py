@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import eigenpy
 import numpy as np
 import pinocchio as pin
@@ -27,7 +29,27 @@ _MINIMUM = 1 - 1e-9
 """The same share at a minimum, of a goal that cannot be reached."""
 _FOUND = 1e-8  # [m, rad] largest error of a solution
 _NO_HEADING = 1e-9  # [1] horizontal part below which the x axis is vertical
+UP = np.array([0.0, 0.0, 1.0])
 _VERTICAL = 1e-6  # [1] cosine below which a pitch is a quarter turn
+
+
+@dataclass(frozen=True, eq=False)
+class TiltGoal:
+    """A link's origin at a point, and its rotation up to a turn about the vertical.
+
+    Attributes:
+        position: The position in the world [m], shape (3,).
+        up: The world's vertical in the link's axes, shape (3,).
+    """
+
+    link: str
+    position: FloatArray
+    up: FloatArray
+
+    @classmethod
+    def of(cls, link: str, pose: SE3) -> TiltGoal:
+        """What an arm of five joints can choose of a pose T_world_link."""
+        return cls(link, pose.translation, pose.rotation[2])
 
 
 def pitch_of(rotation: FloatArray) -> float:
@@ -40,13 +62,14 @@ class LinkTask:
     """The error of a link relative to its goal, and the Jacobian of the error.
 
     Rows are metres and radians in world axes: position (3), then for a pose the rotation vector
-    from the link to the goal (3), for a position with pitch the pitch (1; 2 when x is vertical).
+    from the link to the goal (3), for a position with pitch the pitch (1; 2 when x is vertical),
+    for a tilt the difference of the verticals (3).
     Rotation rows are multiplied by `metres_per_radian`: their weight relative to a distance where
     both cannot be satisfied.
     """
 
     def __init__(
-        self, space: GroupSpace, goal: LinkGoal, *, metres_per_radian: float = 1.0
+        self, space: GroupSpace, goal: LinkGoal | TiltGoal, *, metres_per_radian: float = 1.0
     ) -> None:
         self.space = space
         self.goal = goal
@@ -84,6 +107,10 @@ class LinkTask:
             error[3:] = pin.log3(self._goal_rotation @ rotation.T)
             return error, jacobian
         shift = goal.position - placement.translation
+        if isinstance(goal, TiltGoal):
+            up: FloatArray = rotation @ goal.up
+            tilted = np.cross(jacobian[3:].T, up).T  # change of the link's vertical, (3, dof)
+            return np.concatenate([shift, UP - up]), np.vstack([jacobian[:3], tilted])
         if goal.pitch is None:
             return shift, jacobian[:3]
         x_axis: FloatArray = rotation[:, 0]
@@ -199,6 +226,7 @@ def solve_numeric(
     restarts: int = RESTARTS,
     most_restarts: int = MOST_RESTARTS,
     enough: int | None = None,
+    part: TiltGoal | None = None,
 ) -> list[FloatArray]:
     """Find joint positions that bring a link to its goal, from the seed and from random restarts.
 
@@ -210,6 +238,7 @@ def solve_numeric(
         restarts: The number of searches from random positions after the first.
         most_restarts: The largest number of searches while no solution is found.
         enough: The number of solutions that ends the search; None for a spread.
+        part: The part of the goal that suffices, where the rest comes as near as it can.
 
     Returns:
         Distinct solutions in order of finding, exact to 1e-9, inside the limits; may be empty.
@@ -222,6 +251,8 @@ def solve_numeric(
         if len(found) == enough or (found and number > restarts):
             break
         positions, error = task.least_squares(start, remaining=_CONVERGES)
+        if part is not None:
+            positions, error = LinkTask(space, part).polish(positions)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
         start = sample_group_positions(space, rng)

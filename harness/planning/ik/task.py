@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from harness.ports.goals import PoseGoal, PositionGoal
 
-WHOLE_POSE_JOINTS, PITCH_JOINTS = 6, 4
-"""Joints that an arm needs for an arbitrary pose, and for an arbitrary position and pitch."""
+WHOLE_POSE_JOINTS, TILT_JOINTS, PITCH_JOINTS = 6, 5, 4
+"""Joints that an arm needs for an arbitrary pose; for one up to a turn about the vertical; and for
+an arbitrary position and pitch."""
 
 
 def task_of(dof: int, goal: PoseGoal | PositionGoal) -> str:

@@ -13,6 +13,7 @@ from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
 from harness.core.errors import HarnessError
+from harness.recording.files import disk_advice
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
 from harness.reporting.rosbag import cameras, joints
@@ -80,7 +81,7 @@ def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None
     except OSError as error:
         raise HarnessError(
             f"the bag cannot be written to {folder}: {error.strerror or error};"
-            " free some space there, or choose another place"
+            f" {disk_advice(error)}choose another place"
         ) from error
 
 

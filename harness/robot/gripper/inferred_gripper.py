@@ -13,10 +13,10 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
-from harness.robot.description import Joint, Link, Mimic, PlanningGroup
+from harness.robot.description import Joint, Link, Mimic, NamedState, PlanningGroup
 from harness.robot.mesh_file import hull_of
 from harness.robot.robot_yaml import FingerSide, GripperFacts
-from harness.robot.solids import box_corners, coal_geometry, hull_corners
+from harness.robot.solids import DOT, box_corners, coal_geometry, hull_corners
 from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
@@ -29,6 +29,9 @@ GRIP_FORCE = 20.0
 
 LEAST_TRAVEL = 0.002
 """Smallest change of the gap of a hand that can grasp [m]."""
+
+CLOSED_JAW = 0.01
+"""Largest gap between a closed jaw and the palm [m]."""
 
 WIDE = 0.99
 """Share of the largest gap at which a hand counts as open: a jaw can turn on without opening."""
@@ -52,6 +55,8 @@ class IntegratedGripper:
         urdf: The robot, with two independent fingers coupled.
         srdf: Its SRDF, with the group of the hand.
         center: Halfway between the pads, in palm axes [m], shape (3,).
+        body: Middle of the palm's shapes, in palm axes [m], shape (3,); its origin where it has
+            none, or is a pad itself.
         pairs: Links of the hand that may touch each other.
         notes: The assumptions, to which more are added.
     """
@@ -60,6 +65,7 @@ class IntegratedGripper:
     urdf: Urdf
     srdf: Srdf
     center: FloatArray
+    body: FloatArray
     pairs: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
 
@@ -84,6 +90,8 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     sides = _sides(hand, [links for _, links in fingers])
     positions = np.linspace(joint.lower, joint.upper, SAMPLES)
     pads, gaps = _pads(hand, sides, positions)
+    if palm in pads and gaps.min() > CLOSED_JAW:
+        raise NoGripperError(f"'{pads[0]}' stays {1000 * gaps.min():.0f} mm away from '{palm}'")
     narrowest = positions[int(gaps.argmin())]
     wide = positions[gaps >= WIDE * gaps.max()]
     widest = wide[int(np.abs(wide - narrowest).argmin())]
@@ -107,13 +115,30 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     )
     links = [*sides[0], *sides[1], palm]
     pairs = [link_pair(a, b) for n, a in enumerate(links) for b in links[:n] if a != b]
+    if not np.isfinite(joint.effort):
+        unit = "N" if joint.kind == "prismatic" else "N m"
+        notes.append(
+            f"gripper '{group.name}': {joint.name} has no effort limit: {most:.3g} {unit} is"
+            f" assumed, {5 * GRIP_FORCE:g} N at each pad"
+        )
     notes.append(
         f"gripper '{group.name}': {joint.name} moves {pads[0]} and {pads[1]}, up to "
         f"{1000 * gaps.max():.0f} mm apart"
     )
-    return IntegratedGripper(
-        facts, urdf, srdf, hand.center(pads, closed), tuple(pairs), tuple(notes)
-    )
+    has_body = hand.has_shape(palm) and palm not in pads
+    body = hand.middle(palm, closed) if has_body else np.zeros(3)
+    srdf = _with_states(srdf, facts)
+    center = hand.center(pads, closed)
+    return IntegratedGripper(facts, urdf, srdf, center, body, tuple(pairs), tuple(notes))
+
+
+def is_gripper(urdf: Urdf, joints: tuple[str, ...]) -> bool:
+    """Whether joints close two sides of a gripper."""
+    try:
+        recognise(urdf, Srdf(), PlanningGroup("gripper", joints))
+    except NoGripperError:
+        return False
+    return True
 
 
 def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]]:
@@ -215,8 +240,6 @@ class _Hand:
 
     def gap(self, pads: tuple[str, str], position: float) -> float:
         """Distance between two links' parts, 0 where they overlap [m]."""
-        import coal
-
         poses = [self.pose(pad, position) for pad in pads]
         first, second = (
             [(solid, pose @ place) for solid, place in self.parts(pad, is_jaw=self.palm in pads)]
@@ -225,19 +248,51 @@ class _Hand:
         nearest = np.inf
         for solid, pose in first:
             for other, other_pose in second:
-                result = coal.DistanceResult()
-                at, other_at = coal_transform(pose), coal_transform(other_pose)
-                coal.distance(solid, at, other, other_at, coal.DistanceRequest(), result)
-                nearest = min(nearest, float(result.min_distance))
+                nearest = min(nearest, _distance(solid, pose, other, other_pose))
                 if nearest <= 0:
                     return 0.0
         return nearest
 
     def center(self, pads: tuple[str, ...], position: float) -> FloatArray:
-        """Midpoint between the pads' centres; of a single jaw its own centre, shape (3,)."""
+        """Midpoint between the pads' centres; where a single jaw meets the palm, shape (3,)."""
         if self.palm in pads:
-            return self.middle(next(pad for pad in pads if pad != self.palm), position)
+            return self._meeting(next(pad for pad in pads if pad != self.palm), position)
         return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
+
+    def _meeting(self, jaw: str, position: float) -> FloatArray:
+        """Middle of the jaw's corners that touch the palm or nearly do, shape (3,)."""
+        import coal
+
+        at, palm = self.pose(jaw, position), self.parts(self.palm, is_jaw=True)
+        pairs = [
+            (_distance(solid, at @ place, *part), (at @ place).apply(hull_corners(solid)), part)
+            for solid, place in self.parts(jaw, is_jaw=True)
+            for part in palm
+        ]
+        most = min(distance for distance, _, _ in pairs) + LEAST_TRAVEL
+        dot = coal.Sphere(DOT)
+        meeting = np.array(
+            [
+                corner
+                for distance, corners, part in pairs
+                if distance <= most
+                for corner in corners
+                if _distance(*part, dot, SE3(np.eye(3), corner)) <= most
+            ]
+        )
+        if not len(meeting):  # edges or faces are nearest
+            return self.middle(jaw, position)
+        return 0.5 * (meeting.min(axis=0) + meeting.max(axis=0))
+
+
+def _distance(first: Any, first_pose: SE3, second: Any, second_pose: SE3) -> float:
+    """Distance between two of Coal's geometries, below 0 where they overlap [m]."""
+    import coal
+
+    result = coal.DistanceResult()
+    places = coal_transform(first_pose), coal_transform(second_pose)
+    coal.distance(first, places[0], second, places[1], coal.DistanceRequest(), result)
+    return float(result.min_distance)
 
 
 def _outer_half(
@@ -320,6 +375,18 @@ def _outermost(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, .
         return max(float(np.maximum(low * out, high * out).sum()) for low, high in boxes)
 
     return sorted(links, key=reach, reverse=True)
+
+
+def _with_states(srdf: Srdf, facts: GripperFacts) -> Srdf:
+    """The SRDF with states `open` and `close` of the hand, unless it has such ones."""
+    named = {state.name.lower() for state in srdf.states if state.group == facts.group}
+    ends = {"open": facts.open_position, "closed": facts.closed_position}
+    added = (
+        NamedState(STATES[word][0], facts.group, {facts.joint: position})
+        for word, position in ends.items()
+        if named.isdisjoint(STATES[word])
+    )
+    return replace(srdf, states=(*srdf.states, *added))
 
 
 def _state(srdf: Srdf, group: str, joint: str, word: str, default: float) -> float:

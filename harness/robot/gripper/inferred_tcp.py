@@ -12,7 +12,7 @@ from harness.core.spatial import SE3
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.gripper.inferred_gripper import IntegratedGripper
 from harness.robot.srdf.default_pairs import urdf_poses
-from harness.robot.srdf.srdf import Srdf, SrdfGroup
+from harness.robot.srdf.srdf import Srdf
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
 
@@ -20,8 +20,8 @@ TCP_NAMES = re.compile(r"tcp|grasp|pinch|grip_site|tool_?cent", re.IGNORECASE)
 TOOL_NAMES = re.compile(r"(?<![a-z])ee(?![a-z])|end_?effector|gripper_frame", re.IGNORECASE)
 
 FARTHEST = (0.1, 0.08, 0.03)
-"""Largest distances between the pads' midpoint and a frame of their name, by rank [m]: a TCP or the
-parent of the SRDF's end effector; a tool frame; any other frame."""
+"""Largest distances between the pads' midpoint and a frame, by rank [m]: a link named as a TCP, or
+stated by the SRDF as a chain's tip or an end effector's parent; a tool frame; any other frame."""
 
 
 def with_integrated_gripper(
@@ -43,10 +43,11 @@ def with_integrated_gripper(
     poses = urdf_poses(urdf, {})
     palm = poses[own.facts.palm_link]
     center = palm.apply(own.center)
+    palms = (palm.apply(own.body), palm.translation, palm.translation)
     ranked = sorted(
         (rank, float(np.linalg.norm(poses[frame].translation - center)), frame)
         for rank, frame in _frames(urdf, srdf, arm, tip)
-        if _is_at_the_pads(poses[frame].translation, palm.translation, center, FARTHEST[rank])
+        if _is_at_the_pads(poses[frame].translation, palms[rank], center, FARTHEST[rank])
     )
     if ranked:
         _, distance, frame = ranked[0]
@@ -71,24 +72,37 @@ def tcp_without_gripper(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) ->
     It is the tip of a chain that the SRDF states, as in MoveIt; else a frame that is rigidly
     connected with the arm's last link and is named as a TCP or an end effector's parent.
     """
-    stated = any(group.name == arm.name and group.chains for group in srdf.groups)
-    if stated and srdf.root_element is not None:
+    if _states_chain(srdf, arm):
         return tip
     return next((frame for rank, frame in _frames(urdf, srdf, arm, tip) if rank == 0), tip)
 
 
+def _states_chain(srdf: Srdf, arm: PlanningGroup) -> bool:
+    """Whether the file of an SRDF has a chain of the arm."""
+    stated = any(group.name == arm.name and group.chains for group in srdf.groups)
+    return stated and srdf.root_element is not None
+
+
 def _frames(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) -> Iterator[tuple[int, str]]:
-    """Links without shapes that are rigidly connected with the arm's tip, and their ranks."""
+    """Links that may be the TCP, rigidly connected with the arm's tip, and their ranks.
+
+    Those that the SRDF states may have shapes.
+    """
     carrier = carriers(urdf.joints, urdf.root)
     parents = {
         tool.parent_link
         for tool in srdf.end_effectors
         if arm.name in (tool.parent_group, tool.group)
     }
+    stated = parents | ({tip} if _states_chain(srdf, arm) else set())
     for link in urdf.links:
-        if carrier[link.name] != carrier.get(tip) or link.collisions or link.visuals:
+        if carrier[link.name] != carrier.get(tip):
             continue
-        if link.name in parents or TCP_NAMES.search(link.name):
+        if link.name in stated:
+            yield 0, link.name
+        elif link.collisions or link.visuals:
+            continue
+        elif TCP_NAMES.search(link.name):
             yield 0, link.name
         elif TOOL_NAMES.search(link.name):
             yield 1, link.name
@@ -99,7 +113,7 @@ def _frames(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) -> Iterator[tu
 def _is_at_the_pads(
     frame: np.ndarray, palm: np.ndarray, center: np.ndarray, farthest: float
 ) -> bool:
-    """Whether a frame is near the pads' midpoint, and nearer to it than to the palm's origin."""
+    """Whether a frame is near the pads' midpoint, and nearer to it than to the palm."""
     away = float(np.linalg.norm(frame - center))
     return away <= farthest and away < float(np.linalg.norm(frame - palm))
 
@@ -111,8 +125,8 @@ def _ending_at(
     if carrier.get(link) != carrier.get(tip):
         return srdf
 
-    def changed(group: SrdfGroup) -> SrdfGroup:
-        chains = tuple((base, link if end == tip else end) for base, end in group.chains)
-        return replace(group, chains=chains) if group.name == arm.name else group
+    def moved(end: str) -> str:
+        return link if end == tip else end
 
-    return replace(srdf, groups=tuple(changed(group) for group in srdf.groups))
+    groups = (each.with_links(moved) if each.name == arm.name else each for each in srdf.groups)
+    return replace(srdf, groups=tuple(groups))

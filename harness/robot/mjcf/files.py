@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from harness.core.errors import collected
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.robot.mesh_file import LARGEST_FILE
 from harness.robot.packages import NotFoundError, PackagePath
@@ -56,10 +57,9 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
         top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>", hint)
     _refuse_unbounded(roots)
     folder = _mesh_folder(roots, path.parent)
-    for root in roots:
-        for item in root.walk():
-            if item.tag in ASSETS and item.get("file"):
-                _check(item, "file", folder, packages)
+    files = (item for root in roots for item in root.walk() if item.get("file"))
+    assets = (item for item in files if item.tag in ASSETS)
+    collected(lambda item: _check(item, "file", folder, packages), assets)
     return roots
 
 

@@ -21,7 +21,25 @@ KINDS: dict[str, JointKind] = {
 FREE = ("floating", "planar")
 
 
-def read_joint(element: XmlElement, notes: list[str]) -> Joint:
+def zero_limits(joints: Sequence[XmlElement]) -> list[str]:
+    """A note on each kind of limit of 0 in joints that were read, with the joints that have it."""
+    notes: list[str] = []
+    for key in ("velocity", "effort"):
+        names = [
+            joint.get("name")
+            for joint in joints
+            if (limit := joint.find("limit")) is not None
+            and joint.get("type") != "fixed"
+            and key in limit.attributes
+            and float(limit.get(key)) == 0
+        ]
+        if names:
+            plural = "s" if len(names) > 1 else ""
+            notes.append(f"joint{plural} {', '.join(names)}: a {key} limit of 0 counts as none")
+    return notes
+
+
+def read_joint(element: XmlElement) -> Joint:
     """A joint.
 
     Soft limits of a `safety_controller` narrow the position limits, as in MoveIt. A velocity or
@@ -55,8 +73,8 @@ def read_joint(element: XmlElement, notes: list[str]) -> Joint:
         axis / length if moves else axis,
         lower,
         upper,
-        _rate(limit, "velocity", name, notes) if moves else np.inf,
-        effort=_rate(limit, "effort", name, notes) if moves else np.inf,
+        _rate(limit, "velocity", name) if moves else np.inf,
+        effort=_rate(limit, "effort", name) if moves else np.inf,
         damping=max(damping, 0.0),
         friction=max(friction, 0.0),
         mimic=None
@@ -108,7 +126,7 @@ def _positions(element: XmlElement, name: str, kind: JointKind) -> tuple[float, 
     return lower, upper
 
 
-def _rate(limit: XmlElement | None, key: str, name: str, notes: list[str]) -> float:
+def _rate(limit: XmlElement | None, key: str, name: str) -> float:
     if limit is None or key not in limit.attributes:
         return np.inf
     if limit.get(key).strip() in ("inf", "+inf"):
@@ -118,10 +136,7 @@ def _rate(limit: XmlElement | None, key: str, name: str, notes: list[str]) -> fl
         return np.inf
     if value < 0:
         limit.refuse(f"joint '{name}': {key} is {value:g}; it has to be above zero", at=key)
-    if value == 0:
-        notes.append(f"joint '{name}': a limit of 0 for its {key} counts as none")
-        return np.inf
-    return value
+    return np.inf if value == 0 else value
 
 
 def resolved_mimics(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from harness.core.errors import RobotError, SpecError
+from harness.core.errors import RobotError, SpecError, collected
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, Shape, Sphere
 from harness.core.solids import TRIANGLE_SLACK
 from harness.language.files.xml_file import XmlElement
@@ -70,8 +71,9 @@ class LinkReader:
         """
         name = element.need("name")
         inertial = element.find("inertial")
-        visuals = (self._shape(item, name) for item in element.findall("visual"))
-        collisions = (self._shape(item, name) for item in element.findall("collision"))
+        shape = partial(self._shape, link=name)
+        visuals = collected(shape, element.findall("visual"))
+        collisions = collected(shape, element.findall("collision"))
         return Link(
             name,
             None if inertial is None else self._inertial(inertial, name),

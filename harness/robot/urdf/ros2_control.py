@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from harness.core.errors import collected
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint
 from harness.robot.urdf.values import text_number
@@ -20,14 +21,15 @@ def with_interfaces(
     bounds only narrow `<limit>`, as in ros2_control's limiter.
 
     Raises:
-        SpecError: A bound is not a number, or the range is empty; located.
+        SpecError: A bound is not a number, or a range is empty; all of them, located.
     """
     known = {joint.name: joint for joint in joints}
-    for item in (each for block in root.findall("ros2_control") for each in block.findall("joint")):
+
+    def read(item: XmlElement) -> None:
         name = item.need("name")
         if name not in known or not known[name].is_movable:
             notes.append(f"ros2_control: there is no joint '{name}' that moves: ignored")
-            continue
+            return
         commands = item.findall("command_interface")
         if not commands and known[name].mimic is None:
             notes.append(f"ros2_control: joint '{name}' has no command interface; it is driven")
@@ -35,6 +37,9 @@ def with_interfaces(
         for command in commands:
             joint = _narrowed(joint, command)
         known[name] = joint
+
+    blocks = root.findall("ros2_control")
+    collected(read, (item for block in blocks for item in block.findall("joint")))
     return tuple(known[joint.name] for joint in joints)
 
 
@@ -49,8 +54,13 @@ def _narrowed(joint: Joint, command: XmlElement) -> Joint:
     low, high = bounds.get("min", -math.inf), bounds.get("max", math.inf)
     if interface == "position":
         lower, upper = max(joint.lower, low), min(joint.upper, high)
+        if low >= high:
+            message = f"its `min` of {low:g} in ros2_control is not below its `max` of {high:g}"
+            command.refuse(f"joint '{joint.name}': {message}", "swap or remove them")
         if lower >= upper:
-            command.refuse(f"joint '{joint.name}': nothing is between {lower:g} and {upper:g}")
+            message = f"ros2_control allows {low:g} to {high:g}"
+            limit = f"its <limit> {joint.lower:g} to {joint.upper:g}"
+            command.refuse(f"joint '{joint.name}': {message}, and {limit}: nothing is in both")
         bounded = joint.kind == "continuous" and lower > -math.inf and upper < math.inf
         kind = "revolute" if bounded else joint.kind
         return (

@@ -7,14 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from harness.core.errors import collected
 from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
-from harness.robot.urdf.joints import read_joint, resolved_mimics
+from harness.robot.urdf.joints import read_joint, resolved_mimics, zero_limits
 from harness.robot.urdf.links import LinkReader
 from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
+from harness.robot.xacro.file import xacro_parts
 
 MOST_LINKS = 500
 OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
@@ -63,9 +65,11 @@ def parse_urdf(
     root = parse_xml(text, source)
     if root.tag != "robot":
         root.refuse(f"the root element is <{root.tag}>, a URDF's is <robot>")
-    macro = next((item for item in root.walk() if item.tag.startswith("xacro:")), None)
-    if macro is not None:
-        macro.refuse("this is a xacro file", "name it with `xacro`, not with `urdf`")
+    replaced = next(xacro_parts(root), None)
+    if replaced is not None:
+        item, key, text = replaced
+        message = f"`{text}` is xacro, and this is read as a URDF"
+        item.refuse(message, "name the file with `xacro`, not with `urdf`", at=key)
     notes: list[str] = []
     materials = {
         item.get("name"): rgba(color)
@@ -75,8 +79,9 @@ def parse_urdf(
     packages = packages or PackagePath(folder.resolve())
     reader = LinkReader(folder, packages, materials, notes)
     elements = _by_name(root)
-    links = [reader.link(item) for item in root.findall("link")]
-    joints = [read_joint(item, notes) for item in root.findall("joint")]
+    links = collected(reader.link, root.findall("link"))
+    joints = collected(read_joint, root.findall("joint"))
+    notes += zero_limits(root.findall("joint"))
     if not links and any(root.find(tag) is not None for tag in OF_SRDF):
         root.refuse(
             "this is an SRDF", "its links and joints are in a URDF; an SRDF is named by `srdf`"

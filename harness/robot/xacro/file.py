@@ -8,7 +8,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -19,9 +19,11 @@ from harness.core.user_cache import cached, store
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement, read_bounded, read_xml
 from harness.robot.packages import PackagePath
+from harness.robot.xacro.process import OTHERS
 
 XACRO_PREFIX = "xacro:"
 XACRO_ARG = "xacro:arg"
+SUBSTITUTION = re.compile(r"\$\([^)]*\)|\$\{[^}]*\}")
 PROCESSOR_TIME = 8
 """CPU time limit of a rendering [s]."""
 
@@ -30,8 +32,22 @@ WALL_TIME = 60.0
 
 
 def is_xacro(root: XmlElement) -> bool:
-    """Whether a document has elements that xacro replaces."""
-    return any(item.tag.startswith(XACRO_PREFIX) for item in root.walk())
+    """Whether a document has parts that xacro replaces."""
+    return next(xacro_parts(root), None) is not None
+
+
+def xacro_parts(root: XmlElement) -> Iterator[tuple[XmlElement, str, str]]:
+    """What xacro replaces in a robot's document: the element, its attribute if any, and the text.
+
+    Attributes in elements for other programs, such as `<gazebo>`, do not count.
+    """
+    for item in root.walk():
+        if item.tag.startswith(XACRO_PREFIX):
+            yield item, "", f"<{item.tag}>"
+    for item in (item for each in root.children if each.tag not in OTHERS for item in each.walk()):
+        for key, value in item.attributes.items():
+            if found := SUBSTITUTION.search(value):
+                yield item, key, found[0]
 
 
 def arguments_of(root: XmlElement) -> frozenset[str]:

@@ -16,11 +16,17 @@ from harness.core.errors import SpecError
 from harness.language.files.xml_file import LARGEST_FILE, mark_places, read_bounded
 from harness.robot.packages import NotFoundError, PackagePath
 
+NOWHERE = "/package-that-is-not-found"
+"""Folder in which a missing package is, until it is known whether the robot needs it."""
+
 MEMORY = 1_000_000_000
 """Limit of the address space [bytes]."""
 
 DEEPEST_INCLUDE = 40
 MOST_BYTES_READ = 64_000_000
+
+OTHERS = ("gazebo", "ros2_control", "transmission")
+"""Elements of a robot that are for other programs."""
 
 HARMLESS = frozenset(
     {
@@ -119,7 +125,8 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
     try:
         guard.is_on = True
         document: Any = xacro.process_file(file, mappings=mappings)
-        return _bounded(document.toxml(), file)
+        reader.refuse_missing_packages(document.documentElement)
+        return _bounded(reader.restored(document.toxml()), file)
     except SpecError as error:
         problem = error.problems[0]
         return {"problem": {key: getattr(problem, key) for key in problem.__dataclass_fields__}}
@@ -129,7 +136,7 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
     except MemoryError:
         return _complaint("cannot be rendered: it takes too much memory", xacro.filestack, file)
     except Exception as error:  # noqa: BLE001 - whatever an expression of the file raised
-        message = guard.complaint or " ".join(str(error).split()) or type(error).__name__
+        message = guard.complaint or reader.missing_in(str(error)) or _message(error)
         if _is_of_memory(error):
             message = f"it takes too much memory {message}"
         said = _complaint(f"cannot be rendered: {message}", xacro.filestack, file)
@@ -140,6 +147,15 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
         return said
     finally:
         guard.is_on = False
+
+
+def _message(error: Exception) -> str:
+    """What an exception says; xacro repeats the message of one that it wraps."""
+    text = " ".join(str(error).split()) or type(error).__name__
+    wrapped = " ".join(str(getattr(error, "exc", None) or "").split())
+    if wrapped and text.count(wrapped) > 1:
+        text = "".join(text.rpartition(wrapped)[::2]).strip()
+    return re.sub(r"<class '(?:\w+\.)*(\w+)'>", r"\1", text).removeprefix("RefusedError: ")
 
 
 def _is_of_memory(error: object) -> bool:
@@ -172,6 +188,7 @@ class _Reader:
         self._guard = guard
         self._packages = packages
         self._read = 0
+        self._missing: dict[str, str] = {}
 
     def parse(self, inp: object, filename: str | None = None) -> Any:
         """Like `xacro.parse` for files, with size limits and a check for cycles."""
@@ -193,6 +210,10 @@ class _Reader:
             raise RefusedError(f"files include each other in a circle: {circle}")
         if len(above) > DEEPEST_INCLUDE:
             raise RefusedError(f"files include each other more than {DEEPEST_INCLUDE} deep")
+        missing_package = self.missing_in(filename)
+        if missing_package:
+            xacro.filestack.pop()
+            raise RefusedError(missing_package)
         if not self._packages.may_read(Path(filename)):
             xacro.filestack.pop()
             raise RefusedError(outside(filename, self._packages))
@@ -207,14 +228,33 @@ class _Reader:
         return minidom.parseString(mark_places(content, filename, skip="xacro:"))
 
     def find(self, name: str) -> str:
-        """The folder of `$(find name)`."""
+        """The folder of `$(find name)`; a place without files for a package that is not found.
+
+        Only what is read requires its packages: not the parameters of a `<gazebo>` element.
+        """
         self._guard.is_on = False
         try:
             return str(self._packages.package(name))
         except NotFoundError as error:
-            raise RefusedError(str(error)) from error
+            self._missing[name] = str(error)
+            return f"{NOWHERE}/{name}"
         finally:
             self._guard.is_on = True
+
+    def missing_in(self, text: str) -> str:
+        """Why the first missing package that a text names is missing; empty if there is none."""
+        names = re.findall(rf"{NOWHERE}/([\w.-]+)", text)
+        return next((self._missing[name] for name in names if name in self._missing), "")
+
+    def refuse_missing_packages(self, robot: Any) -> None:
+        """Refuse missing packages in what is read of a rendered robot."""
+        for child in robot.childNodes if self._missing else ():
+            if child.nodeName not in OTHERS and (message := self.missing_in(child.toxml())):
+                raise RefusedError(message)
+
+    def restored(self, text: str) -> str:
+        """The text with `$(find name)` where a package is missing."""
+        return re.sub(rf"{NOWHERE}/([\w.-]+)", r"$(find \1)", text) if self._missing else text
 
 
 if __name__ == "__main__":

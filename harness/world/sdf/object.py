@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.errors import collected
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
 from harness.language.poses import Pose
@@ -15,6 +16,7 @@ from harness.world.plain_values import pose_spec, rounded, significant
 from harness.world.sdf.bodies import SdfBody, SdfLink
 from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.masses import MassProperties, link_masses, together
+from harness.world.sdf.model_path import MissingFileError
 from harness.world.sdf.shapes import ShapeReader
 from harness.world.sdf.values import pose_of
 
@@ -52,12 +54,13 @@ def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
 def _collisions(
     body: SdfBody, link: SdfLink, reader: ShapeReader
 ) -> list[tuple[XmlElement, ShapeSpec]]:
-    found: list[tuple[XmlElement, ShapeSpec]] = []
-    for element in link.element.findall("collision"):
-        shape = reader.collision(element, link.scope.folder, _on_object(body, link, element))
-        if shape is not None:
-            found.append((element, shape))
-    return found
+    def read(element: XmlElement) -> ShapeSpec | None:
+        return reader.collision(element, link.scope.folder, _on_object(body, link, element))
+
+    elements = link.element.findall("collision")
+    shapes = collected(read, elements, MissingFileError)
+    pairs = zip(elements, shapes, strict=True)
+    return [(element, shape) for element, shape in pairs if shape is not None]
 
 
 def _visuals(body: SdfBody, link: SdfLink, reader: ShapeReader) -> list[ShapeSpec]:

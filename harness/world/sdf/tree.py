@@ -5,15 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.core.errors import SpecError
+from harness.core.errors import SpecError, collected
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.world.notes import Notes
 from harness.world.sdf.elements import note_unread_elements
-from harness.world.sdf.model_path import ModelPath, model_file
+from harness.world.sdf.model_path import MissingFileError, ModelPath, model_file
 from harness.world.sdf.scope import WORLD, Named, SdfScope, check_frames
 from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
 
 OLDEST, NEWEST = (1, 4), (1, 11)
+NO_COLONS = (1, 8)
+"""The version from which `::` separates the names of nested models, and is in no name."""
+
 MOST_MODELS = 2000
 MOST_INCLUDES_DEEP = 30
 MERGED = "_merged__"
@@ -46,6 +49,7 @@ class SdfTree:
         self.notes = Notes()
         self._model_path = model_path
         self._files: dict[Path, XmlElement] = {}
+        self._versions: dict[str, tuple[int, int]] = {}
         self._count = 0
         sdf = self._sdf(path)
         worlds = sdf.findall("world")
@@ -81,6 +85,7 @@ class SdfTree:
         if len(parts) != 2 or not all(part.isdigit() for part in parts):
             sdf.refuse(f"`{text}` is not a version of SDF", "such as 1.9", at="version")
         version = (int(parts[0]), int(parts[1]))
+        self._versions[sdf.place.source.path] = version
         if version < OLDEST:
             hint = "`gz sdf -p FILE` converts it to a newer version"
             sdf.refuse(f"SDF {text} is older than 1.4", hint, at="version")
@@ -89,20 +94,25 @@ class SdfTree:
 
     def _fill(self, scope: SdfScope, files: tuple[Path, ...]) -> None:
         """Read the children of a scope's element."""
-        for child in scope.element.children:
-            match child.tag:
-                case "link":
-                    self._name(scope, Named("link", child, pose_of(child)))
-                case "joint":
-                    self._name(scope, self._joint(child, scope))
-                case "frame":
-                    note_unread_elements(child, "frame", self.notes)
-                    base = child.get("attached_to").strip()
-                    self._name(scope, Named("frame", child, pose_of(child), base))
-                case "model":
-                    self._model(scope, child, files)
-                case "include":
-                    self._include(scope, child, files)
+        children = scope.element.children
+        collected(lambda child: self._read(scope, child, files), children, MissingFileError)
+
+    def _read(self, scope: SdfScope, child: XmlElement, files: tuple[Path, ...]) -> None:
+        match child.tag:
+            case "link":
+                self._name(scope, Named("link", child, pose_of(child)))
+            case "joint":
+                self._name(scope, self._joint(child, scope))
+            case "frame":
+                note_unread_elements(child, "frame", self.notes)
+                base = child.get("attached_to").strip()
+                self._name(scope, Named("frame", child, pose_of(child), base))
+            case "model":
+                self._model(scope, child, files)
+            case "include":
+                self._include(scope, child, files)
+            case _:
+                pass
 
     def _name(self, scope: SdfScope, item: Named) -> str:
         name = item.element.need("name").strip()
@@ -117,6 +127,9 @@ class SdfTree:
             )
         if name in (WORLD, "__model__", "__root__"):
             element.refuse(f"'{name}' is a reserved name", "choose another name", at="name")
+        version = self._versions[element.place.source.path]
+        if "::" in name and version >= NO_COLONS:
+            element.refuse(f"'{name}': a name has no '::' since SDF 1.8", at="name")
         if name in scope.named:
             first = scope.named[name].element.place.line
             element.refuse(f"'{name}' is defined twice; first in line {first}", at="name")

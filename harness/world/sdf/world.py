@@ -51,8 +51,10 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
         try:
             item = object_of(body, reader)
         except MissingFileError as error:
-            [problem] = error.problems
-            unusable.append((body.name, replace(problem, hint=_options(problem, body.name))))
+            unusable += [
+                (body.name, replace(problem, hint=_options(problem, body.name)))
+                for problem in error.problems
+            ]
             dot = {"radius": SMALLEST_SIZE}
             words = {"name": body.name, "pose": pose_spec(body.pose), "static": True, "sphere": dot}
             item = ObjectSpec.model_validate(words)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import ClassVar, cast
 
-from harness.planning.ik.numeric import pitch_of, solve_numeric
-from harness.planning.ik.task import PITCH_JOINTS, WHOLE_POSE_JOINTS
+from harness.planning.ik.numeric import TiltGoal, pitch_of, solve_numeric
+from harness.planning.ik.task import PITCH_JOINTS, TILT_JOINTS, WHOLE_POSE_JOINTS
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.kinematics import IkRequest, IkResult, IkSolver
@@ -19,15 +20,15 @@ class NumericSolver(IkSolver):
     def solve(self, request: IkRequest) -> IkResult:
         """Solve for the goal; an arm of few joints for the part of a pose that it can choose."""
         goal, space = request.goal, cast("GroupSpace", request.space)
-        enough = request.enough
-        found = solve_numeric(space, goal, request.seed_positions, request.seed, enough=enough)
+        search = partial(
+            solve_numeric, seed_positions=request.seed_positions, enough=request.enough
+        )
+        if isinstance(goal, PoseGoal) and space.dof == TILT_JOINTS:
+            part = TiltGoal.of(goal.link, goal.pose)
+            return IkResult(tuple(search(space, goal, seed=request.seed, part=part)))
+        found = search(space, goal, seed=request.seed)
         if isinstance(goal, PoseGoal) and not found and space.dof < WHOLE_POSE_JOINTS:
-            part = reduced(space.dof, goal)
-            found = solve_numeric(space, part, request.seed_positions, request.seed, enough=enough)
+            pitch = pitch_of(goal.pose.rotation) if space.dof >= PITCH_JOINTS else None
+            point = PositionGoal(goal.link, goal.pose.translation, pitch)
+            found = search(space, point, seed=request.seed)
         return IkResult(tuple(found))
-
-
-def reduced(dof: int, goal: PoseGoal) -> PositionGoal:
-    """The part of a pose that an arm with fewer than six joints can choose."""
-    pitch = pitch_of(goal.pose.rotation) if dof >= PITCH_JOINTS else None
-    return PositionGoal(goal.link, goal.pose.translation, pitch)

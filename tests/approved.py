@@ -1,0 +1,105 @@
+"""Whole verdicts, findings and problems of tests, compared with those that were approved.
+
+A test states what matters in a verdict on a hand-made run, or in a problem of a file.
+`approved.txt` has the rest of it: every number, measure, text, hint and warning, as they were when
+somebody read them last. After a change,
+
+    APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation tests/engine
+
+writes the file again; the difference shows what changed, and is to be read.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from harness.core.errors import Problem
+from harness.recording.run import Finding
+from harness.recording.verdict import Measure, Verdict
+
+FILE = Path(__file__).with_name("approved.txt")
+SAID: list[str] = []
+"""The texts of the test that runs."""
+
+
+@pytest.fixture(autouse=True)
+def approved_texts(request):
+    """Compare the verdicts and problems of a test, unless it is random."""
+    SAID.clear()
+    yield
+    marks = {mark.name for mark in request.node.iter_markers()} - {"parametrize"}
+    if marks or hasattr(request.function, "hypothesis"):
+        return
+    said = "\n".join(SAID)
+    if os.environ.get("APPROVE"):
+        _write({**_approved(), request.node.nodeid: said})
+    elif request.node.nodeid in _approved():
+        assert said == _approved()[request.node.nodeid], f"not as in {FILE.name}: see {__name__}"
+
+
+def finding_text(finding: Finding) -> str:
+    """A finding of a run, with its numbers."""
+    values = ", ".join(
+        f"{key} {_number(value) if isinstance(value, float) else value}"
+        for key, value in finding.values.items()
+    )
+    when = _number(finding.time)
+    return f"{finding.kind} of {finding.step or '-'} at {when} s: {finding.message}\n  {values}"
+
+
+def problem_text(problem: Problem) -> str:
+    """A problem of a file, without the place of the file."""
+    return f"{problem.line}:{problem.column} {problem.message}\n  {problem.hint}"
+
+
+def verdict_text(verdict: Verdict) -> str:
+    """A verdict, with all of its numbers."""
+    observed = verdict.observed
+    counts = "" if observed is None else f", {observed.samples} samples"
+    if observed is not None:
+        counts += f", {observed.unknown} unknown" if observed.unknown else ""
+        counts += "" if observed.pairs is None else f", {observed.pairs} pairs"
+        counts += "" if observed.premises is None else f", {observed.premises} premises"
+    lines = [
+        f"{verdict.expectation}",
+        f"  {verdict.status} by {_number(verdict.margin)} {verdict.unit or '-'}"
+        f" at {_number(verdict.time)} s{counts}: {verdict.reason}",
+        *(f"    {_measure_text(measure)}" for measure in verdict.measures),
+        *(f"    warning {warning}" for warning in verdict.warnings),
+    ]
+    return "\n".join(lines)
+
+
+def _measure_text(measure: Measure) -> str:
+    parts = [
+        f"{measure.name}: {_number(measure.value)} {measure.comparison} {_number(measure.limit)}",
+        f"{measure.unit} at {_number(measure.time)} s",
+        measure.detail and f"of {measure.detail}",
+        measure.ceiling != float("inf") and f"up to {_number(measure.ceiling)}",
+        measure.plot and f"in plot {measure.plot}",
+        measure.expected and f"expected at {' '.join(map(_number, measure.expected))}",
+        measure.actual and f"is at {' '.join(map(_number, measure.actual))}",
+    ]
+    return ", ".join(part for part in parts if part)
+
+
+def _number(value: float) -> str:
+    return f"{0.0 if abs(value) < 1e-12 else value:.6g}"
+
+
+@cache
+def _approved() -> dict[str, str]:
+    if not FILE.exists():
+        return {}
+    tests = FILE.read_text(encoding="utf-8").rstrip("\n").split("\n\n")
+    return dict(test.split("\n", 1) for test in tests)
+
+
+def _write(approved: dict[str, str]) -> None:
+    tests = [f"{test}\n{said}" for test, said in sorted(approved.items()) if said]
+    FILE.write_text("\n\n".join(tests) + "\n", encoding="utf-8")
+    _approved.cache_clear()
