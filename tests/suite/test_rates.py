@@ -86,7 +86,7 @@ def test_samples_none_of_which_can_be_run_show_no_rate():
 
 
 @pytest.mark.parametrize("outcomes", [[True, False], [False] * 3])
-def test_a_rate_that_nobody_requires_is_not_counted_as_unconfirmed(outcomes):
+def test_a_rate_that_is_not_required_is_not_counted_as_unconfirmed(outcomes):
     digests = [str(number) for number in range(len(outcomes))]
     rate = rate_of(outcomes, None, 0.95, stop_early=True, digests=digests)
     required = rate_of(outcomes, 0.9, 0.95, stop_early=True, digests=digests)
