@@ -187,6 +187,7 @@ def _add_surroundings(spec: mujoco.MjSpec, floor_height: float) -> None:
     )
     floor.pos = 0.0, 0.0, floor_height
     floor.group = FLOOR_GROUP
+    floor.castshadow = False  # it would speckle itself with its own shadow
     floor.contype = floor.conaffinity = 0
     light = spec.worldbody.add_light(
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=LIGHT_DIRECTION, castshadow=True

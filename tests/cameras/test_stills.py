@@ -17,8 +17,10 @@ from harness.cameras.stills import draw_stills, overview
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.details import Details
 from harness.core.geometry import Mesh, Shape
+from harness.language.scenario import RobotSpec
 from harness.recording.step_results import SceneChange
 from harness.robot.forward_kinematics import robot_poses
+from harness.robot.load import load_robot
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
 
 SIZE = 640, 480
@@ -192,3 +194,25 @@ def test_a_mesh_that_cannot_be_drawn_is_named_in_the_note(ur3e, tmp_path):
     assert draw_stills(ur3e, OBJECTS, a_run(ur3e), backend="rays").note == ""
     stills = draw_stills(ur3e, (*OBJECTS, mug), a_run(ur3e), backend="rays")
     assert stills.note == "not in the pictures: mug.dae; save them as OBJ or STL"
+
+
+@pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur10e"])
+def test_the_floor_is_not_speckled_by_its_own_shadow(robot):
+    """A coarse shadow map leaves no single dark pixels on a bright floor, in any direction."""
+    description = load_robot(RobotSpec(model=robot))
+    picture = build_picture_model(description, (), floor_height=0.0, width=640, height=480)
+    picture.model.vis.quality.shadowsize, picture.model.vis.quality.offsamples = 1024, 0
+    picture.pose({})
+    try:
+        renderer = make_renderer(picture, *SIZE, "egl")
+    except RuntimeError as error:
+        pytest.skip(str(error))
+    try:
+        for turn in (0.0, 1.5, 3.0, 4.5):
+            points = np.array([[0, 0, 0], [2 * np.cos(turn), 2 * np.sin(turn), 0.2]])
+            seen = renderer.render(fit_viewpoint(points, np.full(2, 0.5), *SIZE).view)
+            gray = cv2.cvtColor(seen, cv2.COLOR_RGB2GRAY).astype(int)
+            speckles = cv2.medianBlur(gray.astype(np.uint8), 5).astype(int) - gray > 40
+            assert speckles.sum() < 20
+    finally:
+        renderer.close()

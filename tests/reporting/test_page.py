@@ -361,3 +361,18 @@ def test_everything_that_can_be_used_has_a_name_and_can_be_reached_by_keys(opene
             )
         )
     assert {"steps", "view", "timeline", "tabs", "panels", "plots", "buttons"} <= reached
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_every_tab_and_every_label_of_the_timeline_is_shown_whole_enough(visit, failed_run, width):
+    """No tab is beyond the edge, and a band that is too narrow for its label has none."""
+    page = visit(failed_run / "report.html", width=width).page
+    assert page.evaluate(
+        "(list => list.scrollWidth <= list.clientWidth)(document.querySelector('#tabs'))"
+    )
+    widths = page.evaluate(
+        "[...document.querySelectorAll('.band span')]"
+        ".filter(label => label.getClientRects().length)"
+        ".map(label => label.parentElement.clientWidth)"
+    )
+    assert all(each > 40 for each in widths)

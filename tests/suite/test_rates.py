@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from harness.reporting.sampled import rate_line
+from harness.reporting.sampled import SampledRate, missed, rate_line, rate_text
 from harness.suite.rates import Tally, decided, wilson_interval
 from tests.suite.samples import rate_of
 
@@ -83,3 +83,15 @@ def test_samples_none_of_which_can_be_run_show_no_rate():
     rate = Tally(None, 0.95, stop_early=True).rate(3, invalid=2)
     assert (rate.verdict, rate.total) == ("open", 0)
     assert rate_line("x", rate).endswith("no rate, 2 samples invalid")
+
+
+@pytest.mark.parametrize("outcomes", [[True, False], [False] * 3])
+def test_a_rate_that_is_not_required_is_not_counted_as_unconfirmed(outcomes):
+    digests = [str(number) for number in range(len(outcomes))]
+    rate = rate_of(outcomes, None, 0.95, stop_early=True, digests=digests)
+    required = rate_of(outcomes, 0.9, 0.95, stop_early=True, digests=digests)
+    free = SampledRate("a.yaml", "", rate, "failed")
+    assert missed([free]) == ""
+    assert "no rate is required (`expect_rate`), so every one must pass" in rate_text("a", rate)
+    both = missed([free, SampledRate("b.yaml", "", required, "failed")])
+    assert both == "1 of 1 success rates not confirmed"

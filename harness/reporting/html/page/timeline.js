@@ -21,7 +21,7 @@ export function makeTimeline({ run }, clock, select) {
     const band = element(
       `span.band.${step.band}${isInstant ? ".instant" : ""}`,
       { title: `${index + 1}. ${step.summary}\n${seconds(step.start)} to ${seconds(step.end)}` },
-      isInstant ? "" : step.summary,
+      isInstant ? "" : element("span", {}, step.summary),
     );
     band.style.left = `${share(step.start)}%`;
     if (!isInstant) band.style.width = `calc(${share(step.end - step.start)}% - 1px)`;
