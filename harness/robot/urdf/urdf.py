@@ -12,7 +12,12 @@ from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
-from harness.robot.urdf.joints import read_joint, resolved_mimics, zero_limits
+from harness.robot.urdf.joints import (
+    ranges_of_continuous,
+    read_joint,
+    resolved_mimics,
+    zero_limits,
+)
 from harness.robot.urdf.links import LinkReader
 from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
@@ -81,6 +86,7 @@ def parse_urdf(
     links = collected(reader.link, root.findall("link"))
     joints = collected(read_joint, root.findall("joint"))
     notes += zero_limits(root.findall("joint"))
+    notes += ranges_of_continuous(root.findall("joint"))
     if not links:
         root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:
