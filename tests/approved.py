@@ -1,10 +1,10 @@
-"""Whole verdicts and problems of tests, compared with those that were approved.
+"""Whole verdicts, findings and problems of tests, compared with those that were approved.
 
 A test states what matters in a verdict on a hand-made run, or in a problem of a file.
 `approved.txt` has the rest of it: every number, measure, text, hint and warning, as they were when
 somebody read them last. After a change,
 
-    APPROVE=1 python -m pytest tests/assertions tests/expectations tests/engine
+    APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation tests/engine
 
 writes the file again; the difference shows what changed, and is to be read.
 """
@@ -18,6 +18,7 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import Problem
+from harness.recording.run import Finding
 from harness.recording.verdict import Measure, Verdict
 
 FILE = Path(__file__).with_name("approved.txt")
@@ -37,7 +38,17 @@ def approved_texts(request):
     if os.environ.get("APPROVE"):
         _write({**_approved(), request.node.nodeid: said})
     elif request.node.nodeid in _approved():
-        assert said == _approved()[request.node.nodeid], f"not as in {FILE.name}: {__doc__}"
+        assert said == _approved()[request.node.nodeid], f"not as in {FILE.name}: see {__name__}"
+
+
+def finding_text(finding: Finding) -> str:
+    """A finding of a run, with its numbers."""
+    values = ", ".join(
+        f"{key} {_number(value) if isinstance(value, float) else value}"
+        for key, value in finding.values.items()
+    )
+    when = _number(finding.time)
+    return f"{finding.kind} of {finding.step or '-'} at {when} s: {finding.message}\n  {values}"
 
 
 def problem_text(problem: Problem) -> str:

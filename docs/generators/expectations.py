@@ -38,8 +38,8 @@ expect:
 Every verdict follows from the recording alone. It states its numbers, the sample that decided,
 and a margin: the distance from the limit, in the unit of the limit, positive where the predicate
 holds. A predicate of several quantities holds where all of them do. The quantities are compared
-as shares of their limits (a share that cannot exceed 1: as a part of the range between its limit
-and 1). The tightest one decides, and its margin is the margin of the verdict. What was not
+as shares of their limits. Shares are compared by how much of the range from the limit to 1 is
+left. The tightest one decides, and its margin is the margin of the verdict. What was not
 observed does not pass: the verdict is `not reached` if the step was not reached or the object was
 not in the scene, and `not observable` if the signal was not recorded.
 
@@ -62,6 +62,8 @@ at most, as an object that the next step adds, or over a step that takes no time
 | contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
 between two samples by more than its least width and the other's together: the physics looks for \
 contacts at the samples |
+| no collision shapes | `collision`, `in_contact` or `clearance` of a robot with moving links \
+that have no collision shapes: they pass through everything |
 
 A step that fails unexpectedly ends the run. Expectations that could still have become true are
 then `not reached` and name that step: `lifted`, `eventually`, and everything that is judged at

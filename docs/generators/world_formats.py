@@ -44,9 +44,10 @@ that object with the sensor's name, or `model::sensor` when several sensors have
 AGREEMENT = """## Agreement with SDFormat
 
 As in SDFormat, every pose, frame and joint of a file is checked, whether something refers to it or
-not: unknown frames, frames in a cycle, a joint whose parent is its child, the world as a joint's
-child, two elements of one name, and two worlds of one name are errors. These files are valid for
-SDFormat and are treated differently:
+not: unknown frames, frames in a cycle, a joint whose parent and child are one link, the world as a
+joint's child, a model without a link that is not static, an unknown `canonical_link`, two elements
+of one name, a name with `::` since SDF 1.8, and two worlds of one name are errors. These files are
+valid for SDFormat and are treated differently:
 
 | file | treatment | reason |
 | --- | --- | --- |

@@ -124,10 +124,10 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     return force, attached(run, name).astype(float)
 
 
-def was_in_robot(run: Run, name: str, stop: int) -> bool:
-    """Whether the robot touched or held an object at some sample before one."""
+def was_in_robot(run: Run, name: str, samples: slice) -> bool:
+    """Whether the robot touched or held an object at some of a run's samples."""
     force, hold = robot_contact(run, name)
-    return bool((force[:stop] > TOUCH_FORCE).any() or hold[:stop].any())
+    return bool((force[samples] > TOUCH_FORCE).any() or hold[samples].any())
 
 
 def bodies(run: Run, word: str) -> frozenset[str]:
@@ -175,7 +175,22 @@ def pairs_of(firsts: Collection[str], seconds: Collection[str]) -> frozenset[tup
     )
 
 
-def skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+def unseen_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+    """Warnings of contacts between bodies that the physics cannot have, or may have missed."""
+    names = {name for pair in pairs for name in pair}
+    return (*shapeless(run, names), *_skipped_contacts(run, pairs))
+
+
+def shapeless(run: Run, names: Collection[str]) -> tuple[VerdictWarning, ...]:
+    """A warning where some of the bodies are links that nothing can touch."""
+    lacking = [link for link in run.robot.shapeless_links if link in names]
+    if not lacking:
+        return ()
+    which = f"{', '.join(lacking[:5])}{', ...' if len(lacking) > 5 else ''}"
+    return (VerdictWarning("no collision shapes", f"nothing can touch these links: {which}"),)
+
+
+def _skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
     """A warning for each object that may have passed through another between two samples.
 
     Contacts are looked for at each sample: an object that moves by more than the least widths of

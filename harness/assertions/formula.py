@@ -30,7 +30,7 @@ import numpy as np
 
 from harness.assertions.formula_signals import values_of
 from harness.assertions.temporal import TIME_RESOLUTION, range_min
-from harness.assertions.text import amounts
+from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, NotReached, Window
 from harness.assertions.words import ALREADY_TRUE
 from harness.core.types import BoolArray, FloatArray, IntArray
@@ -89,6 +89,10 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         missing = evaluation.first_unknown(root)
         if missing:
             raise NotObservable(missing)
+        near = Evaluation(window, is_near=True).bounds(root)
+        if near.low[0] > 0 or near.high[0] < 0:
+            cutoff = amount(window.run.signals.clearance_cutoff, "m")
+            raise NotObservable(f"distances were recorded up to {cutoff} only")
         raise NotReached("the time it is judged over ended before it was decided")
     holds = low > 0
     is_open = bool(window.cut_short) and not holds
@@ -133,11 +137,13 @@ class Evaluation:
     Args:
         window: The samples of the window.
         is_open: Whether the window goes on after its last sample in a way that is not known.
+        is_near: Whether distances at the cutoff of the recording are no larger than it.
     """
 
-    def __init__(self, window: Window, *, is_open: bool = False) -> None:
+    def __init__(self, window: Window, *, is_open: bool = False, is_near: bool = False) -> None:
         self.window = window
         self.is_open = is_open
+        self.is_near = is_near
         self.times = window.times
         self._known: dict[int, tuple[Node, Bounds]] = {}
 
@@ -150,13 +156,13 @@ class Evaluation:
     def _calculated(self, node: Node) -> Bounds:
         match node:
             case Comparison():
-                left, right = values_of(node.left, self.window), values_of(node.right, self.window)
-                margin = left.values - right.values
-                margin = margin if node.operator.startswith(">") else -margin
-                # a difference of zero holds for `<=`, not for `<`, and `not` turns that around
-                margin = np.where(margin == 0, TINY if "=" in node.operator else -TINY, margin)
-                unknown = np.isnan(margin)
-                return Bounds(np.where(unknown, -np.inf, margin), np.where(unknown, np.inf, margin))
+                near, far = self._margin(node, are_far=False), self._margin(node, are_far=True)
+                far = near if self.is_near else far
+                unknown = np.isnan(near) | np.isnan(far)
+                return Bounds(
+                    np.where(unknown, -np.inf, np.minimum(near, far)),
+                    np.where(unknown, np.inf, np.maximum(near, far)),
+                )
             case Logic(operator="not"):
                 return -self.bounds(node.operands[0])
             case Logic(operator=operator):
@@ -171,6 +177,15 @@ class Evaluation:
             case Temporal():
                 first, second = map(self.bounds, node.operands)
                 return self._until(first, second, node.interval)
+
+    def _margin(self, node: Comparison, *, are_far: bool) -> FloatArray:
+        left = values_of(node.left, self.window, are_far=are_far)
+        right = values_of(node.right, self.window, are_far=are_far)
+        with np.errstate(invalid="ignore"):
+            margin = left.values - right.values
+        margin = margin if node.operator.startswith(">") else -margin
+        # a difference of zero holds for `<=`, not for `<`, and `not` turns that around
+        return np.where(margin == 0, TINY if "=" in node.operator else -TINY, margin)
 
     # -- temporal words ---------------------------------------------------------------------------
 

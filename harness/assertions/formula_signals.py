@@ -25,8 +25,14 @@ class Values:
     unit: str
 
 
-def values_of(node: Number, window: Window) -> Values:
+def values_of(node: Number, window: Window, *, are_far: bool = False) -> Values:
     """A number of a formula at each sample of a window; NaN where it is not known.
+
+    Args:
+        node: The number of a formula, with its operands.
+        window: The samples that it is calculated at.
+        are_far: Whether distances at the cutoff of the recording, which are at least as much, are
+            taken for infinite.
 
     Raises:
         NotObservable: The run did not record it.
@@ -36,9 +42,13 @@ def values_of(node: Number, window: Window) -> Values:
             return Values(np.full(len(window.times), value), unit)
         case Signal():
             found = _recorded(node, window)
+            values = np.where(np.isfinite(found.values), found.values, np.nan)
+            if are_far and node.name == "distance":
+                values[values >= window.run.signals.clearance_cutoff] = np.inf
+            return Values(values, found.unit)
         case Arithmetic(operator=operator, operands=operands):
-            found = _calculated(operator, [values_of(each, window) for each in operands])
-    return Values(np.where(np.isfinite(found.values), found.values, np.nan), found.unit)
+            numbers = [values_of(each, window, are_far=are_far) for each in operands]
+            return _calculated(operator, numbers)
 
 
 OPERATIONS: dict[str, np.ufunc] = {
@@ -59,7 +69,10 @@ def _calculated(operator: str, operands: list[Values]) -> Values:
     if (operator == "*" and all(units)) or (operator == "/" and units[1]):
         unit = ""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return Values(OPERATIONS[operator](*(operand.values for operand in operands)), unit)
+        values = OPERATIONS[operator](*(operand.values for operand in operands))
+    if operator == "/":
+        values = np.where(operands[1].values == 0, np.nan, values)
+    return Values(values, unit)
 
 
 def _recorded(node: Signal, window: Window) -> Values:

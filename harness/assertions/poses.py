@@ -7,7 +7,7 @@ import numpy as np
 from harness.assertions.temporal import TIME_RESOLUTION, episodes, trailing_max
 from harness.assertions.window import NotObservable, object_record
 from harness.core.pose_arrays import IDENTITY
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.step import step_class
 from harness.recording.run import Run
 from harness.recording.step_results import SceneChange
@@ -95,8 +95,8 @@ def frame_present(run: Run, frame: str) -> BoolArray:
     return np.ones(len(run.signals.times), dtype=bool)
 
 
-def start_poses(run: Run, name: str) -> FloatArray:
-    """Where the object started: its pose when it last appeared or was put somewhere, shape (N, 7).
+def start_samples(run: Run, name: str) -> IntArray:
+    """When the object last appeared or was put somewhere at each sample, -1 before, shape (N,).
 
     A start is the first sample at which it is present, and the first one after a step moved it,
     however little, or made it jump; without the latter, teleporting would be lifting.
@@ -112,7 +112,12 @@ def start_poses(run: Run, name: str) -> FloatArray:
             change = step.result.find(SceneChange)
             is_moved = change is not None and name in (change.moved or ())
             starts[moved] |= jumps[moved] > (0.0 if is_moved else JUMP)
-    latest = np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
+    return np.maximum.accumulate(np.where(starts, np.arange(len(poses)), -1))
+
+
+def start_poses(run: Run, name: str) -> FloatArray:
+    """The pose of an object at its last start, NaN before the first one, shape (N, 7)."""
+    poses, latest = object_poses(run, name), start_samples(run, name)
     return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from harness.assertions.contacts import TOUCH_FORCE, bodies_touching, debounced
 from harness.assertions.poses import object_poses
 from harness.assertions.window import NotObservable, object_record
-from harness.core.geometry import Box, Capsule, Cylinder, Sphere
+from harness.core.geometry import reach
 from harness.core.pose_arrays import rotate
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import ObjectRecord, Run
@@ -24,19 +24,8 @@ def lowest_points(record: ObjectRecord, poses: FloatArray) -> FloatArray:
         vertical = np.stack(  # height of the shape's axes
             [rotate(poses[:, 3:], shape.pose.rotation[:, axis])[:, 2] for axis in range(3)], axis=1
         )
-        match shape.geometry:
-            case Box(size=size):
-                below = np.abs(vertical) @ (0.5 * np.array(size))
-            case Sphere(radius=radius):
-                below = np.full(len(poses), radius)
-            case Capsule(radius=radius, length=length):
-                below = 0.5 * length * np.abs(vertical[:, 2]) + radius
-            case Cylinder(radius=radius, length=length):
-                flat = np.sqrt(np.maximum(0.0, 1 - vertical[:, 2] ** 2))
-                below = 0.5 * length * np.abs(vertical[:, 2]) + radius * flat
-            case _:
-                below = np.zeros(len(poses))
-        lowest.append(centre - below)
+        below = reach(shape.geometry, vertical)
+        lowest.append(centre if below is None else centre - below)
     return np.min(lowest, axis=0)
 
 

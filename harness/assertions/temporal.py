@@ -74,6 +74,18 @@ def trailing_max(values: FloatArray, times: FloatArray, span: float) -> FloatArr
     return -range_min(-values, first, np.arange(len(times)))
 
 
+def without_gaps(values: FloatArray, times: FloatArray, span: float) -> FloatArray:
+    """Values of which gaps of up to `span` seconds are closed, with the smaller value around them.
+
+    No value becomes smaller, and nothing lasts longer at its ends. What is not known stays so.
+    """
+    known, here = np.nan_to_num(values), np.arange(len(times))
+    last = np.searchsorted(times, times + span + TIME_RESOLUTION, side="right") - 1
+    lasting = range_min(trailing_max(known, times, span), here, last)
+    to_come = -range_min(-known, here, last)
+    return np.where(np.isnan(values), np.nan, np.minimum(lasting, to_come))
+
+
 def episodes(mask: BoolArray) -> list[tuple[int, int]]:
     """Runs of true samples as (start, stop), in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))

@@ -149,7 +149,7 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     warnings: tuple[VerdictWarning, ...] = ()
     if decision.holds:
         warnings = (
-            *(margins.warnings if terms.word == "never" else ()),
+            *(margins.warnings if terms.word in ("always", "never") else ()),
             *_already_true(terms, values, window),
             *_hardly_observed(terms, observed.samples, window),
         )
@@ -215,7 +215,10 @@ def _hardly_observed(terms: Terms, samples: int, window: Window) -> tuple[Verdic
     count = len(window.times)
     if terms.word not in ("always", "never") or 1 < count < samples / LEAST_SHARE:
         return ()
-    message = f"what it is about was there at {samples} of {count} samples"
+    if count == 1:
+        message = f"the {'step' if terms.step else 'run'} takes no time: it has one sample only"
+    else:
+        message = f"what it is about was there at {samples} of {count} samples"
     return (VerdictWarning(HARDLY_OBSERVED, message),)
 
 

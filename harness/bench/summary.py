@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,6 +83,15 @@ def planner_table(motions: Sequence[MotionTrials], planners: Sequence[str]) -> s
         ).rstrip()
         for row in rows
     )
+
+
+def failure_lines(motions: Sequence[MotionTrials], planners: Sequence[str]) -> Iterator[str]:
+    """Each planner's errors with their number, and the first one's reason."""
+    for planner in planners:
+        failed = [trial for trial in of_planner(motions, planner) if not trial.is_solved]
+        for code, count in Counter(trial.error_code for trial in failed).most_common():
+            first = next(trial for trial in failed if trial.error_code == code)
+            yield f"{planner}: {count} times {code}, with seed {first.seed}: {first.message}"
 
 
 def motion_line(motion: MotionTrials) -> str:

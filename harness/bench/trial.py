@@ -41,6 +41,7 @@ class Trial:
         mean_clearance: Mean of that distance along the motion [m].
         planning_time: CPU time of the process [s], for information only; NaN when planning failed.
         is_straight: Whether no search was needed.
+        message: Why planning failed, as a run reports it; empty when it succeeded.
     """
 
     planner: str
@@ -54,6 +55,7 @@ class Trial:
     mean_clearance: float = float("nan")
     planning_time: float = field(default=float("nan"), compare=False)
     is_straight: bool = False
+    message: str = ""
 
     @property
     def is_solved(self) -> bool:
@@ -83,7 +85,7 @@ def try_plan(
     except PlanningFailed as failure:
         search = failure.details.find(SearchFailure)
         checks = 0 if search is None else search.state_checks
-        return Trial(name, seed, failure.code, checks)
+        return Trial(name, seed, failure.code, checks, message=failure.message)
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)
     nearest = _clearances(scene, request.group, request.start, path)

@@ -15,26 +15,28 @@ from harness.reporting.margins import margin_share, worst
 from harness.reporting.shared_work import shared_words
 from harness.reporting.suite.cause import cause_of
 from harness.suite.discovery import UsageError
-from harness.suite.stream import FILE, StreamEntry, entry_of
+from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of
 
 DATABASE = "results.sqlite"
-VERSION = 2
+VERSION = 3
 BATCH = 2000
 """Lines that are inserted together; this many are in memory."""
 
 SCHEMA = """
-CREATE TABLE runs (
+CREATE TABLE all_runs (
   key TEXT PRIMARY KEY, number INTEGER, file TEXT, name TEXT, title TEXT, outcome TEXT, cause TEXT,
   reason TEXT, digest TEXT, seed INTEGER, sim_time REAL, report TEXT, page TEXT,
   expectation TEXT, margin REAL, unit TEXT, share REAL, shared TEXT
 );
+CREATE TABLE left_out (key TEXT PRIMARY KEY) WITHOUT ROWID;
+CREATE VIEW runs AS SELECT * FROM all_runs WHERE key NOT IN (SELECT key FROM left_out);
 CREATE TABLE parameters (key TEXT, path TEXT, number REAL, unit TEXT, text TEXT,
   PRIMARY KEY (key, path)) WITHOUT ROWID;
 CREATE TABLE tags (key TEXT, tag TEXT, PRIMARY KEY (key, tag)) WITHOUT ROWID;
 CREATE TABLE verdicts (key TEXT, number INTEGER, line INTEGER, expectation TEXT, status TEXT,
   margin REAL, unit TEXT, PRIMARY KEY (key, number)) WITHOUT ROWID;
 CREATE TABLE journal (bytes INTEGER, lines INTEGER, head TEXT);
-CREATE INDEX runs_by_name ON runs (name, seed, file);
+CREATE INDEX runs_by_name ON all_runs (name, seed, file);
 INSERT INTO journal VALUES (0, 0, '');
 """
 HEAD_BYTES = 200
@@ -43,6 +45,8 @@ HEAD_BYTES = 200
 @contextmanager
 def open_campaign(folder: Path) -> Iterator[sqlite3.Connection]:
     """The database of a report folder, with every result that its journal has by now.
+
+    The view `runs` has those that the suite counts, the table `all_runs` the others too.
 
     Only lines that were added since the last time are read. A journal that was written anew is
     read from its beginning.
@@ -85,7 +89,7 @@ def _update(connection: sqlite3.Connection, journal: Path) -> None:
     with journal.open("rb") as file:
         first = file.read(HEAD_BYTES).hex()
         if journal.stat().st_size < start or first[: len(head)] != head:
-            for table in ("runs", "parameters", "tags", "verdicts"):
+            for table in ("all_runs", "left_out", "parameters", "tags", "verdicts"):
                 connection.execute(f"DELETE FROM {table}")
             start = count = 0
         file.seek(start)
@@ -97,6 +101,10 @@ def _update(connection: sqlite3.Connection, journal: Path) -> None:
             entry = entry_of(line)
             if entry is not None:
                 batch.append(entry)
+            elif (keys := left_out_of(line)) is not None:
+                connection.execute("DELETE FROM left_out")
+                rows = ((key,) for key in keys)
+                connection.executemany("INSERT OR IGNORE INTO left_out VALUES (?)", rows)
             if len(batch) == BATCH:
                 count = _insert(connection, batch, count)
         count = _insert(connection, batch, count)
@@ -112,7 +120,7 @@ def _insert(connection: sqlite3.Connection, batch: list[StreamEntry], count: int
     for table in ("parameters", "tags", "verdicts"):
         connection.executemany(f"DELETE FROM {table} WHERE key = ?", keys)
     connection.executemany(
-        f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * 18)})",
+        f"INSERT OR REPLACE INTO all_runs VALUES ({', '.join('?' * 18)})",
         [_run(entry, count + index) for index, entry in enumerate(entries)],
     )
     connection.executemany(

@@ -66,6 +66,12 @@ def count(connection: sqlite3.Connection, query: Query) -> int:
     ).fetchone()[0]
 
 
+def left_out(connection: sqlite3.Connection) -> int:
+    """How many results of the journal the suite does not count."""
+    text = "SELECT count(*) FROM all_runs WHERE key IN (SELECT key FROM left_out)"
+    return connection.execute(text).fetchone()[0]
+
+
 def write_csv(connection: sqlite3.Connection, query: Query, file: Path) -> int:
     """Write the selected runs as CSV.
 

@@ -97,6 +97,8 @@ class Cell:
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
     external: ExternalControl | None = None
+    faults: dict[str, int] = field(default_factory=dict[str, int])
+    """The faults that were injected, in words, and the line of each in the file."""
 
     @property
     def current(self) -> ProgramStep:

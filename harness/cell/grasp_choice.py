@@ -132,7 +132,7 @@ def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[Float
             )
         except PlanningFailed:
             continue
-        end = _with_arm(plan.trajectory.positions[-1], state, search.group, cell)
+        end = with_arm(plan.trajectory.positions[-1], state, search.group, cell)
         if search.may_end(end):
             yield end
 
@@ -143,10 +143,11 @@ def _solutions(goal: TcpGoal, search: GraspSearch, cell: Cell) -> list[FloatArra
     if isinstance(joint_goal, JointGoal):
         raise TypeError("an approach leads to a pose or a position")
     solutions = cell.kinematics.solve(search.group, joint_goal, search.start, search.options.seed)
-    return [_with_arm(positions, search.start, search.group, cell) for positions in solutions]
+    return [with_arm(positions, search.start, search.group, cell) for positions in solutions]
 
 
-def _with_arm(positions: FloatArray, state: FloatArray, group: str, cell: Cell) -> FloatArray:
+def with_arm(positions: FloatArray, state: FloatArray, group: str, cell: Cell) -> FloatArray:
+    """The whole robot in a state, with the group at its own positions; mimic joints follow."""
     whole = np.array(state)
     whole[list(cell.description.group_indices(group))] = positions
     return cell.description.with_mimics(whole)

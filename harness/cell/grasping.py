@@ -11,7 +11,7 @@ import numpy as np
 from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
 from harness.core.quantity import distinct
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
@@ -290,7 +290,9 @@ def _standing(
     """
     shape = obj.shapes[0] if has_simple_shape(obj) else _box_around(obj, cell)
     at = object_pose @ shape.pose
-    size = _extents(shape.geometry)
+    half = reach(shape.geometry, np.eye(3))
+    assert half is not None  # of no plane and no mesh
+    size = (2 * float(half[0]), 2 * float(half[1]), 2 * float(half[2]))
     vertical = int(np.argmax(np.abs(at.rotation[2])))
     lean = math.degrees(math.acos(min(1.0, abs(float(at.rotation[2, vertical])))))
     if lean > MAX_LEAN and not isinstance(shape.geometry, Sphere):
@@ -360,21 +362,6 @@ def _box_around(obj: WorldObject, cell: Cell) -> Shape:
     low, high = corners.min(axis=0), corners.max(axis=0)
     width, depth, height = (float(length) for length in high - low)
     return Shape(Box((width, depth, height)), axes @ SE3(np.eye(3), (low + high) / 2))
-
-
-def _extents(geometry: Geometry) -> tuple[float, float, float]:
-    """Size of a simple shape along its own axes [m]."""
-    match geometry:
-        case Box(size=size):
-            return size
-        case Cylinder(radius=radius, length=length):
-            return 2 * radius, 2 * radius, length
-        case Capsule(radius=radius, length=length):
-            return 2 * radius, 2 * radius, length + 2 * radius
-        case Sphere(radius=radius):
-            return 2 * radius, 2 * radius, 2 * radius
-        case _:
-            raise ValueError(f"{type(geometry).__name__} has no size")
 
 
 def _align(

@@ -93,7 +93,8 @@ class Problems:
         """
         if self._missing.intersection(needs) or name in self._unusable:
             return
-        message, hint = f"there is no {what} '{name}'", did_you_mean(name, known, "known")
+        message, names = f"there is no {what} '{name}'", tuple(known)
+        hint = did_you_mean(name, names, "known") if names else "there is none of another name"
         if start is not None:
             problem = self._lines.problem_in_text(loc, start, len(name), message, hint)
             self._found.setdefault((*loc, start), problem)
@@ -258,7 +259,11 @@ class Scope:
     def check_state(self, group: str, state: str, loc: Loc) -> None:
         """A named state of a group."""
         states = self.description.states_of(group)
-        if state not in states and group in self.description.groups:
+        if not states and group in self.description.groups:
+            message = f"there is no named state '{state}': the group '{group}' has no named states"
+            hint = "write joint positions, or add a <group_state> to the SRDF"
+            self.problems.add(loc, message, hint, needs=("robot",))
+        elif state not in states and group in self.description.groups:
             self.problems.unknown(
                 loc, f"named state of {group} called", state, states, needs=("robot",)
             )
@@ -285,10 +290,11 @@ class Scope:
     def check_gripper(self, loc: Loc, what: str) -> bool:
         """Whether the robot has a gripper, which `what` needs."""
         if self.description.gripper is None:
+            reasons = self.description.rejected_grippers
             self.problems.add(
                 loc,
                 f"{what} needs a gripper, and {self.description.name} has none",
-                "say `gripper: rh_p12_rn_a` under `robot`",
+                "; ".join([*reasons, "`gripper: rh_p12_rn_a` under `robot` mounts one"]),
                 needs=("robot",),
             )
             return False

@@ -56,7 +56,7 @@ def _bench(
 ) -> tuple[int, object]:
     from harness.bench.collect import MotionTrials, collect
     from harness.bench.results import PICTURE, document, write_bench
-    from harness.bench.summary import motion_line, planner_table
+    from harness.bench.summary import failure_lines, motion_line, planner_table
 
     seeds = list(range(1, arguments.seeds + 1))
     motions: list[MotionTrials] = []
@@ -79,6 +79,7 @@ def _bench(
         return code, document(motions, planners, seeds)
     say("", f"{searched} of {len(motions)} motions are searched, {len(seeds)} seeds; medians:")
     say_text(planner_table(motions, planners))
+    say(*failure_lines(motions, planners))
     if not arguments.no_report:
         folder = Path(arguments.report_dir) / "bench"
         write_bench(folder, motions, planners, seeds)

@@ -8,7 +8,11 @@ from pathlib import Path
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json, add_plugin
+from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
+
+EXTERNAL = "external"
+"""The verb of the step in which nodes command the robot."""
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -22,13 +26,23 @@ def add_options(command: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run a recorded command stream again; exit code 1 when the digest differs."""
+    """Run a recorded command stream again; exit code 1 when the digest differs.
+
+    Raises:
+        UsageError: The run's scenario has no step of nodes, and no command is recorded.
+    """
     folder = run_folder(arguments.run)
     from harness.recording.read_run import read_run
+    from harness.recording.stored_run import RESOLVED
     from harness.ros.replay import replay
 
     target = Path(arguments.report_dir) if arguments.report_dir else None
     recorded = read_run(folder)
+    if not recorded.run.commands and all(each.verb != EXTERNAL for each in recorded.run.steps):
+        raise UsageError(
+            f"'{folder}' has no recorded commands of ROS 2 nodes, which are what is replayed; a"
+            f" scenario without nodes runs again with `harness run {folder / RESOLVED}`"
+        )
     case = replay(folder, target)
     is_equal = case.digest == recorded.digest
     count = sum(command.kind != "end" for command in recorded.run.commands)

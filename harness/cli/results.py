@@ -83,13 +83,14 @@ def _export(arguments: argparse.Namespace, database: sqlite3.Connection, query: 
 def _document(
     arguments: argparse.Namespace, database: sqlite3.Connection, query: Query
 ) -> dict[str, Any]:
-    from harness.campaigns.table import columns, count, rows
+    from harness.campaigns.table import columns, count, left_out, rows
 
     names = columns(database)
     found = rows(database, query, arguments.limit or SHOWN, is_worst_first=True)
     return {
         "format": "armharness-query/1",
         "selected": count(database, query),
+        "left_out": left_out(database),
         "runs": [dict(zip(names, row, strict=True)) for row in found],
     }
 
@@ -99,7 +100,7 @@ def _lines(
 ) -> Iterator[str]:
     """The count by outcome and cause, then the first runs that are selected."""
     from harness.campaigns.filters import sql_of
-    from harness.campaigns.table import columns, rows
+    from harness.campaigns.table import columns, left_out, rows
     from harness.reporting.terminal import Style
 
     style = Style.of(sys.stdout)
@@ -119,6 +120,11 @@ def _lines(
         yield f"  {number:>6}  {cause}"
     if not total:
         return
+    if count := left_out(database):
+        yield style.quiet(
+            f"  {count} more left out, as the suite does: samples that its sequential test did not"
+            " need, or cases that it no longer has"
+        )
     yield ""
     names, limit = columns(database), arguments.limit or SHOWN
     for row in rows(database, query, limit, is_worst_first=True):

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 
 Rgba = tuple[float, float, float, float]
 
@@ -105,6 +106,28 @@ class Shape:
     rgba: Rgba = (0.6, 0.6, 0.6, 1.0)
     name: str = ""
     friction: Friction | None = None
+
+
+def reach(geometry: Geometry, directions: FloatArray) -> FloatArray | None:
+    """How far a shape reaches from its centre along directions [m], shape (N,).
+
+    Args:
+        geometry: The shape; of planes and meshes the result is None.
+        directions: Unit vectors in the shape's frame, shape (N, 3).
+    """
+    along = np.abs(directions)
+    match geometry:
+        case Box(size=size):
+            return along @ (0.5 * np.array(size))
+        case Cylinder(radius=radius, length=length):
+            across = np.sqrt(np.maximum(0.0, 1 - along[:, 2] ** 2))
+            return 0.5 * length * along[:, 2] + radius * across
+        case Sphere(radius=radius):
+            return np.full(len(along), radius)
+        case Capsule(radius=radius, length=length):
+            return 0.5 * length * along[:, 2] + radius
+        case Plane() | Mesh():
+            return None
 
 
 def bounding_radius(shape: Shape) -> float:

@@ -37,6 +37,19 @@ def split_quantity(value: object) -> tuple[float, str]:
     return float(found[1]), found[2]
 
 
+def common_unit(*values: object) -> str:
+    """The unit of several quantities, empty without one; a 0 needs none.
+
+    Raises:
+        ValueError: They have different units.
+    """
+    found = {unit for number, unit in map(split_quantity, values) if unit or number}
+    if len(found) > 1:
+        written = ", ".join(f"`{value}`" for value in values)
+        raise ValueError(f"{written} must be in one unit")
+    return found.pop() if found else ""
+
+
 MOST_DIGITS = 17
 """Digits after which two different floating-point numbers are written differently."""
 

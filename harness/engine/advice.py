@@ -13,13 +13,17 @@ from harness.recording.execution_failures import ControlFailure, GraspFailure, U
 
 def advice(failure: StepFailed, cell: Cell) -> str:
     """One sentence for the step's record; empty where the message says it all."""
-    if failure.details.find(GraspFailure) is not None:
+    control = failure.details.find(ControlFailure)
+    is_grasp = failure.details.find(GraspFailure) is not None
+    if (control is not None or is_grasp) and cell.faults:
+        injected = ", ".join(f"{name} (line {line})" for name, line in cell.faults.items())
+        return f"look first at the faults that were injected: {injected}"
+    if is_grasp:
         return (
             "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"
             f" another `grasp_pose`; the pads of the closed gripper are {1e3 * least_gap(cell):.1f}"
             " mm apart, and hold nothing thinner"
         )
-    control = failure.details.find(ControlFailure)
     if control is not None:
         return _about_contacts(control, cell)
     if failure.details.find(UnrestFailure) is not None:

@@ -286,15 +286,5 @@ def _with_unreached(
 
 def object_record(presence: Presence, time: float) -> ObjectRecord:
     """An object as verdicts and reports need it, with when it was there up to a time [s]."""
-    obj = presence.obj
-    return ObjectRecord(
-        name=obj.name,
-        is_static=obj.is_static,
-        in_planning=obj.in_planning,
-        in_simulation=obj.in_simulation,
-        shapes=obj.shapes,
-        visuals=obj.visuals,
-        present=tuple((start, min(end, time)) for start, end in presence.intervals),
-        pose=tuple(float(value) for value in presence.pose.as_vector()),
-        mass=obj.mass,
-    )
+    present = tuple((start, min(end, time)) for start, end in presence.intervals)
+    return ObjectRecord.of(presence.obj, present, presence.pose)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field, model_validator
 
+from harness.assertions.contacts import shapeless
 from harness.assertions.distances import (
     MEASURED_WORDS,
     Key,
@@ -108,7 +109,9 @@ class Clearance(Predicate):
 
         smallest = margins.min(axis=0)
         values = np.where(there & ~(unknown & (smallest >= 0)), smallest, np.nan)
-        return MarginSignal(values, "m", evidence, applies=there)
+        links = window.run.robot.link_names if "robot" in self.between else ()
+        warnings = shapeless(window.run, links)
+        return MarginSignal(values, "m", evidence, applies=there, warnings=warnings)
 
     def _largest_loss(self, window: Window) -> _Worst:
         """Planned less actual distance, the largest of all pairs [m]; unknown where either is."""

@@ -9,12 +9,18 @@ import numpy as np
 from pydantic import Field
 
 from harness.assertions.collision import Pair, colliding, held_by, why_not_excused
-from harness.assertions.contacts import bodies, could_touch, pairs_of, skipped_contacts
+from harness.assertions.contacts import (
+    DEBOUNCE,
+    bodies,
+    could_touch,
+    pairs_of,
+    unseen_contacts,
+)
 from harness.assertions.excused_force import SPAN
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
-from harness.assertions.temporal import episodes
+from harness.assertions.temporal import episodes, without_gaps
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
 from harness.cell.possible_contacts import check_contact
@@ -65,8 +71,9 @@ class Collision(Predicate):
     with every joint at zero, and overlap by more than 1 mm during the run (convex hulls are not
     exact), are a finding of the run, and a collision where `count_allowed` says so.
 
-    It is judged while two of the bodies are in the physics: with an object that only the planner
-    knows it is not observable, before an object is there it is not reached.
+    A collision lasts through gaps of at most 10 ms, as a contact does. It is judged while two of
+    the bodies are in the physics: with an object that only the planner knows it is not observable,
+    before an object is there it is not reached.
     """
 
     short = "between"
@@ -125,7 +132,7 @@ class Collision(Predicate):
             self._contacts(window),
             applies=together,
             pairs=len(possible),
-            warnings=skipped_contacts(run, possible),
+            warnings=unseen_contacts(run, possible),
         )
 
     def _contacts(self, window: Window) -> MarginSignal:
@@ -133,18 +140,18 @@ class Collision(Predicate):
         run = window.run
         pairs = self._pairs(run)
         allowed_too = self.count_allowed
-        guilty = {pair: window.cut(colliding(run, pair, allowed_too)) for pair in pairs}
         unknown = np.zeros(len(window.times), dtype=bool)
         for pair in pairs:
             unknown |= np.isnan(window.cut(run.signals.contact_forces[pair]))
         if unknown.any():
             values = np.where(unknown, np.nan, -1.0)
             return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
-        forces = {
-            pair: _force(window, guilty[pair], window.cut(run.signals.contact_forces[pair]))
-            for pair in pairs
-            if guilty[pair].any()
-        }
+        forces: dict[Pair, FloatArray] = {}
+        for pair in pairs:
+            force = _force(run, colliding(run, pair, allowed_too), run.signals.contact_forces[pair])
+            lasting = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
+            if (lasting > 0).any():
+                forces[pair] = lasting
         overlaps = _overlaps_at_start(window, forces)
         if overlaps:
             return _overlapped(forces, overlaps)
@@ -221,15 +228,15 @@ class Collision(Predicate):
         return best, name
 
 
-def _force(window: Window, guilty: BoolArray, forces: FloatArray) -> FloatArray:
-    """The force while two bodies collide, else 0 [N], shape (n,).
+def _force(run: Run, guilty: BoolArray, forces: FloatArray) -> FloatArray:
+    """The force while two bodies collide, else 0 [N], shape (N,).
 
     An average over the time before can make a contact a collision: its first sample has the largest
     force of this time.
     """
     found = np.where(guilty, forces, 0.0)
     for start, _ in episodes(guilty):
-        averaged = (window.times > window.times[start] - SPAN)[: start + 1]
+        averaged = (run.signals.times > run.signals.times[start] - SPAN)[: start + 1]
         found[start] = forces[: start + 1][averaged].max()
     return found
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
+import numpy as np
 from pydantic import AfterValidator, Field
 
 from harness.assertions.distances import MEASURED_WORDS
@@ -15,7 +17,11 @@ from harness.cell.possible_contacts import HINT, why_never_in_contact
 from harness.cell.scope import At
 from harness.language.formula.formula import (
     SIGNALS,
+    Comparison,
+    Const,
     Node,
+    Signal,
+    comparisons_of,
     constants_of,
     frames_of,
     mixed_units,
@@ -24,7 +30,15 @@ from harness.language.formula.formula import (
 from harness.language.formula.parser import parse_formula, readable
 from harness.recording.run import Run
 from harness.recording.verdict import Verdict
+from harness.robot.description import Joint, RobotDescription
 
+RANGES: dict[str, Callable[[Joint], tuple[float, float]]] = {
+    "position": lambda joint: (joint.lower, joint.upper),
+    "command": lambda joint: (joint.lower, joint.upper),
+    "velocity": lambda joint: (-joint.velocity, joint.velocity),
+    "effort": lambda joint: (-joint.effort, joint.effort),
+}
+"""The smallest and the largest value of a joint's signals, by their names."""
 LARGEST_CUTOFF = 2.0
 """Distances are recorded up to here, however far a formula compares one [m]."""
 
@@ -56,6 +70,10 @@ class Formula(Expectation):
                 f"the formula joins {first} and {second}",
                 "both sides must be of one kind",
             )
+        for comparison in comparisons_of(root):
+            if problem := _beyond_range(comparison, robot):
+                hint = "angles without a unit are in radians, lengths in metres"
+                at.scope.problems.add_in_text(at.key("formula"), comparison.start, problem, hint)
         known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
         measured = (*MEASURED_WORDS, *at.scope.objects)
         kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
@@ -78,6 +96,21 @@ class Formula(Expectation):
 
     def verdict(self, run: Run, step: str) -> Verdict:
         return formula_verdict(self.formula, window_of(run, self.during or step))
+
+
+def _beyond_range(comparison: Comparison, robot: RobotDescription) -> str:
+    """Why a joint's signal never comes near a number; empty where it may.
+
+    A number further beyond the limits than they are apart is taken for one in another unit.
+    """
+    sides = (comparison.left, comparison.right)
+    for signal, limit in (sides, sides[::-1]):
+        if isinstance(signal, Signal) and isinstance(limit, Const) and signal.name in RANGES:
+            joint = robot.joint_by_name.get(signal.arguments[0])
+            low, high = (-np.inf, np.inf) if joint is None else RANGES[signal.name](joint)
+            if abs(limit.value - (low + high) / 2) > 1.5 * (high - low):
+                return f"{signal} is between {low:.3g} and {high:.3g}, never {limit.value:g}"
+    return ""
 
 
 def _furthest(root: Node) -> float | None:

@@ -10,11 +10,17 @@ from pydantic import Field
 
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import UP, object_poses, physical_poses, present
+from harness.assertions.poses import (
+    UP,
+    object_poses,
+    physical_poses,
+    present,
+    start_samples,
+)
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window, object_record
 from harness.cell.scope import At
-from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
+from harness.core.geometry import Shape, reach
 from harness.core.pose_arrays import angle_between, relative, rotate
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
@@ -94,12 +100,11 @@ class In(ObjectPredicate):
         return all_of(window, parts, text, present=there)
 
     def unchanged(self, window: Window) -> str:
-        before = replace(window, start=0)
-        margins = self.margins(before).values
-        known = margins[~np.isnan(margins)]
-        if (known < 0).any():
+        begin = int(start_samples(window.run, self.object)[window.stop - 1])
+        if (self.margins(replace(window, start=begin)).values < 0).any():
             return ""
-        return f"{self.object} was in {self.container} since the run began"
+        since = "a step put it there" if begin else "the run began"
+        return f"{self.object} was in {self.container} since {since}"
 
 
 def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:
@@ -116,19 +121,9 @@ def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:
 
 
 def _corners(shape: Shape, name: str) -> tuple[FloatArray, FloatArray]:
-    axes = np.abs(shape.pose.rotation)
-    along = axes[:, 2]  # how much of the shape's own z axis points along each axis of the object
-    match shape.geometry:
-        case Box(size=size):
-            half = axes @ (0.5 * np.array(size))
-        case Sphere(radius=radius):
-            half = np.full(3, radius)
-        case Capsule(radius=radius, length=length):
-            half = 0.5 * length * along + radius
-        case Cylinder(radius=radius, length=length):
-            half = 0.5 * length * along + radius * np.sqrt(np.maximum(0.0, 1 - along**2))
-        case _:
-            raise NotObservable(f"the extent of '{name}' is not known: it is no box or cylinder")
+    half = reach(shape.geometry, shape.pose.rotation)  # along each axis of the object
+    if half is None:
+        raise NotObservable(f"the extent of '{name}' is not known: it is no box or cylinder")
     return shape.pose.translation - half, shape.pose.translation + half
 
 

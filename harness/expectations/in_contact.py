@@ -9,16 +9,18 @@ import numpy as np
 from pydantic import Field
 
 from harness.assertions.contacts import (
+    DEBOUNCE,
     TOUCH_FORCE,
     bodies,
     could_touch,
     force_between,
     pairs_of,
     sample_time,
-    skipped_contacts,
+    unseen_contacts,
 )
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.temporal import without_gaps
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.possible_contacts import check_contact
@@ -33,8 +35,9 @@ CONTACT = Quantity("contact force", "N", "at least `min_force`, and 0.001 N", "c
 class InContact(Predicate):
     """The two bodies touch.
 
-    It is judged while both are in the physics: with an object that only the planner knows it is not
-    observable, before an object is there it is not reached.
+    A contact lasts through gaps of at most 10 ms: stiff bodies that rub or rattle part for some
+    samples again and again. It is judged while both are in the physics: with an object that only
+    the planner knows it is not observable, before an object is there it is not reached.
     """
 
     short = "between"
@@ -64,9 +67,11 @@ class InContact(Predicate):
         run = window.run
         firsts, seconds = bodies(run, first), bodies(run, second)
         pairs = pairs_of(firsts, seconds)
-        force = window.cut(force_between(run, firsts, seconds))
+        every = force_between(run, firsts, seconds)
+        force = window.cut(every)
+        lasting = window.cut(without_gaps(every, run.signals.times, DEBOUNCE))
         limit = max(self.min_force, TOUCH_FORCE)
-        part = Part(CONTACT, force, limit, ">=", detail=f"{first} and {second}")
+        part = Part(CONTACT, lasting, limit, ">=", detail=f"{first} and {second}")
 
         touching = np.flatnonzero(force >= TOUCH_FORCE)
 
@@ -82,5 +87,5 @@ class InContact(Predicate):
         return replace(
             all_of(window, [part], text, applies=together),
             pairs=len(pairs),
-            warnings=skipped_contacts(run, pairs),
+            warnings=unseen_contacts(run, pairs),
         )

@@ -22,6 +22,7 @@ from harness.assertions.poses import (
     observed_for,
     present,
     speeds,
+    start_samples,
 )
 from harness.assertions.support import supports
 from harness.assertions.text import amounts
@@ -86,7 +87,7 @@ class Placed(ObjectPredicate):
     tolerance: PoseTolerance | None = Field(
         default=None,
         description="The tolerance of `pose`; by default 1 cm, and turns about the vertical are"
-        " free.",
+        " free. `{position: 5 mm}` requires the orientation too, to its default of 0.01 rad.",
     )
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
         default=0.005, description="The largest speed at which it counts as still [m/s]."
@@ -146,21 +147,25 @@ class Placed(ObjectPredicate):
         here = present(run, name)
         judged = observed_for(run, here, STILL)
         if window.cut(here).any() and not window.cut(judged).any():
-            raise NotReached(f"what stands still is known after {1000 * STILL:.0f} ms, not before")
+            soon = f"what stands still is known after {1000 * STILL:.0f} ms, not before"
+            raise NotReached(window.cut_short or soon)
         return all_of(window, parts, text, present=window.cut(here), applies=window.cut(judged))
 
     def unchanged(self, window: Window) -> str:
         run, name = window.run, self.object
-        if was_in_robot(run, name, window.stop):
+        begin = int(start_samples(run, name)[window.stop - 1])
+        since = slice(begin, window.stop)
+        if was_in_robot(run, name, since):
             return ""
         carriers = [body for body, force in supports(run, name).items() if force[window.stop - 1]]
         frame = "world" if self.pose is None else self.pose.frame
         for base in dict.fromkeys(("world", frame, *carriers)):
-            if _moved(run, name, base, window.stop) <= JUMP:
+            if _moved(run, name, base, since) <= JUMP:
                 on = "" if base == "world" else f" on {base}"
+                since_then = "a step put it there" if begin else "the run began"
                 return (
-                    f"the robot never touched {name}, and it stands where it stood{on} when the run"
-                    " began"
+                    f"the robot never touched {name}, and it stands where it stood{on} when"
+                    f" {since_then}"
                 )
         return ""
 
@@ -198,9 +203,9 @@ def _is_carried(run: Run, body: str) -> BoolArray:
     return in_hand(run, body)
 
 
-def _moved(run: Run, name: str, base: str, stop: int) -> float:
-    """The largest distance of an object from its first place in a frame, before a sample [m]."""
-    places = relative(frame_poses(run, base), object_poses(run, name))[:stop, :3]
+def _moved(run: Run, name: str, base: str, samples: slice) -> float:
+    """The largest distance of an object from its first place in a frame, at some samples [m]."""
+    places = relative(frame_poses(run, base), object_poses(run, name))[samples, :3]
     known = places[~np.isnan(places).any(axis=1)]
     return float(np.linalg.norm(known - known[0], axis=1).max()) if len(known) else 0.0
 

@@ -43,6 +43,6 @@ class Released(ObjectPredicate):
         return all_of(window, parts, text, present=window.cut(present(run, name)))
 
     def unchanged(self, window: Window) -> str:
-        if was_in_robot(window.run, self.object, window.stop):
+        if was_in_robot(window.run, self.object, slice(window.stop)):
             return ""
         return f"the robot never touched {self.object}"

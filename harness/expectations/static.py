@@ -70,7 +70,8 @@ class Static(Predicate):
             here = present(run, self.object)
         judged = window.cut(observed_for(run, here, STILL))
         if window.cut(here).any() and not judged.any():
-            raise NotReached(f"what stands still is known after {1000 * STILL:.0f} ms, not before")
+            soon = f"what stands still is known after {1000 * STILL:.0f} ms, not before"
+            raise NotReached(window.cut_short or soon)
         parts: list[Part] = []
         names = [self.object] if self.object is not None else _dynamic(run)
         for name in names:

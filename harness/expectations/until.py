@@ -62,9 +62,8 @@ class Until(TemporalWord):
                 raise NotReached(window.cut_short) from None
             span = float(window.times[-1] - window.times[0])
             reason = f"judged over {span:.3f} s, which leaves no room for {hold or 0.0:.3f} s"
-            return Verdict(
-                "", "failed", span - (hold or 0.0), "s", float(window.times[-1]), 0, "", reason
-            )
+            last = float(window.times[-1])
+            return Verdict("", "failed", span - (hold or 0.0), "s", last, reason=reason)
         if is_open and not decision.holds:
             raise NotReached(window.cut_short)
         if not decision.holds:

@@ -16,6 +16,9 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.iktest.contract import Value
+from harness.planning.ik.third_party import UnusableIkResult
+
+HARNESS = Path(__file__).parents[1]
 
 OutcomeKind = Literal["answered", "refused", "raised", "unreadable", "hung", "died"]
 
@@ -27,7 +30,7 @@ class CallOutcome:
     Attributes:
         answers: Joint positions, shape (dof,) each; they may hold anything, NaN too.
         text: The text of an exception, a signal, or what was returned instead of joint positions.
-        place: File and line where an exception was raised.
+        place: File and line where an exception was raised, in the function's own code.
     """
 
     kind: OutcomeKind
@@ -46,6 +49,8 @@ def call(function: Callable[..., Any], arguments: Mapping[str, Value], dof: int)
             returned = function(**arguments)
         except KeyboardInterrupt:
             raise
+        except UnusableIkResult as error:
+            return CallOutcome("unreadable", seconds=perf_counter() - start, text=str(error))
         except BaseException as error:  # noqa: BLE001 - whatever it raises is a result
             return _raised(error, perf_counter() - start)
         seconds = perf_counter() - start
@@ -56,10 +61,12 @@ def read_answers(returned: Any, dof: int, seconds: float = 0.0) -> CallOutcome:
     """Joint positions from None, one vector, or a list of vectors."""
     if returned is None:
         return CallOutcome("refused", seconds=seconds)
+    must = f"it must return {dof} joint positions, a list of such answers, or None"
     try:
         values = np.array(returned, dtype=float)
     except (TypeError, ValueError):
-        return CallOutcome("unreadable", seconds=seconds, text=f"returned {_short(returned)}")
+        text = f"returned {_short(returned)}; {must}"
+        return CallOutcome("unreadable", seconds=seconds, text=text)
     if values.size == 0:
         return CallOutcome("refused", seconds=seconds)
     if values.shape == (dof,):
@@ -67,7 +74,7 @@ def read_answers(returned: Any, dof: int, seconds: float = 0.0) -> CallOutcome:
     if values.ndim == 2 and values.shape[1] == dof:
         return CallOutcome("answered", tuple(values), seconds)
     shape = " x ".join(map(str, values.shape)) or "one"
-    return CallOutcome("unreadable", seconds=seconds, text=f"returned {shape} numbers")
+    return CallOutcome("unreadable", seconds=seconds, text=f"returned {shape} numbers; {must}")
 
 
 def _raised(error: BaseException, seconds: float) -> CallOutcome:
@@ -76,6 +83,7 @@ def _raised(error: BaseException, seconds: float) -> CallOutcome:
     if module not in ("numpy", builtins.__name__) and module not in sys.stdlib_module_names:
         return CallOutcome("refused", seconds=seconds)
     frames = traceback.extract_tb(error.__traceback__)[1:]  # the first is the call above
+    frames = [each for each in frames if not Path(each.filename).is_relative_to(HARNESS)] or frames
     place = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
     words = " ".join(str(error).split())
     return CallOutcome("raised", (), seconds, f"{type(error).__name__}: {words[:200]}", place)

@@ -145,8 +145,7 @@ def _probe(trial: SolverTrial) -> None:
         outcome = trial.query(Target(chain.link_pose(state), state))
         if outcome.kind == "unreadable":
             raise UnusableSolver(
-                f"{trial.solver.name} {outcome.text}; it must return {chain.dof} joint positions "
-                f"({', '.join(chain.joint_names)}), a list of such answers, or None"
+                f"{trial.solver.name} {outcome.text}; the joints are {', '.join(chain.joint_names)}"
             )
         if outcome.kind == "answered":
             return
@@ -209,12 +208,14 @@ class _Search:
         trial = self._trial
         kinds: Counter[str] = Counter()
         smallest: dict[str, tuple[tuple[float, ...], Flaw]] = {}
-        tried = flawed = 0
+        tried = flawed = observed = 0
 
         def visit(case: Any) -> bool:
-            nonlocal tried, flawed
+            nonlocal tried, flawed, observed
+            trial.outcomes.clear()
             flaws = each.flaws(trial, case)
             tried += 1
+            observed += bool(flaws) or each.is_observed(trial.outcomes)
             flawed += bool(flaws)
             kinds.update(sorted({flaw.kind for flaw in flaws}))
             size = each.size(trial, case)
@@ -233,7 +234,7 @@ class _Search:
             self._known[kind] = len(self._findings) + 1
             self._findings.append(self._finding(each, flaw, kinds[kind], tried))
         found = sorted(self._known[kind] for kind in kinds if kind in self._known)
-        return PropertyResult(each.name, each.says, tried, flawed, tuple(found))
+        return PropertyResult(each.name, each.says, tried, flawed, observed, tuple(found))
 
     def _shrunk(self, each: Property, kind: str, tried: int) -> Flaw | None:
         """The smallest flaw of a kind; None when it does not show again."""

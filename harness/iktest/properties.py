@@ -10,6 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from harness.core.types import FloatArray
+from harness.iktest.calls import CallOutcome, OutcomeKind
 from harness.iktest.trial import Flaw, SolverTrial
 from harness.robot.chain import Chain
 from harness.strategies.paths import StraightLine, straight_lines
@@ -34,6 +35,8 @@ class Property:
     Attributes:
         size: The size of a case, for the smallest.
         share: The share of the examples that other properties get.
+        needs: The outcomes that the property is about.
+        calls: The number of such outcomes that a case needs to show anything.
     """
 
     name: str
@@ -42,6 +45,12 @@ class Property:
     flaws: Callable[[SolverTrial, Any], Sequence[Flaw]]
     size: Callable[[SolverTrial, Any], tuple[float, ...]]
     share: float = 1.0
+    needs: tuple[OutcomeKind, ...] = ("answered", "refused")
+    calls: int = 1
+
+    def is_observed(self, outcomes: Sequence[CallOutcome]) -> bool:
+        """Whether a case in which calls had these outcomes shows that the property holds."""
+        return sum(each.kind in self.needs for each in outcomes) >= self.calls
 
 
 def within_reach(trial: SolverTrial) -> st.SearchStrategy[Target]:
@@ -207,18 +216,20 @@ def _line_size(trial: SolverTrial, line: StraightLine) -> tuple[float, ...]:
 
 PROPERTIES = (
     Property("reaches", "forward kinematics of every answer is the target",
-             within_reach, _reaches, _target_size),
+             within_reach, _reaches, _target_size, needs=("answered",)),
     Property("answers", "a target within reach is answered, in finite numbers",
              within_reach, _answers, _target_size),
-    Property("limits", "answers keep the joint limits", within_reach, _limits, _target_size),
+    Property("limits", "answers keep the joint limits",
+             within_reach, _limits, _target_size, needs=("answered",)),
     Property("refuses", "a target out of reach is refused", _beyond_reach, _refuses, _target_size),
     Property("anywhere", "any target is answered rightly or refused",
              _around, _anywhere, _target_size),
     Property("continuity", "on a straight line no joint jumps",
-             lambda trial: straight_lines(trial.chain, trial.task), _follows, _line_size, 0.2),
+             lambda trial: straight_lines(trial.chain, trial.task), _follows, _line_size, 0.2,
+             needs=("answered",), calls=2),
     Property("determinism", "the same question has the same answer",
              lambda trial: st.tuples(within_reach(trial), within_reach(trial)),
-             _repeats, _pair_size, 0.5),
+             _repeats, _pair_size, 0.5, calls=2),
 )  # fmt: skip
 
 BRANCHES = Property("branches", "every way to reach the target is answered",

@@ -60,6 +60,7 @@ class PropertyResult:
     """What became of a property.
 
     Attributes:
+        observed: Cases in which the function did what the property is about.
         findings: Numbers of the findings that they show, those of earlier properties included.
         note: Why it was not tried; else empty.
     """
@@ -68,6 +69,7 @@ class PropertyResult:
     says: str
     tried: int = 0
     flawed: int = 0
+    observed: int = 0
     findings: tuple[int, ...] = ()
     note: str = ""
 
@@ -107,8 +109,8 @@ class IkReport:
 
     @property
     def has_passed(self) -> bool:
-        """Whether nothing was found and everything was tried that was to be."""
-        return not any(each.flawed for each in self.properties) and not self.findings
+        """Whether nothing was found and every property was observed."""
+        return all(each.observed for each in self.properties) and not self.findings
 
     def facts(self) -> dict[str, Any]:
         """As JSON has it; times of the wall clock apart."""
@@ -124,7 +126,7 @@ class IkReport:
             "outcome": "passed" if self.has_passed else "failed",
             "properties": [
                 {"name": each.name, "says": each.says, "tried": each.tried, "flawed": each.flawed,
-                 "findings": list(each.findings), "note": each.note}
+                 "observed": each.observed, "findings": list(each.findings), "note": each.note}
                 for each in self.properties
             ],
             "findings": [finding.facts() for finding in self.findings],

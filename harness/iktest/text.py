@@ -24,6 +24,10 @@ def report_lines(report: IkReport, folder: Path = Path()) -> list[str]:
         elif each.flawed:
             numbers = ", ".join(map(str, each.findings))
             outcome = f"FAILED in {each.flawed} of {each.tried}: finding {numbers}"
+        elif not each.observed:
+            outcome = f"NOT OBSERVED, {each.tried} tried"
+        elif each.observed < each.tried:
+            outcome = f"ok, {each.observed} of {each.tried} observed"
         else:
             outcome = f"ok, {each.tried} tried"
         lines.append(f"  {each.name:<{NAME_WIDTH}}{outcome:<36}{'' if each.note else each.says}")

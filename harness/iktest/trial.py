@@ -49,6 +49,7 @@ class SolverTrial:
         offset: Error that all answers share, once it is known.
         last_cost: Cost of the calls since it was last read.
         has_hung: Whether a call ever hung.
+        outcomes: The outcomes of the queries since somebody cleared them.
     """
 
     chain: Chain
@@ -58,6 +59,7 @@ class SolverTrial:
     orientation_tolerance: float
     offset: Offset | None = None
     has_hung: bool = False
+    outcomes: list[CallOutcome] = field(default_factory=list[CallOutcome])
     _cost: int = 0
     _known: dict[bytes, CallOutcome] = field(default_factory=dict[bytes, CallOutcome])
 
@@ -75,8 +77,10 @@ class SolverTrial:
             self._known.setdefault(key, outcome)
             self.has_hung = self.has_hung or outcome.kind == "hung"
             self._cost += COSTS.get(outcome.kind, 1)
-            return outcome
-        return self._known[key]
+        else:
+            outcome = self._known[key]
+        self.outcomes.append(outcome)
+        return outcome
 
     def take_cost(self) -> int:
         """What was spent since this was last called, at least 1."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, cast
 
 from pydantic import (
@@ -73,6 +74,12 @@ class SpecModel(BaseModel):
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
     )
+
+    @classmethod
+    def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
+        """What to write instead of a key of other programs, given all keys next to it."""
+        del key, content
+        return ""
 
     @field_validator("*")
     @classmethod

@@ -55,7 +55,7 @@ class Planning(SpecModel):
     planner_id: Name | None = Field(
         default=None,
         description="A planner of the pipeline. The default of `ompl` is `auto`: a straight joint "
-        "motion, else the fast planner, else the patient one; `harness list planners` has the "
+        "motion, else `BalancedConnect`, else `RRTConnect`; `harness list planners` has the "
         "others.",
     )
     planning_time: Annotated[Duration, Field(gt=0)] | None = Field(

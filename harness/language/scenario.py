@@ -227,7 +227,8 @@ class Scenario(SpecModel):
     )
     robot: RobotSpec = Field(description="The robot: the name of a model, or its keys.")
     world: WorldChoice = Field(
-        default=WorldChoice(name="empty"), description="The world: its name, or its keys."
+        default=WorldChoice(name="empty"),
+        description="The world: its name, or its keys. The default `empty` has a floor at z = 0.",
     )
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), description="Objects that are added to the world's, or replace them."

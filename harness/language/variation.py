@@ -7,7 +7,7 @@ from typing import Annotated, Any, cast
 
 from pydantic import AfterValidator, Field, model_validator
 
-from harness.core.quantity import split_quantity
+from harness.core.quantity import common_unit, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, count_of
 from harness.language.base import Count, Fraction, Share, SpecModel
 
@@ -42,9 +42,8 @@ class Normal(SpecModel):
     @model_validator(mode="after")
     def _reachable(self) -> Normal:
         mean, std = split_quantity(self.mean), split_quantity(self.std)
-        bounds = [split_quantity(each) for each in (self.low, self.high) if each is not None]
-        if any(unit != mean[1] for _, unit in (std, *bounds)):
-            raise ValueError("`mean`, `std`, `low` and `high` must be in one unit")
+        ends = (each for each in (self.low, self.high) if each is not None)
+        common_unit(self.mean, self.std, *ends)
         if std[0] <= 0:
             raise ValueError("`std` must be more than 0")
         low = -math.inf if self.low is None else split_quantity(self.low)[0]
@@ -71,9 +70,8 @@ class Distribution(SpecModel):
         if sum(each is not None for each in (self.uniform, self.normal, self.choice)) != 1:
             raise ValueError("a random value needs exactly one of `uniform`, `normal` and `choice`")
         if self.uniform is not None:
-            (low, unit), (high, other) = (split_quantity(each) for each in self.uniform)
-            if unit != other:
-                raise ValueError("both ends must be in one unit")
+            common_unit(*self.uniform)
+            low, high = (split_quantity(each)[0] for each in self.uniform)
             if low >= high:
                 raise ValueError("the first end must be below the second")
         return self

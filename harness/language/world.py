@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -194,6 +195,11 @@ class ObjectSpec(SpecModel):
         description="Whether this replaces the world's object of this name; used in `objects`.",
     )
 
+    @classmethod
+    def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
+        """The key of the shape that a message of MoveIt has in `type` and `dimensions`."""
+        return _shape_words(content) if key in ("type", "dimensions") else ""
+
     @model_validator(mode="after")
     def _some_shape(self) -> ObjectSpec:
         given = [kind for kind in GEOMETRIES if getattr(self, kind) is not None]
@@ -203,6 +209,22 @@ class ObjectSpec(SpecModel):
                 f"an object is exactly one of {', '.join(GEOMETRIES)}, or several `shapes`"
             )
         return self
+
+
+def _shape_words(content: Mapping[str, Any]) -> str:
+    """The shape of `type: box` and `dimensions: [...]` as this language has it."""
+    kind, sizes = str(content.get("type", "")).lower(), content.get("dimensions")
+    numbers = cast("list[Any]", sizes) if isinstance(sizes, list) else []
+    names = {"box": "size", "sphere": "radius", "cylinder": "length, radius"}.get(kind, "")
+    if not names:
+        return "the shape is a key: `box: {size: [X, Y, Z]}`, `cylinder: {radius: R, length: L}`"
+    if kind == "box":
+        inner = f"size: [{', '.join(map(str, numbers or 'XYZ'))}]"
+    else:
+        each = names.split(", ")
+        values = numbers if len(numbers) == len(each) else [name[0].upper() for name in each]
+        inner = ", ".join(f"{name}: {value}" for name, value in zip(each, values, strict=True))
+    return f"write `{kind}: {{{inner}}}`"
 
 
 class LightSpec(SpecModel):

@@ -1,7 +1,5 @@
 """Objects whose pictures differ much from the shapes that planner, physics and verdicts know."""
 
-# pyright: reportAttributeAccessIssue=false
-
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -10,10 +8,9 @@ from itertools import product
 import numpy as np
 
 from harness.cameras.meshes import mesh_parts
-from harness.core.geometry import Mesh, Plane, Shape
+from harness.core.geometry import Mesh, Plane, Shape, reach
 from harness.core.types import FloatArray
 from harness.recording.run import Finding, ObjectRecord
-from harness.robot.solids import coal_geometry
 
 LEAST_DIFFERENCE = 0.005
 """Of a side's place [m]: a picture that is off by less shows the shape."""
@@ -60,7 +57,5 @@ def _points(shape: Shape) -> FloatArray:
     if isinstance(shape.geometry, Mesh):
         parts = mesh_parts(shape.geometry)
         return np.concatenate([part.vertices for part in parts]) if parts else np.zeros((1, 3))
-    geometry = coal_geometry(shape)
-    geometry.computeLocalAABB()
-    box = geometry.aabb_local
-    return np.where(CORNERS, box.max_, box.min_)
+    half = reach(shape.geometry, np.eye(3))
+    return np.zeros((1, 3)) if half is None else (2 * CORNERS - 1) * half

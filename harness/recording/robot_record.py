@@ -93,6 +93,7 @@ class RobotRecord:
         link_visuals: Shapes for pictures, by link.
         static_link_poses: T_world_link of `static_links` (xyz, quat wxyz).
         placements: Every link but the root, parents first.
+        shapeless_links: Links that a joint moves and that nothing can touch.
     """
 
     name: str
@@ -114,6 +115,7 @@ class RobotRecord:
         default_factory=dict[str, tuple[float, ...]]
     )
     placements: tuple[LinkPlacement, ...] = ()
+    shapeless_links: tuple[str, ...] = ()
 
     @property
     def arm_joints(self) -> tuple[str, ...]:

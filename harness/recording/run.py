@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from harness.core.camera import Camera
 from harness.core.geometry import Shape
+from harness.core.spatial import SE3
+from harness.core.world import WorldObject
 from harness.recording.commands import CommandRecord
 from harness.recording.robot_record import (
     MeshRecord,
@@ -41,6 +43,23 @@ class ObjectRecord:
     pose: tuple[float, ...] = ()
     mass: float = float("nan")
     visuals: tuple[Shape, ...] = ()
+
+    @classmethod
+    def of(
+        cls, obj: WorldObject, present: tuple[tuple[float, float], ...], pose: SE3 | None
+    ) -> ObjectRecord:
+        """The record of an object of the world, with when and where it was there."""
+        return cls(
+            name=obj.name,
+            is_static=obj.is_static,
+            in_planning=obj.in_planning,
+            in_simulation=obj.in_simulation,
+            shapes=obj.shapes,
+            present=present,
+            pose=() if pose is None else tuple(map(float, pose.as_vector())),
+            mass=obj.mass,
+            visuals=obj.visuals,
+        )
 
     @property
     def looks(self) -> tuple[Shape, ...]:

@@ -36,30 +36,37 @@ APART = ("seed", "steps", "findings", "versions", "signals", "resolved", "meshes
 """Fields of a run that have a place of their own in its folder."""
 
 
-def write_run(folder: Path, stored: StoredRun, extra: Callable[[Path], None] | None = None) -> None:
+def write_run(
+    folder: Path,
+    stored: StoredRun,
+    extra: Callable[[Path], None] | None = None,
+    complete: Callable[[], StoredRun] | None = None,
+) -> None:
     """Write a run's folder under a temporary name next to it, then put it in its place.
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
         stored: The judged run that is written.
         extra: Adds more files to the folder it is given, before anyone sees it.
+        complete: Returns the same run with what is drawn of it, while its signals are written.
 
     Raises:
         HarnessError: The disk is full, the place is not writable, or is no place for a run.
     """
     _refuse_foreign(folder)
-    run, temporary = stored.run, None
+    temporary = None
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         temporary = _fresh_sibling(folder, "writing")
-        arrays = arrays_of(run.signals)
-        document = _document(stored, arrays)
-        document[CHECKSUM] = checksum(document, run.resolved)
-        text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-        (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
-        (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
+        arrays = arrays_of(stored.run.signals) | _trajectories(stored.run)
         with ThreadPoolExecutor(1) as pool:  # compression runs next to Python
             compressed = pool.submit(write_npz, temporary / SIGNALS, arrays)
+            whole = stored if complete is None else complete()
+            run, document = whole.run, _document(whole)
+            document[CHECKSUM] = checksum(document, run.resolved)
+            text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+            (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
+            (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
             write_npz(temporary / VISUALS, _mesh_arrays(run))
             write_files(temporary, run.files)
             if extra is not None:
@@ -76,8 +83,8 @@ def write_run(folder: Path, stored: StoredRun, extra: Callable[[Path], None] | N
             shutil.rmtree(temporary, ignore_errors=True)
 
 
-def _document(stored: StoredRun, arrays: dict[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
-    """The content of run.json; arrays of trajectories go into `arrays`."""
+def _document(stored: StoredRun) -> dict[str, Any]:
+    """The content of run.json."""
     run = stored.run
     first = ("scenario", "file", "case")
     rest = [entry.name for entry in fields(run) if entry.name not in (*first, *APART)]
@@ -87,7 +94,7 @@ def _document(stored: StoredRun, arrays: dict[str, np.ndarray[Any, Any]]) -> dic
         "outcome": stored.outcome,
         "digest": stored.digest,
         "seed": run.seed,
-        "steps": [_step(step, index, arrays) for index, step in enumerate(run.steps)],
+        "steps": [_step(step, index) for index, step in enumerate(run.steps)],
         "verdicts": to_plain(stored.verdicts),
         "findings": to_plain(run.findings),
         "versions": to_plain(run.versions),
@@ -109,15 +116,27 @@ def _mesh_arrays(run: Run) -> dict[str, np.ndarray[Any, Any]]:
     return arrays
 
 
-def _step(step: StepRecord, index: int, arrays: dict[str, np.ndarray[Any, Any]]) -> dict[str, Any]:
+def _trajectories(run: Run) -> dict[str, np.ndarray[Any, Any]]:
+    return {
+        name: getattr(step.trajectory, key)
+        for index, step in enumerate(run.steps)
+        if step.trajectory is not None
+        for key, name in _tables(index).items()
+    }
+
+
+def _tables(index: int) -> dict[str, str]:
+    """The names of the arrays of a step's trajectory."""
+    return {key: f"trajectories/{index}/{key}" for key in TABLES}
+
+
+def _step(step: StepRecord, index: int) -> dict[str, Any]:
     """A step in run.json: its summary is `step`; `sim_time` is how long it took [s]."""
     plain = to_plain(replace(step, trajectory=None))
     if step.trajectory is not None:
-        names = {name: f"trajectories/{index}/{name}" for name in TABLES}
-        arrays |= {name: getattr(step.trajectory, key) for key, name in names.items()}
         plain["trajectory"] = {
             "joint_names": list(step.trajectory.joint_names),
-            **{key: {"array": name} for key, name in names.items()},
+            **{key: {"array": name} for key, name in _tables(index).items()},
         }
     summary = plain.pop("summary")
     head = {"id": plain.pop("id"), "step": summary, "status": plain.pop("status")}

@@ -42,10 +42,7 @@ def without_gripper(part: RobotPart) -> RobotPart:
 
 def _srdf(srdf: Srdf, hand: str, removed: set[str], joints: set[str]) -> Srdf:
     groups = tuple(
-        replace(
-            group,
-            chains=tuple((base, FLANGE if tip in removed else tip) for base, tip in group.chains),
-        )
+        group.with_links(lambda link: FLANGE if link in removed else link)
         for group in srdf.groups
         if group.name != hand
     )

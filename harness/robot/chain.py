@@ -11,6 +11,7 @@ from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.forward_kinematics import motion, rotations_about
+from harness.robot.tree import joints_to
 
 HOME = "home"
 """Named state that counterexamples shrink towards, if the arm has it."""
@@ -64,7 +65,7 @@ class Chain:
         start = description.start_positions()
         before: list[SE3] = []
         pose = SE3.identity()
-        way = _way_to(description, link)
+        way = joints_to(link, description.joints)
         for joint in way:
             pose = pose @ joint.pose
             if joint.name in names:
@@ -89,7 +90,7 @@ class Chain:
             np.array([min(j.upper, most) for j, most in zip(joints, widest, strict=True)]),
             np.array([joint.kind != "prismatic" for joint in joints]),
             np.array([home.get(n, start[description.joint_index[n]]) for n in names]),
-            way,
+            tuple(way),
             tuple(before),
             np.array([joint.axis for joint in joints]),
             pose,
@@ -120,10 +121,8 @@ class Chain:
 
     def whole(self, joint_positions: FloatArray) -> FloatArray:
         """Positions of the whole robot in description order; other joints are at their start."""
-        whole = self.description.start_positions()
-        for name, position in zip(self.joint_names, joint_positions, strict=True):
-            whole[self.description.joint_index[name]] = position
-        return self.description.with_mimics(whole)
+        placed = zip(self.joint_names, map(float, joint_positions), strict=True)
+        return self.description.start_positions(dict(placed))
 
     def farthest(self) -> tuple[FloatArray, float]:
         """A sphere that the last joint's frame cannot leave: centre (3,) and radius [m].
@@ -164,13 +163,3 @@ class Chain:
             else:
                 p = p + axes * samples[:, index, None]
         return R @ self.tip.rotation, p + R @ self.tip.translation, carried
-
-
-def _way_to(description: RobotDescription, link: str) -> tuple[Joint, ...]:
-    """The joints from the world to a link, in this order."""
-    before = {joint.child: joint for joint in description.joints}
-    found: list[Joint] = []
-    while link in before:
-        found.append(before[link])
-        link = before[link].parent
-    return tuple(found[::-1])

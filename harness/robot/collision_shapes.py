@@ -74,7 +74,12 @@ def with_collision_shapes(
             for link in description.links
         ),
     )
-    notes = parts_notes({link.name: link.collisions for link in described.links})
+    notes = [*parts_notes({link.name: link.collisions for link in described.links})]
+    if shapeless := described.shapeless_links:
+        notes.append(
+            "moving links without collision shapes, which pass through everything:"
+            f" {', '.join(shapeless)}; give them `<collision>`, in MJCF geoms that collide"
+        )
     return replace(described, notes=(*described.notes, *notes))
 
 

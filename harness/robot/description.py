@@ -47,6 +47,10 @@ class Link:
     collisions: tuple[Shape, ...] = ()
 
 
+BODY_MASS = 0.01
+"""Least mass of a link that is a body where it is not drawn [kg]; frames have grams."""
+
+
 @dataclass(frozen=True)
 class Mimic:
     """`value = multiplier * joint + offset`, as in URDF."""
@@ -268,6 +272,26 @@ class RobotDescription:
                 static.add(joint.child)
         return frozenset(static)
 
+    @cached_property
+    def shapeless_links(self) -> tuple[str, ...]:
+        """Links that a joint moves and that nothing can touch.
+
+        Neither they nor what is fixed to them has collision shapes, though they are drawn or have a
+        mass of `BODY_MASS`: no frames.
+        """
+        moved_by: dict[str, str] = {}  # link -> the link that the last movable joint moves
+        for joint in self.joints:
+            first = joint.child if joint.is_movable else moved_by.get(joint.parent, "")
+            moved_by[joint.child] = first
+        links = [link for link in self.links if moved_by.get(link.name)]
+        solid = {moved_by[link.name] for link in links if link.collisions}
+        bodies = {
+            moved_by[link.name]
+            for link in links
+            if link.visuals or (link.inertial is not None and link.inertial.mass >= BODY_MASS)
+        }
+        return tuple(name for name in self.link_names if name in bodies - solid)
+
     @property
     def default_group(self) -> str:
         """Default group of steps: the arm, else the gripper."""
@@ -276,6 +300,11 @@ class RobotDescription:
     def group_indices(self, group: str) -> tuple[int, ...]:
         """Indices of a group's joints in description order."""
         return tuple(self.joint_index[name] for name in self.groups[group].joint_names)
+
+    @property
+    def rejected_grippers(self) -> list[str]:
+        """Why parts that look like grippers are not used as such, one sentence each."""
+        return [note for note in self.notes if "is not used as a gripper" in note]
 
     def states_of(self, group: str) -> Mapping[str, NamedState]:
         """Named states of a group, by name."""
@@ -290,7 +319,11 @@ class RobotDescription:
                 positions[index] = joint.mimic.multiplier * followed + joint.mimic.offset
         return positions
 
-    def start_positions(self) -> FloatArray:
-        """`start_state` in description order, mimic joints consistent, missing joints at zero."""
-        positions = np.array([self.start_state.get(name, 0.0) for name in self.joint_names])
-        return self.with_mimics(positions)
+    def start_positions(self, placed: Mapping[str, float] | None = None) -> FloatArray:
+        """`start_state` in description order, mimic joints consistent, missing joints at zero.
+
+        Args:
+            placed: Positions of joints that are elsewhere, by name.
+        """
+        named = {**self.start_state, **(placed or {})}
+        return self.with_mimics(np.array([named.get(name, 0.0) for name in self.joint_names]))

@@ -9,6 +9,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.tree import joints_to
 
 
 class LinkPoses:
@@ -30,9 +31,11 @@ class LinkPoses:
         count = len(samples)
         self.rotations: dict[str, FloatArray] = {"world": np.tile(np.eye(3), (count, 1, 1))}
         self.translations: dict[str, FloatArray] = {"world": np.zeros((count, 3))}
-        needed = _ancestors(description, links)
+        needed = {
+            joint.child for link in links or () for joint in joints_to(link, description.joints)
+        }
         for joint in description.joints:
-            if joint.child not in needed:
+            if links is not None and joint.child not in needed:
                 continue
             R = self.rotations[joint.parent]
             p = self.translations[joint.parent] + R @ joint.pose.translation
@@ -45,19 +48,6 @@ class LinkPoses:
                     R = R @ rotations_about(joint.axis, value)
             self.rotations[joint.child] = R
             self.translations[joint.child] = p
-
-
-def _ancestors(description: RobotDescription, links: Sequence[str] | None) -> set[str]:
-    if links is None:
-        return set(description.link_names)
-    parent = {joint.child: joint.parent for joint in description.joints}
-    needed: set[str] = set()
-    for link in links:
-        name: str | None = link
-        while name is not None and name not in needed:
-            needed.add(name)
-            name = parent.get(name)
-    return needed
 
 
 def link_poses(

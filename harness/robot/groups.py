@@ -9,6 +9,7 @@ from typing import NoReturn
 from harness.core.errors import RobotError
 from harness.robot.description import Joint, PlanningGroup
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
+from harness.robot.tree import joints_to
 
 LEAST_ARM = 3
 """Fewest joints of a group without a chain that has a tip; groups of fewer joints are fingers."""
@@ -53,22 +54,12 @@ def _resolve(
     )
     if len(group.chains) == 1:
         base, tip = group.chains[0]
-        if set(active) <= _chain(base, tip, joints):
+        if set(active) <= {joint.name for joint in joints_to(tip, joints, base)}:
             return PlanningGroup(group.name, active, base, tip)
     inside = [joint for joint in joints if joint.name in members]
     base = inside[0].parent if inside else ""
     tip = _serial_tip(inside) if len(active) >= LEAST_ARM else ""
     return PlanningGroup(group.name, active, base, tip)
-
-
-def _chain(base: str, tip: str, joints: Sequence[Joint]) -> set[str]:
-    """Names of the joints between two links."""
-    before = {joint.child: joint for joint in joints}
-    names: set[str] = set()
-    while tip != base and tip in before:
-        names.add(before[tip].name)
-        tip = before[tip].parent
-    return names
 
 
 def _serial_tip(inside: Sequence[Joint]) -> str:
@@ -104,12 +95,10 @@ def _members(
         elif link not in links:
             _refuse(group, "link", link, f"names the unknown link '{link}'", source)
     for base, tip in group.chains:
-        link = tip
-        while link != base:
-            if link not in by_child:
-                _refuse(group, "chain", "", f"no chain leads from '{base}' to '{tip}'", source)
-            members.add(by_child[link].name)
-            link = by_child[link].parent
+        way = joints_to(tip, joints, base)
+        if (way[0].parent if way else tip) != base:
+            _refuse(group, "chain", "", f"no chain leads from '{base}' to '{tip}'", source)
+        members |= {joint.name for joint in way}
     for name in group.subgroups:
         circle = (*seen, group.name)
         if name not in groups:

@@ -72,8 +72,13 @@ def _default_srdf(spec: RobotSpec, urdf: Urdf, states: Sequence[NamedState]) -> 
 def _srdf(parsed: Srdf, urdf: Urdf, states: Sequence[NamedState], source: str) -> Srdf:
     """The checked SRDF; an MJCF's keyframes become states of its groups."""
     if urdf.root == RENAMED_ROOT:
-        parsed = _with_renamed_root(parsed)
+        groups = tuple(group.with_links(_root_name) for group in parsed.groups)
+        parsed = replace(parsed, groups=groups)
     return checked_srdf(replace(parsed, states=(*parsed.states, *states)), urdf, source)
+
+
+def _root_name(link: str) -> str:
+    return RENAMED_ROOT if link == WORLD else link
 
 
 def _without_world(urdf: Urdf) -> Urdf:
@@ -81,27 +86,11 @@ def _without_world(urdf: Urdf) -> Urdf:
     if WORLD not in {link.name for link in urdf.links} or ("link", WORLD) not in urdf.elements:
         return urdf
 
-    def name(link: str) -> str:
-        return RENAMED_ROOT if link == WORLD else link
-
-    links = tuple(replace(link, name=name(link.name)) for link in urdf.links)
+    links = tuple(replace(link, name=_root_name(link.name)) for link in urdf.links)
     joints = tuple(
-        replace(joint, parent=name(joint.parent), child=name(joint.child)) for joint in urdf.joints
+        replace(joint, parent=_root_name(joint.parent), child=_root_name(joint.child))
+        for joint in urdf.joints
     )
     elements = {**urdf.elements, ("link", RENAMED_ROOT): urdf.elements["link", WORLD]}
     note = f"the link '{WORLD}' is called '{RENAMED_ROOT}' here: '{WORLD}' is the world's own frame"
     return replace(urdf, links=links, joints=joints, elements=elements, notes=(*urdf.notes, note))
-
-
-def _with_renamed_root(srdf: Srdf) -> Srdf:
-    """The SRDF with chains from the renamed root."""
-    groups = tuple(
-        replace(
-            group,
-            chains=tuple(
-                (RENAMED_ROOT if base == WORLD else base, tip) for base, tip in group.chains
-            ),
-        )
-        for group in srdf.groups
-    )
-    return replace(srdf, groups=groups)

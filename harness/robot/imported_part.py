@@ -61,7 +61,8 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         srdf = replace(srdf, disabled=dict.fromkeys(pairs, "Default"))
         if pairs:
             notes.append(
-                f"no allowed pairs are given; those that touch at the start are: {_listed(pairs)}"
+                "no allowed pairs are given, so the pairs that touch at the start are allowed:"
+                f" {_listed(pairs)}"
             )
     gripper = None
     own = _own_gripper(spec, urdf, srdf, groups, arm, notes)

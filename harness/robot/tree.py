@@ -79,6 +79,16 @@ def _circle(start: str, parents: Mapping[str, str]) -> list[str]:
     return seen[seen.index(link) :][::-1]
 
 
+def joints_to(link: str, joints: Iterable[Joint], base: str = "") -> list[Joint]:
+    """The joints that carry a link, from a base, or else the root, to the link."""
+    before = {joint.child: joint for joint in joints}
+    found: list[Joint] = []
+    while link != base and link in before:
+        found.append(before[link])
+        link = before[link].parent
+    return found[::-1]
+
+
 def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
     """For each link, the first link of its rigid group.
 

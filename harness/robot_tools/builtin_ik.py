@@ -12,6 +12,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics, is_built_in
 from harness.planning.ik.numeric import LinkGoal
+from harness.planning.ik.third_party import read_solutions
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.kinematics import IkRequest, IkSolver
@@ -41,6 +42,8 @@ def own_solver(robot: RobotSource, link: str = "") -> Callable[..., Any]:
 def plugin_solver(name: str, robot: RobotSource, link: str = "") -> Callable[..., Any]:
     """A registered solver as such a function; answers of third-party solvers are not filtered.
 
+    The function raises UnusableIkResult where such a solver returns no joint positions.
+
     Args:
         name: The name of the solver.
         robot: The arm to be solved.
@@ -61,7 +64,7 @@ def plugin_solver(name: str, robot: RobotSource, link: str = "") -> Callable[...
     def solve(goal: LinkGoal, seed: FloatArray) -> Solutions:
         if is_built_in(name):
             return kinematics.solve(group, goal, chain.whole(seed), 0)
-        return solver().solve(request(goal, seed)).solutions
+        return read_solutions(solver().solve(request(goal, seed)), len(chain.joint_names))
 
     function = _function_of(chain, solve)
     home = chain.link_pose(chain.home)

@@ -103,8 +103,10 @@ def _trouble(text: str, candidate: Path) -> tuple[str, bool]:
 def _why_no_gripper(description: RobotDescription) -> str:
     if description.gripper is not None:
         return ""
-    reasons = [note for note in description.notes if "is not used as a gripper" in note]
-    return (reasons or ["no joint that the arm carries closes two sides of a gripper"])[0]
+    return (
+        description.rejected_grippers
+        or ["no joint that the arm carries closes two sides of a gripper"]
+    )[0]
 
 
 def _filled(template: str, words: Mapping[str, str]) -> str:

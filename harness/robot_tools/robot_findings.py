@@ -115,17 +115,22 @@ def sizes(description: RobotDescription) -> RobotFinding | None:
 
 
 def states(description: RobotDescription) -> RobotFinding:
-    """Whether the start and the named states are free of self-collision, inside the limits."""
+    """Whether the start and the named states are free of self-collision, inside the limits.
+
+    A state of the gripper is one in itself: the arm may be anywhere.
+    """
     scene = CoalScene(description)
-    start = description.start_positions()
-    looked_at = {"the start": start}
+    hand, every = description.gripper, set(description.link_names)
+    looked_at = {"the start": (description.start_positions(), every)}
     for state in description.named_states:
-        given = dict(zip(description.joint_names, start, strict=True)) | dict(state.positions)
-        row = np.array([given[name] for name in description.joint_names])
-        looked_at[f"{state.name} ({state.group})"] = description.with_mimics(row)
+        is_hand = hand is not None and state.group == hand.group
+        links = {hand.palm_link, *hand.links} if hand and is_hand else every
+        row = description.start_positions(state.positions)
+        looked_at[f"{state.name} ({state.group})"] = row, links
     problems: dict[str, list[str]] = {}
-    for name, row in looked_at.items():
-        found = [f"{touch.first} touches {touch.second}" for touch in scene.touches(row)[:1]]
+    for name, (row, links) in looked_at.items():
+        touches = [each for each in scene.touches(row) if {each.first, each.second} <= links]
+        found = [f"{touch.first} touches {touch.second}" for touch in touches[:1]]
         found += [
             f"{joint.name} at {value:.4g} is outside {joint.lower:.4g} to {joint.upper:.4g}"
             for joint, value in zip(description.movable_joints, row, strict=True)

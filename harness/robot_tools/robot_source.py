@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.suggestion import did_you_mean
@@ -22,7 +21,7 @@ from harness.robot.load import load_robot
 from harness.robot.xacro.file import is_xacro
 
 ROBOT_YAML = "robot.yaml"
-KINDS = {".urdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
+KINDS = {".urdf": "urdf", ".srdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}
 OPTIONS = {
     "srdf": "--srdf",
     "packages": "--package-path",
@@ -135,14 +134,8 @@ def positions_of(description: RobotDescription, state: str) -> FloatArray:
     Raises:
         RobotError: It has no such state.
     """
-    start = description.start_positions()
-    if not state:
-        return start
     found = [each for each in description.named_states if each.name == state]
-    if not found:
+    if state and not found:
         names = [each.name for each in description.named_states]
         raise RobotError(f"there is no state '{state}'; {did_you_mean(state, names, 'states')}")
-    given = dict(zip(description.joint_names, start, strict=True))
-    for each in found:
-        given |= each.positions
-    return description.with_mimics(np.array([given[name] for name in description.joint_names]))
+    return description.start_positions(dict(ChainMap(*(dict(each.positions) for each in found))))

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from harness.planning.collision.pair_statistics import SelfTouches
 from harness.robot.import_robot import RENAMED_ROOT
-from harness.robot.srdf.srdf import Srdf, link_pair, parse_srdf, write_srdf
+from harness.robot.srdf.srdf import link_pair, parse_srdf, write_srdf
 
 WORLD = "world"
 
@@ -24,17 +24,10 @@ def proposed_srdf(touches: SelfTouches, name: str) -> str:
         link_pair(_own(first), _own(second)): str(reason)
         for (first, second), reason in touches.proposed().items()
     }
-    return write_srdf(name, _with_own_root(replace(srdf, disabled=disabled)))
+    groups = tuple(group.with_links(_own) for group in srdf.groups)
+    return write_srdf(name, replace(srdf, disabled=disabled, groups=groups))
 
 
 def _own(link: str) -> str:
     """A link as the robot's file calls it: a root called as our world has another name here."""
     return WORLD if link == RENAMED_ROOT else link
-
-
-def _with_own_root(srdf: Srdf) -> Srdf:
-    groups = tuple(
-        replace(group, chains=tuple((_own(base), _own(tip)) for base, tip in group.chains))
-        for group in srdf.groups
-    )
-    return replace(srdf, groups=groups)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 from harness.core import sharing
@@ -36,15 +35,8 @@ class DistancesAhead:
         self._begun = 0
         self._background: Background[tuple[Parts, SharedTally]] | None = None
 
-    def __enter__(self) -> DistancesAhead:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the process that is at work."""
         if self._background is not None:
             self._background.close()
 

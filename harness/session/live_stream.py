@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Client, Connection
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 from harness.core.types import FloatArray
@@ -78,15 +77,8 @@ class LiveStream:
         with suppress(OSError):
             self._connection = Client(address, "AF_UNIX")
 
-    def __enter__(self) -> LiveStream:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """Send no more."""
         if self._connection is not None:
             self._connection.close()
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from types import TracebackType
 
 from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
@@ -64,15 +63,8 @@ class Pictures:
         self._captures = self._begin_captures(is_kept=is_kept)
         self._drawings = self._begin_drawings() if is_kept else None
 
-    def __enter__(self) -> Pictures:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the processes that are at work."""
         for background in (self._captures, self._drawings):
             if background is not None:
                 background.close()
@@ -81,13 +73,18 @@ class Pictures:
         """The run with the pictures that verdicts read."""
         return _with_captures(run, self._captures, activity)
 
+    def begin(self) -> None:
+        """Begin to draw what is kept, before this process has threads: then it is not forked."""
+        if self._request.only_failed:
+            self._captures = self._begin_captures(is_kept=True)
+        if self._drawings is None:
+            self._drawings = self._begin_drawings()
+
     def drawn(self, run: Run, activity: Activity) -> tuple[Run, Drawings]:
         """The run as it is kept, with all pictures of its cameras; and its drawings."""
         if self._request.only_failed:
-            self._captures = self._begin_captures(is_kept=True)
             run = _with_captures(run, self._captures, activity)
-        if self._drawings is None:
-            self._drawings = self._begin_drawings()
+        assert self._drawings is not None, "begin() begins it"
         drawings = self._drawings.result(activity)
         run = replace(
             run,

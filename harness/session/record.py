@@ -72,6 +72,7 @@ def robot_record(description: RobotDescription, kinematics: Kinematics) -> Robot
             )
             for joint in description.joints
         ),
+        shapeless_links=description.shapeless_links,
     )
 
 

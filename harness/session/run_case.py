@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from harness.reporting.terminal import verdict_warnings
 from harness.session.distances_ahead import DistancesAhead
 from harness.session.external import ExternalSession, MakeSession, NoPrograms
 from harness.session.observe import observed_run, with_believed_poses
-from harness.session.pictures import Pictures
+from harness.session.pictures import Drawings, Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
 from harness.session.record import executed_run
@@ -60,13 +60,13 @@ def run_case(
     progress.compiled()
     try:
         with ExitStack() as stack:
-            ahead = stack.enter_context(DistancesAhead(prepared))
+            ahead = stack.enter_context(closing(DistancesAhead(prepared)))
             session = make_session(prepared, begun.simulator)
             executed = _executed(request, begun, clock, progress, session, ahead)
             refusal = session.refusal()
             del begun, session  # the simulator is the largest object; the run holds its recording
             gc.collect()  # parts of the simulator refer to each other
-            pictures = stack.enter_context(Pictures(request, prepared, executed))
+            pictures = stack.enter_context(closing(Pictures(request, prepared, executed)))
             judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
@@ -191,17 +191,24 @@ def _reported(
         HarnessError: The folder cannot be written, or a reporter fails.
     """
     progress.activity("writing the report")
-    with clock.part("render"):
-        run, drawings = pictures.drawn(judged.run, progress.activity)
-    with clock.part("write"):
+    pictures.begin()
+    drawings, rendered = Drawings(), clock.seconds.get("render", 0.0)
+
+    def complete() -> StoredRun:
+        nonlocal judged, drawings
+        with clock.part("render"):
+            run, drawings = pictures.drawn(judged.run, progress.activity)
         judged = replace(judged, run=run)
+        return judged
 
-        def add(target: Path) -> None:
-            write_files(target, drawings.images)
-            reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
-            write_with(reporters, target, judged, progress.activity)
+    def add(target: Path) -> None:
+        write_files(target, drawings.images)
+        reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
+        write_with(reporters, target, judged, progress.activity)
 
-        write_run(folder, judged, extra=add)
+    with clock.part("write"):
+        write_run(folder, judged, add, complete)
+    clock.seconds["write"] -= clock.seconds["render"] - rendered  # what was waited for
     progress.written(judged, str(folder))
     return replace(
         result,

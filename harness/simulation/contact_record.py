@@ -20,7 +20,7 @@ ROWS = 2**16
 CONTACTS_PER_ROW = 24
 """Contacts per sample for which the first arrays have room; more make them grow sooner."""
 
-BLOCK = 2**19
+BLOCK = 2**17
 """Contacts that are sorted at a time."""
 
 MOST_UNRESOLVED = 4096

@@ -103,6 +103,7 @@ class Inject(Step):
             begun = cell.notes.result.find(InjectedFaults) or InjectedFaults(())
             one = InjectedFault(fault, target, before, after)
             cell.report(InjectedFaults((*begun.faults, one)))
+            cell.faults[one.name] = cell.current.line
 
         for name, sliding in (self.friction or {}).items():
             note("friction", name, faults.set_friction(name, sliding), sliding)

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import (
     check_opening,
     grasp_points,
@@ -349,9 +349,7 @@ def as_reached(goal: TcpGoal, group: str, cell: Cell) -> TcpGoal:
     link, pose = cell.description.tcp_link, goal.target.se3()
     start, near = cell.planning_start(), PoseGoal(link, pose, orientation_tolerance=MAX_TURN)
     for positions in cell.kinematics.solve(group, near, start, cell.current.options.seed, enough=1):
-        state = np.array(start)
-        state[list(cell.description.group_indices(group))] = positions
-        reached = cell.kinematics.link_pose(cell.description.with_mimics(state), link)
+        reached = cell.kinematics.link_pose(with_arm(positions, start, group, cell), link)
         return TcpGoal(world_pose_spec(SE3(reached.rotation, pose.translation)))
     return goal
 

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
-from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach
+from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
@@ -69,9 +69,9 @@ class Place(Step):
     """Approach, lower, release, retreat; expands into the steps it is made of.
 
     Where the arm cannot lower the object to a `pose` without a rotation, or not open its hand
-    there, the object is turned about the vertical, if it is and looks the same then: by a half,
-    what is square by quarters, what is round by eighths; the step reports which `turn` of how many
-    `turns`.
+    there, the object is also tried turned about the vertical, provided that it stands upright and
+    looks the same after the turn: by half turns, square ones by quarters, round ones by eighths;
+    the step reports which `turn` of how many `turns`.
     A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
     position alone, with the pitch that the gripper has: the object turns with the arm.
     """
@@ -315,8 +315,6 @@ def _tcp_position(
         solutions = cell.kinematics.solve(group, goal, start, seed)
         if not solutions:
             break  # the search for an approach explains it
-        state = np.array(start)
-        state[list(cell.description.group_indices(group))] = solutions[0]
-        tcp = cell.kinematics.link_pose(cell.description.with_mimics(state), link)
+        tcp = cell.kinematics.link_pose(with_arm(solutions[0], start, group, cell), link)
         position = position + point - (tcp @ tcp_to_object).translation
     return position

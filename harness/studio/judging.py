@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import dataclass, replace
 
 from harness.assertions.judge import judge
@@ -54,7 +55,7 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     execution = cell.execution.finish()
     signals = with_believed_poses(prepared, execution, cell.simulator.finish())
     run = executed_run(request, prepared, execution, signals, cell.simulator.overlaps_at_start)
-    with Pictures(request, prepared, run) as pictures:
+    with closing(Pictures(request, prepared, run)) as pictures:
         run = pictures.captured(observed_run(prepared, run), unobserved)
     verdicts = judge(run, prepared.expectations)
     is_over = cell.steps_done >= cell.document.step_count or bool(execution.ended_early)

@@ -8,7 +8,7 @@ import signal
 import time
 import traceback
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 
 from harness.core.errors import HarnessError, SpecError
@@ -57,7 +57,7 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
     if job.live:
         from harness.session.live_stream import LiveStream
 
-        with LiveStream(job.live) as stream:
+        with closing(LiveStream(job.live)) as stream:
             return session.run_case(job, stream.with_events(notify), start=stream.start_case)
     return session.run_case(job, notify)
 

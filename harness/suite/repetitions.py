@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import TracebackType
 
 from harness.core.errors import HarnessError
 from harness.recording.compare import first_difference
@@ -38,12 +37,7 @@ class Repetitions:
     def __enter__(self) -> Repetitions:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._folder.cleanup()
 
     def _run_of(self, job: RunRequest, index: int) -> RunRequest:

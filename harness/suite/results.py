@@ -51,13 +51,26 @@ class Results(Mapping[int, CaseResult]):
         elif isinstance(result, CaseResult):
             self._kept[index] = result
 
-    def drop(self, is_dropped: Callable[[int], bool]) -> None:
-        """Forget some results."""
-        for index in list(filter(is_dropped, self)):
+    def drop(self, is_dropped: Callable[[int], bool]) -> list[Place]:
+        """Forget some results.
+
+        Returns:
+            The places of those that stand in the stream.
+        """
+        dropped = list(filter(is_dropped, self))
+        places = [self._place(each) for each in dropped if self._is_stored(each)]
+        for index in dropped:
             self._outcomes[index] = MISSING
             self._kept.pop(index, None)
             self.starts.pop(index, None)
             self._count -= 1
+        return places
+
+    def _place(self, index: int) -> Place:
+        return Place(self._offsets[index], self._lengths[index])
+
+    def _is_stored(self, index: int) -> bool:
+        return self._stream is not None and index not in self._kept
 
     def __len__(self) -> int:
         return self._count
@@ -78,7 +91,7 @@ class Results(Mapping[int, CaseResult]):
         """The line of the stream that has a result; None where the result is in memory."""
         if self._stream is None or index in self._kept:
             return None
-        return self._stream.entry(Place(self._offsets[index], self._lengths[index]))
+        return self._stream.entry(self._place(index))
 
     def outcomes(self) -> Iterator[tuple[int, Outcome]]:
         """Index and outcome of each result."""

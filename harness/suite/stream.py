@@ -6,12 +6,12 @@ import hashlib
 import os
 import re
 import weakref
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 
 from pydantic_core import from_json
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 FORMAT = "armharness-stream/2"
 KNOWN_FORMATS = ("armharness-stream/1", FORMAT)
+LEFT_OUT = "armharness-left-out/1"
 FILE = "results.jsonl"
 MESHES = (".stl", ".obj", ".dae")
 INPUTS = (
@@ -122,6 +123,21 @@ class StreamEntry:
         return f"{compact_json(said, not_finite='strings')}\n".encode()
 
 
+@dataclass(frozen=True)
+class LeftOut:
+    """A line of a stream that names the results which the suite does not count.
+
+    They are samples that the sequential test did not need, and results of earlier runs whose case
+    is not in the suite. The last such line holds.
+
+    Attributes:
+        keys: The fingerprints of the results that do not count.
+    """
+
+    format: Literal["armharness-left-out/1"]
+    keys: Sequence[str]
+
+
 class Stream:
     """Appends results to a file, and reads them again, also those of an earlier run."""
 
@@ -138,6 +154,8 @@ class Stream:
         """
         self.path = Path(name) if folder is None else folder / name
         self._known: dict[str, tuple[Place, ResultHead]] = {}
+        self._unused = set[str]()
+        self._is_resumed = resume
         try:
             if folder is None:
                 file = TemporaryFile(buffering=0)  # noqa: SIM115 - closed with this object
@@ -158,6 +176,7 @@ class Stream:
             for place, line in lines_of(file):
                 if (head := head_of(line)) is not None:
                     self._known[head.key] = place, head.result
+        self._unused.update(self._known)
         if os.pread(self._file.fileno(), 1, self._end - 1) != b"\n":
             self.append(b"\n")
 
@@ -166,7 +185,11 @@ class Stream:
 
         An error is no result: it is tried again.
         """
-        found = self._known.get(fingerprint(job)) if self._known else None
+        if not self._known:
+            return None
+        key = fingerprint(job)
+        self._unused.discard(key)
+        found = self._known.get(key)
         return None if found is None or found[1].outcome == "error" else found
 
     def write(
@@ -188,6 +211,16 @@ class Stream:
             HarnessError: The disk is full.
         """
         return self.append(StreamEntry(fingerprint(job), result, values or {}, tuple(tags)).line)
+
+    def leave_out(self, places: Iterable[Place]) -> None:
+        """Note the results that do not count: those at some places, and unknown ones.
+
+        Raises:
+            HarnessError: The disk is full.
+        """
+        keys = [*(self.entry(each).key for each in places), *sorted(self._unused)]
+        if keys or self._is_resumed:
+            self.append(f"{compact_json(LeftOut(LEFT_OUT, keys))}\n".encode())
 
     def append(self, line: bytes) -> Place:
         """Add a line, and return its place.
@@ -234,6 +267,15 @@ def lines_of(file: BinaryIO) -> Iterator[tuple[Place, bytes]]:
         if line.endswith(b"\n"):
             yield Place(offset, len(line)), line
         offset += len(line)
+
+
+def left_out_of(line: bytes) -> Sequence[str] | None:
+    """The results that a line of a stream leaves out; None where it is another line."""
+    try:
+        found: LeftOut = validator(LeftOut).validate_json(line)
+    except ValueError:
+        return None
+    return found.keys
 
 
 def entry_of(line: bytes) -> StreamEntry | None:

@@ -131,9 +131,14 @@ class SuiteRun:
         self.results = Results(len(self.jobs), stream)
 
     def count(self) -> None:
-        """Leave out the results of samples after an early stop."""
-        if self._is_sampled:
-            self.results.drop(self._sampling.is_needless)
+        """Leave out the results of samples after an early stop, also for readers of the stream.
+
+        Raises:
+            HarnessError: The stream cannot be written.
+        """
+        dropped = self.results.drop(self._sampling.is_needless) if self._is_sampled else []
+        if self._stream is not None:
+            self._stream.leave_out(dropped)
 
     @property
     def is_part(self) -> bool:

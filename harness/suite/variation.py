@@ -17,7 +17,7 @@ from statistics import NormalDist
 from typing import Any, cast
 
 from harness.core.lazy import LazySequence
-from harness.core.quantity import share_of, split_quantity
+from harness.core.quantity import common_unit, share_of, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, Parametrize, count_of
 
 DEFAULT_SAMPLES = 20
@@ -297,10 +297,11 @@ def value_at(distribution: Mapping[str, Any], share: float) -> Any:
         values = list(distribution["choice"])
         return values[min(int(share * len(values)), len(values) - 1)]
     if "uniform" in distribution:
-        (low, unit), (high, _) = (split_quantity(each) for each in distribution["uniform"])
-        return _with_unit(low + (high - low) * share, unit)
+        low, high = (split_quantity(each)[0] for each in distribution["uniform"])
+        return _with_unit(low + (high - low) * share, common_unit(*distribution["uniform"]))
     normal = distribution["normal"]
-    (mean, unit), (std, _) = split_quantity(normal["mean"]), split_quantity(normal["std"])
+    mean, std = split_quantity(normal["mean"])[0], split_quantity(normal["std"])[0]
+    unit = common_unit(normal["mean"], normal["std"])
     curve = NormalDist(mean, std)
     low, high = (normal.get(end) for end in ("low", "high"))
     least = 0.0 if low is None else curve.cdf(split_quantity(low)[0])

@@ -155,6 +155,22 @@ def twice_as_fast(recording, _run):
     return recording
 
 
+def second_arm(recording, _run):
+    """The arm stood still; another one, with joints of the same names, has its own topic."""
+    for message in list(recording.of("/joint_states")):
+        time, state = message.stamp - GAZEBO_STARTED, message.content
+        recording.add("/arm_b/joint_states", "sensor_msgs/msg/JointState", time, dict(state))
+        still = {key: [0.0] * len(state[key]) for key in ("position", "velocity") if key in state}
+        message.content = {**state, **still}
+    return recording
+
+
+def any_arm_arrived(recording):
+    """Some message of joint states is at the goal, whatever its topic."""
+    states = (m.content for m in recording.messages if "joint1" in m.content.get("name", ()))
+    return any(abs(s["position"][s["name"].index("joint1")] - 0.6) < 0.01 for s in states)
+
+
 def stuck_positions(recording, _run):
     """A driver repeats positions from 1.4 s on, and goes on reporting velocities."""
     last = []
@@ -258,6 +274,15 @@ def in_range(recording):
 
 
 RECORDINGS = (
+    RecordingScene(
+        "joint states of another arm",
+        "the arm stood still; another arm's topic, in another namespace, has joints of these names",
+        second_arm,
+        "some recorded joint states are at the goal",
+        any_arm_arrived,
+        {ARRIVED: "failed"},
+        (ALWAYS_LOW, BOX_STANDS),
+    ),
     RecordingScene(
         "hole of 0.6 s in the joint states", "the messages of the swing are missing",
         without("/joint_states", 1.1, 1.7), IN_RANGE, in_range,

@@ -10,6 +10,7 @@ from harness.assertions.excused_force import load_of
 from harness.assertions.hold import HOLD_TIME, why_not_between
 from harness.assertions.temporal import eventually
 from harness.assertions.window import window_of
+from harness.core.geometry import Box
 from harness.core.spatial import SE3
 from harness.expectations.always import Always
 from harness.expectations.clearance import Clearance
@@ -18,6 +19,7 @@ from harness.expectations.displaced import Displaced
 from harness.expectations.duration import DurationCheck
 from harness.expectations.eventually import Eventually
 from harness.expectations.grasped import Grasped
+from harness.expectations.in_ import In
 from harness.expectations.in_contact import InContact
 from harness.expectations.lifted import Lifted
 from harness.expectations.named_target import NamedTarget
@@ -143,7 +145,7 @@ def hitting():
     return make_run(objects=(TABLE, BOX, *WALLS), contact_forces=forces)
 
 
-def test_of_six_collisions_the_first_two_are_told_apart_and_four_are_measured():
+def test_of_six_collisions_the_first_two_are_described_and_four_are_measured():
     answer = verdict(hitting(), Never(predicate=Collision()))
     assert (answer.status, answer.margin, answer.time) == ("failed", -6.0, pytest.approx(0.1))
     assert answer.reason == (
@@ -182,6 +184,26 @@ def test_overlaps_at_the_start_are_measured_by_their_depths(count):
     assert answer.reason.count("overlap by") == min(count, 2)
     always = verdict(overlapping(count), Always(predicate=Collision()))
     assert (always.status, always.time) == ("failed", pytest.approx(0.6))
+
+
+@pytest.mark.parametrize("newton", [1e-3, 0.5, 1.0])
+def test_an_overlap_counts_however_softly_the_physics_pushes_it_apart(newton):
+    run = overlapping(1)
+    soft = {pair: rows * 1e-3 * newton for pair, rows in run.signals.contact_forces.items()}
+    answer = verdict(changed(run, contact_forces=soft), Never(predicate=Collision()))
+    assert (answer.status, answer.unit) == ("failed", "m")
+
+
+def test_contacts_that_are_not_known_are_no_collisions_and_exclude_none():
+    forces = force(N)
+    forces[100:120] = np.nan
+    run = make_run(contact_forces={("arm_link", "box"): forces})
+    spec = Collision(between=("arm_link", "box"))
+    assert verdict(run, Never(predicate=spec)).status == "not observable"
+    assert verdict(run, Never(predicate=spec), "").observed is None
+    before = replace(run, steps=(step("before", 0, 90), step("around", 90, 150)))
+    assert verdict(before, Never(predicate=spec), "before").status == "passed"
+    assert verdict(before, Always(predicate=spec), "around").status == "failed"
 
 
 def test_what_overlapped_without_a_force_at_the_start_does_not_collide_there():
@@ -385,3 +407,55 @@ def test_a_box_is_displaced_from_where_it_last_appeared():
     twice = replace(BOX, present=((0.0, 0.49), (0.6, 1e9)))
     run = make_run(objects=(TABLE, twice), object_poses={"box": poses})
     assert verdict(run, Displaced(object="box")).margin == pytest.approx(-0.01)
+
+
+@pytest.mark.parametrize(("put", "begin"), [("", "the run began"), ("put", "a step put it there")])
+@pytest.mark.parametrize("by", [0.0, 0.0049, 0.0051])
+def test_what_a_step_put_somewhere_stands_where_it_was_put(put, begin, by):
+    """A step moves the box by 30 cm; 0.5 s later it moves by a little on its own."""
+    poses = at(N, (0, 0, 0.02))
+    steps = ()
+    if put:
+        poses[50:, 0] = 0.3
+        steps = (step("put", 49, 51, "move_object"), step("wait", 51, N))
+    poses[100:, 1] = by
+    carried = {("Table", "box"): force(N, (0, N))}
+    signals = {"contact_forces": carried, "support_forces": carried}
+    run = make_run(object_poses={"box": poses}, steps=steps, **signals)
+    warnings = verdict(run, Placed(object="box")).warnings
+    assert [each.message.endswith(f"when {begin}") for each in warnings] == [True] * (by < 0.005)
+    gripped = {**carried, ("palm", "box"): force(N, (10, 20))}
+    handled = changed(run, contact_forces=gripped)
+    assert bool(verdict(handled, Placed(object="box")).warnings) == bool(put and by < 0.005)
+
+
+@pytest.mark.parametrize(("put", "since"), [(0, "the run began"), (60, "a step put it there")])
+def test_what_a_step_put_into_a_container_is_in_it_since_then(put, since):
+    box = thing("bin", Box((0.1, 0.1, 0.1)), static=True)
+    poses = at(N, (0, 0, 0.02))
+    poses[:put, 0] = 0.3
+    steps = (step("put", max(put - 1, 0), put + 1, "move_object"),)
+    run = make_run(
+        objects=(TABLE, BOX, box), object_poses={"box": poses, "bin": at(N)}, steps=steps
+    )
+    (warning,) = verdict(run, In(object="box", container="bin")).warnings
+    assert warning.message == f"box was in bin since {since}"
+    later = poses.copy()
+    later[:80, 0] = 0.3
+    moved = changed(run, object_poses={**run.signals.object_poses, "box": later})
+    assert verdict(moved, In(object="box", container="bin")).warnings == ()
+
+
+@pytest.mark.parametrize("hole", [slice(50, 60), slice(20, 21)])
+def test_an_until_whose_first_part_is_not_known_on_the_way_is_not_observable(hole):
+    poses = at(N, (0, 0, 0.02))
+    poses[hole] = np.nan
+    contact = {("palm", "box"): force(N, (150, N))}
+    run = make_run(object_poses={"box": poses}, contact_forces=contact)
+    spec = Until(predicate=Upright(object="box"), until=InContact(between=("palm", "Table")))
+    assert verdict(run, spec).status == "failed", "it never comes, whatever is not known"
+    spec = Until(predicate=Upright(object="box"), until=InContact(between=("palm", "box")))
+    answer = verdict(run, spec)
+    count = hole.stop - hole.start
+    assert answer.status == "not observable"
+    assert answer.reason == f"{count} samples are not known, and would decide it"

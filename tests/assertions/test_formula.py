@@ -17,6 +17,7 @@ from harness.language.formula.text import FormulaError
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import AT_ONCE, Evidence, Free
 from tests.assertions.synthetic_run import at, force, heights, lift_run, make_run, verdict
+from tests.engine.front_door import problems
 
 EPS = 1e-9
 
@@ -155,6 +156,63 @@ def test_an_infinite_number_is_not_known():
     run = run_of(np.array([np.inf, 1.0]), np.zeros(2), np.arange(2) * 0.1)
     answer = verdict(run, Formula(formula="always x(tcp) > 0"))
     assert answer.status == "not observable"
+
+
+FAR = {("robot", "box"): np.full(200, 0.15), ("robot", "Table"): np.full(200, 0.15)}
+NEAR = {("robot", "box"): np.full(200, 0.149), ("robot", "Table"): np.full(200, 0.15)}
+
+
+@pytest.mark.parametrize(
+    ("text", "near", "far"),
+    [
+        ("distance(robot, box) > 0.1", "passed", "passed"),
+        ("distance(robot, box) < 0.1", "failed", "failed"),
+        ("distance(robot, box) < 0.2", "passed", "not observable"),
+        ("distance(robot, box) > 0.2", "failed", "not observable"),
+        ("0.2 < distance(robot, box)", "failed", "not observable"),
+        ("distance(robot, box) <= 0.15", "passed", "not observable"),
+        ("distance(robot, box) >= 0.15", "failed", "passed"),
+        ("not distance(robot, box) < 0.2", "failed", "not observable"),
+        ("always[0, 1] distance(robot, box) > 0.2", "failed", "not observable"),
+        ("distance(robot, box) * 2 < 0.4", "passed", "not observable"),
+        ("1 / distance(robot, box) > 5", "passed", "not observable"),
+        ("1 / distance(robot, box) < 8", "passed", "passed"),
+        ("distance(robot, box) < distance(robot, Table)", "passed", "not observable"),
+        ("distance(robot, box) - distance(robot, Table) < 1", "passed", "not observable"),
+        ("min(distance(robot, box), 0.1) < 0.12", "passed", "passed"),
+        ("always[0, 5] distance(robot, box) > 0.1", "not reached", "not reached"),
+        ("distance(robot, box) < 0.2 or time >= 0", "passed", "passed"),
+    ],
+)
+def test_a_distance_at_the_cutoff_is_at_least_as_much(text, near, far):
+    for clearances, status in ((NEAR, near), (FAR, far)):
+        run = make_run(clearances=clearances, clearance_cutoff=0.15)
+        answer = verdict(run, Formula(formula=text))
+        assert answer.status == status, text
+        if status == "not observable":
+            assert answer.reason == "distances were recorded up to 150 mm only"
+
+
+@pytest.mark.parametrize(
+    ("text", "is_refused"),
+    [
+        ("position(joint1) < 9.4", False),
+        ("position(joint1) < 9.5", True),
+        ("-9.5 < command(joint1)", True),
+        ("abs(position(joint1)) < 90", False),
+        ("velocity(joint1) < 14.3", False),
+        ("velocity(joint1) > -14.5", True),
+        ("effort(joint1) < 1e9", True),
+        ("time < 90 and z(tcp) < 90 and position(joint1) < position(joint2)", False),
+        ("always (time > 1 implies eventually[0, 1] position(joint1) > 90)", True),
+    ],
+)
+def test_a_number_far_beyond_a_joints_limits_is_in_another_unit(tmp_path, text, is_refused):
+    """Joint 1 turns by pi either way, and by 4.8 rad/s; the numbers are three times as large."""
+    found = problems(
+        tmp_path, "- wait: 1 s", robot="open_manipulator_x", rest=f"expect: [formula: '{text}']"
+    )
+    assert len(found) == is_refused, found
 
 
 def _said(text, x, y, times):

@@ -60,3 +60,16 @@ def test_only_the_largest_blob_counts_and_corners_connect():
     pixels[6, 6, 2] = 255
     file = cv2.imencode(".png", pixels)[1].tobytes()
     assert blob_pixels(file, (340.0, 18.0), 0.4, 0.15) == 8
+
+
+@pytest.mark.parametrize(
+    ("hues", "is_seen"),
+    [((120, 130), True), ((110, 120), True), ((121, 130), False), ((110, 119), False)],
+)
+def test_the_ends_of_a_range_of_hues_belong_to_it(hues, is_seen):
+    """Pure green has a hue of 120 degrees."""
+    picture = np.zeros((4, 5, 3), np.uint8)
+    picture[:, :, 1] = 255
+    file = cv2.imencode(".png", picture)[1].tobytes()
+    assert blob_pixels(file, hues, 0.5, 0.5) == 20 * is_seen
+    assert blob_pixels(file, hues[::-1], 0.5, 0.5) == 20 * (not is_seen or 120 in hues)

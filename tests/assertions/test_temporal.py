@@ -1,5 +1,7 @@
 """Temporal words against their definitions, written as loops."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -21,6 +23,7 @@ from harness.assertions.temporal import (
     trailing_max,
     until,
     with_future,
+    without_gaps,
 )
 
 EPS = 1e-9
@@ -232,3 +235,25 @@ def test_an_until_in_which_both_decide_is_decided_by_the_second():
     assert (decision, is_second) == (Decision(0.0, 0, holds=True), True), "nothing is before it"
     decision, _ = until(np.ones(3), np.array([-1, -0.5, 3.0]), times, within=0.1)
     assert (decision.value, decision.index) == (-0.5, 1)
+
+
+@settings(deadline=None, derandomize=True)
+@given(signals(), st.integers(0, 8).map(lambda ticks: ticks * 0.01))
+def test_gaps_of_a_span_are_closed_with_the_smaller_value_around_them(signal, span):
+    """At each level what is reached lasts until it was not for longer than the span."""
+    values = np.abs(signal[0])
+    times = np.arange(len(values)) * 0.01
+    closed = without_gaps(values, times, span)
+    for level in range(1, 4):
+        expected = values >= level
+        ends = np.flatnonzero(expected)
+        for before, after in pairwise(ends.tolist()):
+            if all(times[j] <= times[before] + span + EPS for j in range(before, after)):
+                expected[before:after] = True
+        assert (closed >= level).tolist() == expected.tolist()
+
+
+def test_what_is_not_known_is_no_gap_and_closes_none():
+    values = np.array([1.0, 0.0, np.nan, 0.0, 2.0, 0.0])
+    closed = without_gaps(values, np.arange(6) * 0.01, 0.03)
+    assert closed == pytest.approx([1.0, 1.0, np.nan, 1.0, 2.0, 0.0], nan_ok=True)

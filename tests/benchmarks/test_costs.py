@@ -84,9 +84,9 @@ def test_a_long_run(tmp_path, print_growth):
 def test_many_expectations(tmp_path, print_growth):
     seconds, without = {}, run(tmp_path, f"{HEAD}steps:\n{MOVES}")
     for count in EXPECTATIONS:
+        goal = "joints: {positions: {joint1: 0.25}, tolerance: "
         expected = "".join(
-            f"  - always: {{joints: {{positions: {{joint1: 0.25}}, tolerance: {number + 1}.0}}}}\n"
-            for number in range(count)
+            f"  - always: {{{goal}{1 + number / 1000:.3f}}}}}\n" for number in range(count)
         )
         seconds[count] = run(tmp_path, f"{HEAD}steps:\n{MOVES}expect:\n{expected}") - without
     print_growth("expectations of a run", "expectation", seconds)

@@ -41,6 +41,23 @@ def test_parts_have_the_colours_of_their_materials(tmp_path):
     assert corners == {(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.0, 0.2)}
 
 
+def test_a_large_file_is_read_once_as_long_as_it_and_its_colours_stay_the_same(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr("harness.cameras.meshes.LARGE", 0)
+    (tmp_path / "two.obj").write_text(CUBE_SIDES)
+    for materials, count in ((MATERIALS, 1), (MATERIALS, 1), (MATERIALS.replace("0.2", "0.3"), 2)):
+        (tmp_path / "two.mtl").write_text(materials)
+        parts = load_obj(Mesh(tmp_path / "two.obj"))
+        assert len(list((tmp_path / "cache").rglob("*.npz"))) == count
+    monkeypatch.setattr("harness.cameras.meshes.LARGE", 1e9)
+    for part, other in zip(parts, load_obj(Mesh(tmp_path / "two.obj")), strict=True):
+        assert part.rgba == other.rgba
+        np.testing.assert_array_equal(part.vertices, other.vertices)
+        np.testing.assert_array_equal(part.faces, other.faces)
+
+
 def test_polygons_become_fans(tmp_path):
     (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
     (part,) = load_obj(Mesh(tmp_path / "quad.obj"))

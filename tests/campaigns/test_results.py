@@ -10,7 +10,7 @@ from harness.campaigns.comparison import detectable_drop
 from harness.cli.main import main
 from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
-from harness.suite.stream import StreamEntry
+from harness.suite.stream import StreamEntry, file_hash
 from tests.suite.ball import ball
 
 SCENARIO = ball(8, rest="tags: [ball]\n", farthest="60 cm")
@@ -61,6 +61,52 @@ def test_a_real_campaign_is_queried_by_what_varied_in_it(tmp_path, capsys):
     assert f"8 runs: {8 - failed['selected']} passed" in capsys.readouterr().out.replace(
         f"{failed['selected']} failed, ", ""
     )
+
+
+@pytest.fixture
+def reports(tmp_path, capsys, monkeypatch):
+    """Runs samples of a ball into one folder; the counts of the suite and of the query."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(text, *words):
+        (tmp_path / "ball.scenario.yaml").write_text(text)
+        file_hash.cache_clear()  # a command reads a file once
+        main(["run", "ball.scenario.yaml", "--report-dir", "reports", "--no-page", *words])
+        cases = json.loads((tmp_path / "reports/results.json").read_text())["cases"]
+        capsys.readouterr()
+        return len(cases), query(capsys, "reports", "--limit", "99")[1]
+
+    return run
+
+
+def test_samples_that_the_sequential_test_did_not_need_are_no_results(tmp_path, reports, capsys):
+    """They are in the journal, as they were under way when the test decided."""
+    early = ball(30, rest="expect_rate: 30 %\n", farthest="0 cm")
+    counted, found = reports(early, "-j", "3")
+    lines = (tmp_path / "reports/results.jsonl").read_bytes().count(b'"result"')
+    assert found["selected"] == len(found["runs"]) == counted < 30
+    assert found["left_out"] == lines - counted
+    main(["results", "reports", "--csv", "runs.csv"])
+    with (tmp_path / "runs.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == counted
+    assert f"{counted} runs written" in capsys.readouterr().out
+
+
+def test_results_of_cases_that_a_resumed_suite_no_longer_has_are_left_out(reports, capsys):
+    text = ball(6, rest="")
+    assert reports(text)[1]["left_out"] == 0
+    counted, found = reports(text, "--samples", "4", "--resume")
+    assert (counted, found["selected"], found["left_out"]) == (4, 4, 2)
+    main(["results", "reports"])
+    assert "2 more left out, as the suite does" in capsys.readouterr().out
+    counted, found = reports(text, "--resume")
+    assert (counted, found["selected"], found["left_out"]) == (6, 6, 0)
+
+
+def test_results_of_an_older_version_of_a_file_are_left_out(reports):
+    reports(ball(4, rest=""))
+    counted, found = reports(ball(4, rest="tags: [changed]\n"), "--resume")
+    assert (counted, found["selected"], found["left_out"]) == (4, 4, 4)
 
 
 def test_conditions_understand_units_words_and_margins(tmp_path, capsys):

@@ -250,7 +250,7 @@ def test_a_place_that_takes_no_report_is_refused_before_anything_runs(
 ):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_text("")
-    (tmp_path / "a.scenario.yaml").write_text("this is no scenario, and nobody comes to read it")
+    (tmp_path / "a.scenario.yaml").write_text("this is no scenario")
     assert main([command, "a.scenario.yaml", "--report-dir", place]) == 2
     said = capsys.readouterr()
     assert f"--report-dir: nothing can be written into '{place}'" in said.err

@@ -33,7 +33,7 @@ class Mutant:
     def difference(self, original: str) -> tuple[str, str]:
         """The line as it is and as it is mutated, without leading spaces."""
         changed = difflib.ndiff(original.splitlines(), self.source.splitlines())
-        lines = [line for line in changed if line[:2] in ("- ", "+ ")]
+        lines = [line for line in changed if line[:2] in ("- ", "+ ") and line[2:].strip()]
         before = next((line[2:].strip() for line in lines if line[0] == "-"), "")
         after = next((line[2:].strip() for line in lines if line[0] == "+"), "")
         return before, after
@@ -59,7 +59,7 @@ def draw(root: Path, count: int, seed: int) -> list[Mutant]:
 def places_of(module: Path) -> list[tuple[Path, int, tuple]]:
     """The places of a module where a mutation is possible, with the mutations possible there.
 
-    Annotations and docstrings are left out: nothing executes them.
+    Docstrings and what `idle_spans` lists are left out.
     """
     from cosmic_ray import plugins
     from cosmic_ray.ast import ast_nodes, get_ast_from_path
@@ -79,13 +79,19 @@ def places_of(module: Path) -> list[tuple[Path, int, tuple]]:
 
 
 def idle_spans(source: str) -> list[tuple[tuple[int, int], tuple[int, int]]]:
-    """Spans of annotations, (line, column) of their first and last character."""
+    """Spans that decide nothing, (line, column) of their first and last character.
+
+    Nothing executes annotations. `strict`, `frozen` and `eq` forbid what no caller does: to join
+    rows of different lengths, to change a record, to compare two.
+    """
     nodes: list[ast.AST | None] = []
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.AnnAssign | ast.arg):
             nodes.append(node.annotation)
         elif isinstance(node, ast.FunctionDef):
             nodes.append(node.returns)
+        elif isinstance(node, ast.keyword) and node.arg in ("strict", "frozen", "eq"):
+            nodes.append(node.value)
         elif isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
             nodes.append(node)
     return [

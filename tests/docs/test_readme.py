@@ -61,6 +61,24 @@ def test_the_command_table_is_what_the_program_offers(capsys):
     assert re.findall(r"(?m)^\| `harness ([\w-]+)", COMMANDS) == offered
 
 
+def test_the_command_table_lists_every_kind_of_list():
+    from harness.cli.listing import LISTINGS
+
+    row = re.search(r"(?m)^\| `harness list KIND` \|(.*)$", COMMANDS)[1]
+    assert re.findall(r"`([\w-]+)`", row) == [*LISTINGS]
+
+
+def test_the_guide_names_every_command_that_loads_plug_ins(capsys):
+    guide = (ROOT / "docs/guides/python.md").read_text(encoding="utf-8")
+    named = re.search(r"--plugin remarks.py` \(in (.*?);", guide, re.S)[1]
+    loading = []
+    for command in re.findall(r"(?m)^\| `harness ([\w-]+)", COMMANDS):
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        loading += [command] * ("--plugin" in capsys.readouterr().out)
+    assert re.findall(r"`([\w-]+)`", named) == loading
+
+
 def test_options_named_in_the_command_table_exist(capsys):
     for command, text in re.findall(r"(?m)^\| `harness ([\w-]+).*?\| (.*) \|$", COMMANDS):
         with pytest.raises(SystemExit):

@@ -1,4 +1,4 @@
-"""What `explain` prints of a small program, and which predicted failures are nobody's intention."""
+"""What `explain` prints of a small program, and which predicted failures no step expects."""
 
 import pytest
 

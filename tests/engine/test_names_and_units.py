@@ -128,3 +128,19 @@ def test_a_group_that_there_is_not_is_reported_on_every_step(tmp_path):
     for step in ("wait: 0.1 s", "settle: {}", "move_to: home"):
         found = messages(tmp_path, f"- {{{step}, group: ghost}}")
         assert any("planning group" in each and "ghost" in each for each in found), (step, found)
+
+
+WORDS = ("displaced", "grasped", "in", "lifted", "on", "placed", "released", "static", "upright")
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_no_predicate_of_the_physics_is_judged_of_what_only_the_planner_knows(tmp_path, word):
+    rest = f"""
+    objects: [{{name: ghost, in: planning, sphere: {{radius: 1 cm}}, pose: {{xyz: [1, 1, 1]}}}}]
+    expect: [{word}: {{object: ghost{MORE.get(word, "")}}}]
+    """
+    [(_, message)] = problems(tmp_path, "- wait: 1 s", robot="open_manipulator_x", rest=rest)
+    assert "ghost" in message
+
+
+MORE = {"in": ", container: ground_plane", "on": ", support: ground_plane"}

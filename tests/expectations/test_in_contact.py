@@ -1,12 +1,14 @@
 """in_contact: two bodies touch."""
 
+import numpy as np
 import pytest
 
+from harness.expectations.collision import Collision
 from harness.expectations.in_contact import InContact
 from harness.expectations.never import Never
 from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import DRIFT, Evidence, Free, Three
-from tests.assertions.synthetic_run import force, lift_run, make_run, verdict
+from tests.assertions.synthetic_run import changed, force, lift_run, make_run, verdict
 
 
 def test_contact_counts_from_the_required_force_on():
@@ -20,6 +22,25 @@ def test_contact_counts_from_the_required_force_on():
     assert verdict(run, Never(predicate=InContact(between=("box", "any")))).status == "failed"
     assert verdict(run, InContact(between=("box", "Table"))).status == "failed"
     assert verdict(run, InContact(between=("box", "ghost"))).status == "not observable"
+
+
+@pytest.mark.parametrize(
+    ("gap", "status"),
+    [(0, "failed"), (5, "failed"), (10, "failed"), (11, "passed"), (50, "passed")],
+)
+@pytest.mark.parametrize("word", ["in_contact", "collision"])
+def test_a_contact_is_broken_by_gaps_of_more_than_ten_milliseconds(word, gap, status):
+    """200 samples of 1 ms; the arm touches the box for 20 ms after and before each gap."""
+    touching = np.arange(200) % (20 + gap) < 20
+    run = make_run(contact_forces={("arm_link", "box"): 3.0 * touching})
+    run = changed(run, times=np.arange(200) * 0.001)
+    spec = {"in_contact": InContact, "collision": Collision}[word](between=("robot", "box"))
+    assert verdict(run, Never(predicate=spec, **{"for": 0.06})).status == status
+    assert verdict(run, Never(predicate=spec, **{"for": 0.019})).status == "failed"
+    once = changed(run, contact_forces={("arm_link", "box"): force(200, (100, 120), value=3.0)})
+    assert verdict(once, Never(predicate=spec, **{"for": 0.02})).status == "passed"
+    at_end = changed(run, contact_forces={("arm_link", "box"): force(200, (185, 195), value=3.0)})
+    assert verdict(at_end, Never(predicate=spec, **{"for": 0.012})).status == "passed"
 
 
 EVIDENCE = Evidence(

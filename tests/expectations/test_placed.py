@@ -20,6 +20,7 @@ from tests.assertions.synthetic_run import (
     heights,
     lift_run,
     make_run,
+    step,
     thing,
     verdict,
 )
@@ -181,3 +182,13 @@ EVIDENCE = Evidence(
         ),
     ),
 )
+
+
+def test_a_step_that_failed_at_once_is_the_reason_why_nothing_is_placed():
+    failed = step("place", 0, 3, status="failed", error_code="INVALID_OBJECT_NAME")
+    run = make_run(3, ended_early="a step failed", steps=(failed,))
+    answer = verdict(run, Placed(object="box"))
+    assert (answer.status, answer.reason) == (
+        "not reached",
+        "step 'place' failed before then: INVALID_OBJECT_NAME",
+    )

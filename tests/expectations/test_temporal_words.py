@@ -225,6 +225,26 @@ def test_a_formula_says_how_often_its_premise_held(formula, names, premises):
     assert answer.observed.samples == 200
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("puts", "the step takes no time: it has one sample only"),
+        ("", "the run takes no time: it has one sample only"),
+        ("edge", "what it is about was there at 1 of 101 samples"),
+    ],
+)
+def test_a_window_of_one_sample_is_a_step_that_takes_no_time(name, said):
+    late = replace(thing("late"), present=((1.0, 1e9),))
+    run = make_run(
+        1 if not name else 200, objects=(TABLE, BOX, late),
+        object_poses={"late": at(1 if not name else 200, (1, 1, 1))},
+        steps=(step("puts", 5, 6), step("edge", 0, 101))[: 2 if name else 0],
+    )  # fmt: skip
+    other = "late" if name == "edge" else "box"
+    [warning] = verdict(run, Never(predicate=InContact(between=(other, "robot"))), name).warnings
+    assert warning.message == said
+
+
 def test_contact_with_what_is_not_in_the_physics_is_not_observable():
     ghost = thing("ghost", physics=False)
     late = replace(thing("late"), present=((1.0, 1e9),))
@@ -256,6 +276,7 @@ def test_a_body_that_moves_by_more_than_both_widths_may_have_passed_through(spee
     run = make_run(object_poses={"box": poses}, objects=(TABLE, BOX, post))
     pair = InContact(between=("box", "post"))
     assert warned(run, Never(predicate=pair)) == names
-    assert warned(run, Never(predicate=Collision(between=("box", "post")))) == names
+    hand = Never(predicate=Collision(between=("palm", "box")))
+    assert warned(run, hand) == ["contact may be missed"], "a link has no least width"
     touch = changed(run, contact_forces={("box", "post"): force(200, (60, 90))})
     assert warned(touch, pair) == [], "they touched: nothing was missed"

@@ -71,10 +71,14 @@ def test_answers_are_none_one_or_many():
     assert read_answers(np.zeros((0, 4)), 4).kind == "refused"
     assert len(read_answers((1, 2, 3, 4), 4).answers) == 1
     assert len(read_answers([[1, 2, 3, 4]] * 3, 4).answers) == 3
-    assert read_answers([1, 2, 3], 4).text == "returned 3 numbers"
-    assert read_answers(np.zeros((4, 3)), 4).text == "returned 4 x 3 numbers"
-    assert read_answers(7.0, 4).text == "returned one numbers"
-    assert read_answers({"joint1": 1.0}, 4).text == "returned dict {'joint1': 1.0}"
+    for returned, said in (
+        ([1, 2, 3], "3 numbers"),
+        (np.zeros((4, 3)), "4 x 3 numbers"),
+        (7.0, "one numbers"),
+        ({"joint1": 1.0}, "dict {'joint1': 1.0}"),
+    ):
+        text = read_answers(returned, 4).text
+        assert text.startswith(f"returned {said}; it must return 4 joint positions")
     assert read_answers([[1, 2, 3, 4], [1]], 4).kind == "unreadable"
 
 

@@ -4,6 +4,7 @@
 
 import itertools
 import json
+import re
 
 import numpy as np
 import pytest
@@ -168,6 +169,31 @@ def test_pictures_and_numbers_go_into_the_report_folder(tmp_path):
     facts = json.loads((tmp_path / "ik_test.json").read_text())
     assert facts["outcome"] == "failed"
     assert str(tmp_path / pictures[0]) in "\n".join(report_lines(report, tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("function", "unobserved"),
+    [
+        (lambda x, y, z, pitch: 1 / 0, {"reaches", "answers", "limits", "continuity"}),
+        (lambda x, y, z, pitch: None, {"reaches", "limits", "continuity"}),
+    ],
+)
+def test_a_property_of_answers_is_not_kept_where_nothing_is_answered(function, unobserved):
+    report = run_ik_test(IkTest(function, OM, examples=10))
+    lines = "\n".join(report_lines(report))
+    for each in unobserved - {"answers"}:
+        assert re.search(rf"(?m)^  {each} +NOT OBSERVED", lines)
+    kept = {each.name for each in report.properties if each.observed and not each.flawed}
+    assert not kept & unobserved
+
+
+def test_what_is_refused_half_of_the_time_is_reported_as_observed_in_the_other_half():
+    report = run_ik_test(
+        IkTest(lambda x, y, z, pitch: correct(x, y, z, pitch) if y > 0 else None, OM, examples=40)
+    )
+    [limits] = [each for each in report.properties if each.name == "limits"]
+    assert 0 < limits.observed < limits.tried == 40
+    assert f"ok, {limits.observed} of 40 observed" in "\n".join(report_lines(report))
 
 
 def test_what_cannot_be_tested_is_refused():

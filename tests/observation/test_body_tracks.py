@@ -213,3 +213,23 @@ def test_the_largest_travel_is_that_of_the_pairs_that_may_come_near():
     assert largest_travel(found, 0.2, 120)[1:] == pytest.approx(expected)
     still = BodyTrack(np.tile(np.eye(3), (2, 1, 1)), np.ones((2, 3)))
     assert pairs_between((), tracked_shapes("b", SHAPES), still) == []
+
+
+@pytest.mark.parametrize("length", [40, 1200])
+def test_a_body_that_comes_near_while_the_nearest_one_stands_still_is_found(length):
+    """One ball stands 10 cm away; another passes at 5 cm, first or last of the two."""
+    ball = tracked_shapes("ball", (Shape(Sphere(0.01)),))
+    still, passing = np.zeros((length, 7)), np.zeros((length, 7))
+    still[:, 3] = passing[:, 3] = 1.0
+    still[:, 0], passing[:, 1] = 0.12, 0.07
+    passing[:, 0] = np.linspace(-1.0, 1.0, length)
+    found = [
+        pairs_between(ball, ball, track_of_poses(poses), np.inf)[0] for poses in (still, passing)
+    ]
+    expected = np.minimum(0.1, np.linalg.norm(passing[:, :3], axis=1) - 0.02)
+    for order in (found, found[::-1]):
+        distances, which = smallest_distances(order, 1.0, length)
+        assert distances == pytest.approx(expected, abs=2e-6)
+        near = distances < 0.1 - 1e-5
+        assert {order[index] is found[1] for index in which[near].tolist()} == {True}
+        assert near.any()

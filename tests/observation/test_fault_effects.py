@@ -5,6 +5,7 @@ import pytest
 
 from harness.observation.fault_effects import COMMANDED, with_receipts
 from harness.recording.faults import InjectedFault, faults_of
+from tests.approved import SAID, finding_text
 from tests.assertions.synthetic_run import BOX, DT, ROBOT, TABLE, at, force, make_run, step
 
 N = 100
@@ -14,6 +15,7 @@ def receipts(faults, run, more=()):
     """The faults of the first step with their receipts, and the findings."""
     first = step("first", 10, 20, "inject", result={"faults": [each.plain() for each in faults]})
     steps, findings = with_receipts((first, *more), run.signals, ROBOT, (TABLE, BOX))
+    SAID.extend(map(finding_text, findings))
     return faults_of(steps[0]), findings
 
 

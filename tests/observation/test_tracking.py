@@ -7,6 +7,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.observation.tracking import as_commanded, held_finding, plan_against_physics
+from tests.approved import SAID, finding_text
 from tests.assertions.synthetic_run import (
     BOX,
     TABLE,
@@ -28,7 +29,9 @@ def none_nearer(_):
 
 
 def findings(run, kind, distances=none_nearer):
-    return [each for each in plan_against_physics(run, run.signals, distances) if each.kind == kind]
+    every = plan_against_physics(run, run.signals, distances)
+    SAID.extend(map(finding_text, every))
+    return [each for each in every if each.kind == kind]
 
 
 def test_the_joint_furthest_from_its_command_is_named_and_fingers_are_not():

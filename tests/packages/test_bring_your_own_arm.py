@@ -23,6 +23,7 @@ pytestmark = pytest.mark.packages
 PAGE = (ROOT / "docs/guides/bring_your_own_arm.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"(?ms)^```(sh|text|yaml)\n(.*?)^```$", PAGE)
 TIME = re.compile(r"  t=\d.*")
+PROGRESS = re.compile(r"\r\x1b\[2K(  [^\r\n]*(?=\r))?")
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +58,7 @@ def _run(line):
         code = main(arguments)
     said = stream.buffer.getvalue().decode()
     assert code == 0, f"{line}\n{said}"
-    return said
+    return PROGRESS.sub("", said)
 
 
 def test_each_shown_line_is_said_in_that_order(walked):

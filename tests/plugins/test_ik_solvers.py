@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+from docs import ROOT
 from tests.plugins.commands import MODULES, harness
 
 SCENARIO = """\
@@ -81,7 +82,7 @@ def test_a_solver_that_goes_wrong_fails_the_step_and_is_named(scenario):
         steps(scenario),
         (
             "raised ZeroDivisionError: division by zero (mine.py:12)",
-            "returned a solution that is not 6 finite joint positions",
+            "returned a solution that is not 6 joint positions",
             "returned NoneType, not an IkResult",
         ),
         strict=True,
@@ -111,6 +112,46 @@ def test_ik_test_tests_a_registered_solver_by_its_name(tmp_path):
     harness(tmp_path, "ik-test", "ur", *arguments)
     out = harness(tmp_path, "ik-test", "ur5", *arguments, code=2)
     assert "no solver has that name; solvers: own, numeric, open_manipulator_x, ur" in out
+
+
+@pytest.mark.parametrize(
+    ("returned", "reported"),
+    [
+        ("np.zeros((1, 6))", "mine returned ndarray, not an IkResult; the joints are shoulder_pan"),
+        ("None", "mine returned NoneType, not an IkResult"),
+        ("IkResult(np.zeros(6))", "mine returned a solution that is not 6 joint positions"),
+    ],
+)
+def test_ik_test_refuses_a_solver_that_returns_no_ik_result(tmp_path, returned, reported):
+    head, _, _ = WRONG.partition("        return [")
+    (tmp_path / "mine.py").write_text(f"{head}        return {returned}\n", encoding="utf-8")
+    arguments = ("--robot", "ur3e", "--examples", "2", "--no-report", "--plugin", "mine.py")
+    assert reported in harness(tmp_path, "ik-test", "mine", *arguments, code=2)
+
+
+def test_ik_test_blames_the_solvers_own_line_and_passes_nothing_that_was_not_observed(tmp_path):
+    head, _, _ = WRONG.partition("        return [")
+    body = "        return request.missing\n"
+    (tmp_path / "mine.py").write_text(head + body, encoding="utf-8")
+    arguments = ("--robot", "ur3e", "--examples", "10", "--no-report", "--plugin", "mine.py")
+    out = harness(tmp_path, "ik-test", "mine", *arguments, code=1)
+    assert "mine raises AttributeError at mine.py:12 (10 of 10)" in out
+    assert " ok, " not in out
+    assert out.count("NOT OBSERVED, 10 tried") == 4
+
+
+def test_the_example_of_the_documentation_is_a_solver(tmp_path):
+    page = (ROOT / "docs/guides/python.md").read_text(encoding="utf-8")
+    [example] = [
+        block for block in re.findall(r"(?ms)^```python\n(.*?)^```", page) if "(IkSolver)" in block
+    ]
+    (tmp_path / "solvers.py").write_text(example, encoding="utf-8")
+    file = tmp_path / "pose.scenario.yaml"
+    file.write_text(SCENARIO.replace("newton", "least_squares"), encoding="utf-8")
+    harness(tmp_path, "run", file.name, "--plugin", "solvers.py")
+    pose, position = steps(tmp_path)
+    assert pose["explanation"]["ik_method"] == "least_squares"
+    assert position["explanation"]["ik_method"] == "numeric"
 
 
 def test_the_list_has_the_solver_and_its_package(tmp_path):

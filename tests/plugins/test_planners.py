@@ -157,6 +157,15 @@ def test_bench_compares_a_planner_with_the_built_in_ones(wall):
     assert set(rows["via_point"][0]) == set(rows["BalancedConnect"][0])
 
 
+def test_bench_says_why_a_planner_fails(wall):
+    out = harness(
+        wall, "bench", "post.scenario.yaml", "--seeds", "2", "--no-report",
+        "--planners", "BalancedConnect,straight_through", *PLANNERS,
+    )  # fmt: skip
+    assert "straight_through: 2 times INVALID_MOTION_PLAN, with seed 1: paths of the plan" in out
+    assert "BalancedConnect: " not in out
+
+
 def test_the_lists_have_the_planner_and_its_package(tmp_path):
     rows = harness(tmp_path, "list", "pipelines", *PLANNERS).splitlines()
     assert [row.split(maxsplit=2)[:2] for row in rows] == [

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.reporting.suite.campaign import campaign_html, sensitivities
+from harness.reporting.suite.campaign import campaign_html
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.sensitivity import sensitivities
 from harness.reporting.suite.write import write_suite_page
-from tests.reporting.suites import failed, passed
+from tests.reporting.suites import STUCK, failed, passed, verdict
 
 
 def campaign(count, words=("red", "green")):
@@ -98,28 +99,147 @@ def test_the_map_fits_a_narrow_screen(page_file, visit):
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
+def test_a_narrow_screen_shows_every_row_whole(page_file, visit):
+    """Neither the worst margin nor the end of a reason is cut off."""
+    page = visit(page_file).page
+    page.set_viewport_size({"width": 390, "height": 800})
+    assert page.evaluate(
+        "[...document.querySelectorAll('.wide, .wide td, .why')].every("
+        "each => each.scrollWidth <= each.clientWidth && each.scrollHeight <= each.clientHeight)"
+    )
+    page.locator("tbody td .bar").first.wait_for(state="visible")
+
+
 def test_a_row_has_the_values_of_its_run(page_file, visit):
     text = visit(page_file).page.locator("tbody tr").first.inner_text()
     assert "friction 0.238, x 1.769 cm, color green" in text
 
 
+def effects(cases):
+    """File -> path -> share, or the reason why there is none."""
+    return {
+        each.file: {
+            effect.path: effect.reason if effect.share is None else effect.share
+            for effect in each.effects
+        }
+        for each in sensitivities(Columns(cases))
+    }
+
+
+def in_file(name, cases):
+    """The same cases in a file of another name."""
+    return [replace(each, result=replace(each.result, file=name)) for each in cases]
+
+
 def test_the_parameter_that_decides_is_the_most_sensitive():
-    columns = Columns(campaign(400))
-    found = sensitivities(columns, columns.parameters)
+    [found] = effects(campaign(400)).values()
     assert found["friction"] > 0.9
     assert found["x"] < 0.05
     assert found["color"] < 0.05
+
+
+def test_a_parameter_is_judged_among_the_runs_of_the_files_that_have_it():
+    """Another file's parameters and margins change nothing."""
+    other = in_file(
+        "b.yaml", [SuiteCase(passed(i, 10.0 * i), {"model": "ur5e"}) for i in range(1, 40)]
+    )
+    alone = effects(in_file("a.yaml", campaign(100)))["a.yaml"]
+    both = effects(in_file("a.yaml", campaign(100)) + other)
+    assert both == {"a.yaml": alone, "b.yaml": {}}
+
+
+def test_too_few_runs_of_a_file_are_no_share_of_zero(tmp_path, visit):
+    cases = in_file("a.yaml", campaign(7)) + in_file("b.yaml", campaign(30))
+    assert effects(cases)["a.yaml"] == {}
+    section = visit(write_suite_page(tmp_path, SuiteRecord("failed", cases))).page.locator(
+        ".effects"
+    )
+    assert "Too few runs, fewer than 8 of a file: a.yaml (7)" in section.inner_text()
+    assert section.locator("li").count() == 3
+
+
+def test_what_cannot_be_known_has_a_reason_and_no_share():
+    one_each = [SuiteCase(passed(i, 0.05 + i), {"word": f"w{i}"}) for i in range(8)]
+    assert effects(one_each)["a/pick.scenario.yaml"] == {"word": "too few runs: 8"}
+    same = [SuiteCase(passed(i), {"x": i}) for i in range(9)]
+    assert effects(same)["a/pick.scenario.yaml"] == {"x": "every run has the same outcome"}
+    rare = [SuiteCase(passed(i, 0.05 + i), {"x": i} if i < 5 else {"y": 1}) for i in range(20)]
+    assert effects(rare)["a/pick.scenario.yaml"] == {"x": "too few runs: 5"}
+
+
+def test_runs_that_fail_without_a_margin_count_with_their_outcome():
+    """Half of the runs end at a step that fails: the parameter that decides so is found."""
+    cases = [
+        SuiteCase(
+            replace(STUCK, file="a.yaml") if far else passed(i, 0.06 + 0.001 * i), {"far": far}
+        )
+        for i, far in enumerate([0, 1] * 10)
+    ]
+    [found] = sensitivities(Columns(in_file("a.yaml", cases)))
+    assert found.measured == "outcome"
+    assert found.effects[0].share == pytest.approx(1)
+
+
+def margins(tmp_path, visit, cases):
+    """The texts of the panels of margins."""
+    page = visit(write_suite_page(tmp_path, SuiteRecord("failed", cases))).page
+    return page.locator(".margins figcaption, .margins p").all_inner_texts()
+
+
+def grasped(number, margin, unit):
+    """A run whose grasp is judged in newtons where it failed, and in metres where it slipped."""
+    status = "failed" if margin < 0 else "passed"
+    judged = replace(verdict(0.06), expectation="grasped", status=status, margin=margin, unit=unit)
+    result = replace(passed(number), outcome=status, verdicts=(verdict(0.06 + number), judged))
+    return SuiteCase(result, {"mass": number})
+
+
+@pytest.mark.parametrize("slips", [1, 6])
+def test_failures_that_are_all_alike_have_a_panel_in_their_unit(tmp_path, visit, slips):
+    cases = [grasped(i, -0.05, "N") for i in range(8)]
+    cases += [grasped(i, 0.001 + 1e-5 * i, "m") for i in range(8, 8 + slips)]
+    texts = margins(tmp_path, visit, cases)
+    assert texts[0].startswith("grasped\n8 margins from -0.05 to -0.05 N")
+    assert "8 below zero" in texts[0]
+    assert any(f"{slips} margins from 0.00108 to 0.001" in each for each in texts) == (slips > 1)
+
+
+def test_the_panels_of_an_expectation_stand_next_to_each_other(tmp_path, visit):
+    cases = [grasped(i, -0.05, "N") for i in range(8)]
+    cases += [grasped(i, 0.001 + 1e-5 * i, "m") for i in range(8, 12)]
+    names = [each.split("\n")[0] for each in margins(tmp_path, visit, cases)]
+    assert names == ["grasped", "grasped", "lifted cube"]
+
+
+def test_failures_without_a_margin_are_counted(tmp_path, visit):
+    cases = [SuiteCase(passed(i, 0.06 + 0.01 * i), {"x": i}) for i in range(8)]
+    unknown = replace(verdict(0.03), margin=float("nan"))
+    cases += [SuiteCase(replace(failed(8), verdicts=(unknown,)), {"x": 8})] * 2
+    assert "lifted cube: 2 more failed without a margin" in margins(tmp_path, visit, cases)
+
+
+def test_the_map_says_which_runs_have_no_place_on_its_axes(tmp_path, visit):
+    """The legend names the causes of the points that are drawn, and of no others."""
+    stuck = [SuiteCase(STUCK, {"model": name}) for name in ("ur3e", "ur5e")] * 2
+    page = visit(write_suite_page(tmp_path, SuiteRecord("failed", campaign(20) + stuck))).page
+    legend = page.locator("#map .legend")
+    assert "4 of 24 runs have no such values and are not drawn" in legend.inner_text()
+    assert "NO_IK_SOLUTION" not in legend.inner_text()
+    for axis in "xy":
+        page.select_option(f"#map select[name={axis}]", "3")
+    assert "20 of 24 runs have no such values" in legend.inner_text()
+    assert "NO_IK_SOLUTION in move_to" in legend.inner_text()
 
 
 def test_sensitivities_of_noise_are_near_zero_on_average():
     """The share is corrected for what chance puts between groups."""
     rng, shares = np.random.default_rng(0), []
     for _ in range(20):
-        columns = Columns(
+        [found] = effects(
             SuiteCase(passed(i, value), {"x": float(rng.random())})
             for i, value in enumerate(0.06 + 0.02 * rng.random(100))
-        )
-        shares.append(sensitivities(columns, columns.parameters)["x"])
+        ).values()
+        shares.append(found["x"])
     assert np.mean(shares) < 0.03
 
 

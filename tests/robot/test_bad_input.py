@@ -139,7 +139,7 @@ CASES = {
         ),
         (
             "arm.xml", 'size="0.02 0.03 0.1"', 'size="0.02 0.03 0.1" mass="0"',
-            "12:9: MuJoCo: mass and inertia of moving",
+            "12:9: MuJoCo: mass and inertia of moving bodies must be larger than mjMINVAL: 'lower'",
         ),
     ],
     "an include of itself": [

@@ -164,7 +164,7 @@ def test_links_in_each_other_at_the_start_are_allowed_where_no_srdf_says(tmp_pat
     write_arm(tmp_path, wide)
     arm = load_arm(tmp_path, srdf=None)
     assert arm.allowed_collisions["upper", "wrist"] == "Default"
-    assert any("touch at the start are: upper - wrist" in note for note in arm.notes)
+    assert any("touch at the start are allowed: upper - wrist" in note for note in arm.notes)
 
 
 def test_pieces_at_one_joint_that_touch_at_the_start_are_allowed_too(tmp_path):

@@ -180,6 +180,7 @@ def test_fingers_on_one_tendon_are_a_gripper_and_a_site_its_tcp(
     assert arm.joint_by_name["r"].mimic.multiplier == multiplier
     assert arm.gripper.max_effort == pytest.approx(effort)
     assert arm.gripper.widths[:, 1].max() == pytest.approx(0.09, abs=1e-6)
+    assert not [note for note in arm.notes if "tendons are ignored" in note]
 
 
 def test_a_missing_texture_is_not_needed(tmp_path):

@@ -16,6 +16,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_check import check_robot
+from harness.robot_tools.robot_findings import states
 from tests.engine.front_door import check, run
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
@@ -261,6 +262,16 @@ def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_ou
     assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
 
 
+def test_a_gripper_has_states_open_and_close_even_if_no_srdf_names_them(tmp_path):
+    write(tmp_path)
+    states = load_arm(tmp_path, srdf=None).states_of("gripper")
+    ends = {name: dict(state.positions) for name, state in states.items()}
+    assert ends == {"open": {"left_joint": 0.03}, "close": {"left_joint": 0.0}}
+    state = '<group_state name="Opened" group="hand"><joint name="left_joint" value="0.02"/>'
+    write(tmp_path, group=f"{GROUP}{state}</group_state>")
+    assert set(load_arm(tmp_path).states_of("hand")) == {"Opened", "close"}
+
+
 def test_fingers_that_no_group_names_are_found_too(tmp_path):
     write(tmp_path, group="")
     assert load_arm(tmp_path).gripper.group == "gripper"
@@ -293,6 +304,16 @@ def test_a_whole_tool_that_a_wrist_turns_is_no_jaw_whatever_its_name(tmp_path):
         urdf = urdf.replace(f'<link name="{link}">', f'<link name="{link}">{SHAPE}')
     write_arm(tmp_path, urdf)
     assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names[-1] == "tool_joint"
+
+
+def test_a_hand_whose_fingers_stand_still_is_no_part_of_the_arm(tmp_path):
+    """As in Talos' left arm, where only the link at the gripper's motor turns."""
+    crank = JAW.replace('name="jaw"', 'name="crank"').replace('"palm"', '"gripper_base"')
+    crank = crank.replace('"jaw_joint"', '"gripper_joint"').replace('link="jaw"', 'link="crank"')
+    write_arm(tmp_path, SIX.replace(HAND, crank.replace("0 1 0", "0 0 1")))
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert any(note.startswith("'gripper' is not used as a gripper: the gap") for note in arm.notes)
 
 
 def test_a_jaw_without_shapes_is_no_joint_of_the_arm(tmp_path):
@@ -442,3 +463,20 @@ def test_a_line_of_five_joints_keeps_the_gripper_upright(tmp_path):
     up = np.array([rotation_from_quat_wxyz(pose[3:])[2] for pose in poses])
     assert np.ptp(poses[:, 1]) > 0.1
     assert np.abs(up - up[0]).max() < 0.01
+
+
+BLOCK_AT = """<collision><origin xyz="{}"/><geometry><box size="0.02 0.06 0.06"/></geometry>
+    </collision>"""
+
+
+def test_a_state_of_the_gripper_is_good_wherever_the_arm_stands(tmp_path):
+    """At zero, an open finger touches the arm, as on a folded Panda."""
+    urdf = SIX
+    for link, place in (("c", "0 0.07 0.5"), ("d", "0.3 0 0")):
+        start = f'<link name="{link}">'
+        urdf = urdf.replace(start, start + BLOCK_AT.format(place))
+    write_arm(tmp_path, urdf)
+    arm = load_arm(tmp_path, srdf=None)
+    opened = arm.start_positions(arm.states_of("gripper")["open"].positions)
+    assert CoalScene(arm).touches(opened)
+    assert states(arm).is_good

@@ -124,12 +124,23 @@ def test_an_end_that_is_measured_after_the_run_is_refused(tmp_path):
     assert "measured after the run" in message
 
 
-def test_the_commands_of_another_run_are_refused(tmp_path, capsys):
-    file = scenario(tmp_path, "- wait: 10 ms")
+@pytest.mark.parametrize("step", ["wait: 10 ms", "move_to: {joints: {joint1: 0.1}}"])
+def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
+    file = scenario(tmp_path, f"- {step}")
     main(["run", str(file), "--report-dir", str(tmp_path / "r"), "--in-process", "--no-page"])
+    [folder] = [path.parent for path in (tmp_path / "r").rglob("run.json")]
+    capsys.readouterr()
+    assert main(["replay", str(folder)]) == 2
+    assert "has no recorded commands of ROS 2 nodes" in capsys.readouterr().err
+    assert main(["run", str(folder / "scenario.resolved.yaml"), "--no-report"]) == 0
+    shutil.rmtree(folder)
+    assert main(["replay", str(folder)]) == 2
+
+
+def test_nodes_that_commanded_nothing_are_replayed(tmp_path, capsys):
+    file = scenario(tmp_path, "- external: {}\n  timeout: 20 ms")
+    main(["grade", str(file), "--node", "true", "--report-dir", str(tmp_path / "r")])
     [folder] = [path.parent for path in (tmp_path / "r").rglob("run.json")]
     capsys.readouterr()
     assert main(["replay", str(folder)]) == 0
     assert "0 commands replayed" in capsys.readouterr().out
-    shutil.rmtree(folder)
-    assert main(["replay", str(folder)]) == 2

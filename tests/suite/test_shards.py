@@ -284,7 +284,9 @@ def test_a_merged_suite_can_be_queried(parts, tmp_path):
     merged = tmp_path / "merged"
     harness("merge", "at1", "at2", "at3", "--report-dir", merged, cwd=parts)
     found = json.loads(harness("results", merged, "--json", cwd=parts).stdout)
-    assert found["selected"] == 33  # a part runs samples that an early stop would leave out
+    counted = len(document(merged)["cases"])
+    assert (found["selected"], found["left_out"]) == (counted, 33 - counted)
+    assert counted < 33  # a part runs samples that an early stop leaves out
     grid = json.loads(harness("results", merged, "--tag", "grid", "--json", cwd=parts).stdout)
     assert {run["time"] for run in grid["runs"]} == {"0.05 s", "0.1 s", "0.2 s"}
 

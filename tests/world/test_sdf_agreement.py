@@ -38,7 +38,23 @@ BAD = {
         model("<frame name='f' attached_to='f'/>"), "is relative to itself in a cycle",
     ),
     "parent and child are one": (
-        model(joint("a", "a")), "'a' is parent and child of this joint",
+        model(joint("a", "a")), "'m::a' is parent and child of this joint",
+    ),
+    "parent and child are one by a frame": (
+        model("<frame name='f' attached_to='a'/>" + joint("a", "f")),
+        "'m::a' is parent and child of this joint",
+    ),
+    "a canonical link that is none": (
+        model("").replace("name='m'", "name='m' canonical_link='gone'"),
+        "there is no link or frame 'gone' here",
+    ),
+    "a model without a link": ("<model name='m'/>", "the model 'm' has no link"),
+    "two collisions of one name": (
+        model("<link name='c'><collision name='s'/><collision name='s'/></link>"),
+        "another <collision> of this link is called 's'",
+    ),
+    "colons in a name": (
+        model("").replace("name='m'", "name='m::n'"), "a name has no '::' since SDF 1.8",
     ),
     "a joint to an unknown parent": (
         model(joint("gone", "a")), "there is no link or frame 'gone' here",
@@ -61,6 +77,7 @@ VALID = {
     "a joint between frames": (
         model("<frame name='f' attached_to='a'/>" + joint("f", "b")), "",
     ),
+    "a static model without a link": ("<model name='m'><static>1</static></model>", ""),
     "a second world of another name": ("</world><world name='v'>", "a second <world> is left out"),
     "a step of 0.1 s": (
         "<physics type='ode'><max_step_size>0.1</max_step_size></physics>",

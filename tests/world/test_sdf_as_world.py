@@ -175,6 +175,6 @@ def test_an_object_that_lacks_its_mesh_is_refused_alone_unless_it_is_replaced(tm
 
 
 def test_a_missing_visual_mesh_is_a_note(tmp_path):
-    gone = "<visual name='v'><geometry><mesh><uri>gone.stl</uri></mesh></geometry></visual>"
+    gone = "<visual name='gone'><geometry><mesh><uri>gone.stl</uri></mesh></geometry></visual>"
     found = load(tmp_path, text_with("link", gone))
     assert any("a visual is not drawn: " in str(note) for note in found.notes)

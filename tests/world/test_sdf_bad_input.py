@@ -103,13 +103,13 @@ def test_all_missing_models_and_meshes_are_reported_together(tmp_path):
     shapes = "".join(
         f"<collision name='{name}'><geometry><mesh><uri>{name}.stl</uri></mesh></geometry>"
         "</collision>"
-        for name in ("c", "d")
+        for name in ("e", "f")
     )
     with pytest.raises(SpecError) as caught:
         load(tmp_path, text_with("link", shapes))
     assert [problem.message for problem in caught.value.problems] == [
-        "`c.stl` is not found",
-        "`d.stl` is not found",
+        "`e.stl` is not found",
+        "`f.stl` is not found",
     ]
 
 

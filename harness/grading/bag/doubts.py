@@ -23,13 +23,13 @@ FASTEST = 3.0
 """A joint that moves faster than this multiple of its velocity limit jumps."""
 FASTEST_OBJECT = 5.0
 """And an object above this speed [m/s]."""
-SLACK = {"revolute": 0.02, "prismatic": 0.002}
+SLACK = {"revolute": 0.02, "continuous": 0.02, "prismatic": 0.002}
 """What noise and rounding may add [rad or m]."""
 OBJECT_SLACK = 0.02  # [m]
 FROM_REST = 20.0
 """Acceleration of an object that rests at two messages and rests elsewhere at the next two
 [m/s^2]: twice that of a fall."""
-APART = {"revolute": 0.1, "prismatic": 0.01}
+APART = {"revolute": 0.1, "continuous": 0.1, "prismatic": 0.01}
 """Difference between a joint and its frame in /tf that no delay of a message explains [rad or m]:
 20 ms at 5 rad/s or 0.5 m/s."""
 FEWEST_APART = 0.02
@@ -62,10 +62,8 @@ def publisher_doubts(
     """Joints and objects whose messages jump there and back, as those of two publishers do."""
     for joint in description.movable_joints:
         seconds, rows = rows_of_joint(joint.name, content.joints, timeline, "")
-        slides = joint.kind == "prismatic"
         limit = joint.velocity if np.isfinite(joint.velocity) else 2 * np.pi
-        slack = SLACK["prismatic" if slides else "revolute"]
-        first = _first_jump(seconds, rows[:, :1], FASTEST * limit, slack)
+        first = _first_jump(seconds, rows[:, :1], FASTEST * limit, SLACK[joint.kind])
         if first is not None:
             yield Doubt("publishers", f"{joint.name} {_two_values(first)}")
     for edges in (content.edges, content.objects):
@@ -153,10 +151,10 @@ def tf_doubts(
     shown = joints_of_frames(content, placements, description, timeline, times).positions
     for column, joint in enumerate(description.movable_joints):
         apart = shown[:, column] - measured.positions[:, column]
-        slides = joint.kind == "prismatic"
-        apart = apart if slides else (apart + np.pi) % (2 * np.pi) - np.pi
+        if joint.kind != "prismatic":
+            apart = (apart + np.pi) % (2 * np.pi) - np.pi
         known = np.isfinite(apart)
-        far = known & (np.abs(apart) > APART["prismatic" if slides else "revolute"])
+        far = known & (np.abs(apart) > APART[joint.kind])
         if far.any() and far.sum() > FEWEST_APART * known.sum():
             time = float(times[int(np.argmax(far))])
             said = f"/tf and the joint states contradict each other about {joint.name}"
@@ -180,7 +178,6 @@ def velocity_doubts(
         positions, velocities = rows.positions[:, column], rows.velocities[:, column]
         if joint.name not in arm_joints or not np.nan_to_num(velocities).any():
             continue
-        kind = "prismatic" if joint.kind == "prismatic" else "revolute"
         means = (velocities[1:] + velocities[:-1]) / 2
         turns = np.diff(positions)
         if joint.kind == "continuous":
@@ -190,7 +187,7 @@ def velocity_doubts(
         sums = np.concatenate([np.zeros((2, 1)), np.cumsum(steps, axis=1)], axis=1)
         moved, integral = sums - sums[:, np.searchsorted(times, times - STRETCH)]
         allowed = SHARE_OF_MOTION * np.maximum(np.abs(moved), np.abs(integral))
-        wrong = np.abs(moved - integral) > APART[kind] / 2 + allowed
+        wrong = np.abs(moved - integral) > APART[joint.kind] / 2 + allowed
         if wrong.any():
             time = float(times[int(np.argmax(wrong))])
             said = f"{joint.name} moves otherwise than its velocities say, first at t={time:.3f} s"

@@ -230,17 +230,7 @@ def _object_record(
 ) -> ObjectRecord:
     """An object's record, with the scenario's pose if the object is static and not recorded."""
     is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
-    return ObjectRecord(
-        name=obj.name,
-        is_static=obj.is_static,
-        in_planning=obj.in_planning,
-        in_simulation=obj.in_simulation,
-        shapes=obj.shapes,
-        visuals=obj.visuals,
-        present=present,
-        pose=tuple(float(value) for value in obj.pose.as_vector()) if is_known else (),
-        mass=obj.mass,
-    )
+    return ObjectRecord.of(obj, present, obj.pose if is_known else None)
 
 
 def _gaps(

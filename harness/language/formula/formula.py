@@ -163,6 +163,13 @@ def constants_of(node: Node | Number) -> list[Const]:
             return [found for operand in node.operands for found in constants_of(operand)]
 
 
+def comparisons_of(node: Node) -> list[Comparison]:
+    """Every comparison of a formula, from left to right."""
+    if isinstance(node, Comparison):
+        return [node]
+    return [found for operand in node.operands for found in comparisons_of(operand)]
+
+
 def implications_of(node: Node) -> list[Logic]:
     """Every `implies` of a formula, the outermost first."""
     if isinstance(node, Comparison):

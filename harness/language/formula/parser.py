@@ -187,6 +187,8 @@ class _Parser:
             case "symbol", "-":
                 inner = self.token
                 operand = self.number(self.expression(SIGN), inner)
+                if isinstance(operand, Const):
+                    return Const(-operand.value, operand.unit, token.start)
                 return Arithmetic("neg", (operand,), token.start)
             case "number", _:
                 return self.constant(token)

@@ -21,6 +21,11 @@ ALIASES = {
     **{"G": "always", "F": "eventually", "U": "until", "->": "implies"},
     **{"|": "or", "||": "or", "&": "and", "&&": "and", "!": "not"},
 }
+OTHER_SIGNS = {
+    **{"=>": "write `>=`", "≥": "write `>=`", "=<": "write `<=`", "≤": "write `<=`"},
+    **dict.fromkeys(("==", "="), "write `>=` or `<=`: two numbers are hardly ever equal"),
+}
+"""Signs of other languages, the longest first, and what a formula has instead."""
 WORDS = ("always", "eventually", "until", "not", "and", "or", "implies")
 
 
@@ -57,8 +62,10 @@ def tokens_of(text: str) -> list[Token]:
         match = TOKEN.match(text, place)
         if match is None:
             start = place + len(text[place:]) - len(text[place:].lstrip())
-            hint = 'names with other characters stand in quotes: z("my box")'
-            raise FormulaError(start, 1, f"`{text[start]}` has no meaning in a formula", hint)
+            sign = next((each for each in OTHER_SIGNS if text.startswith(each, start)), text[start])
+            hint = OTHER_SIGNS.get(sign, 'names with other characters stand in quotes: z("my box")')
+            message = f"`{sign}` has no meaning in a formula"
+            raise FormulaError(start, len(sign), message, hint)
         kind = match.lastgroup or "end"
         source = match[kind]
         word = ALIASES.get(source, source)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from difflib import SequenceMatcher
 from typing import NamedTuple
 
 from harness.core.errors import Problem
@@ -22,6 +23,9 @@ TEMPORAL_WORDS = {
 
 ALONE = ("never", "no", "not", "none", "always", "eventually")
 """Those that name no object and no state when they stand in the place of one."""
+
+SURELY_MISSPELT = 0.8
+"""The similarity of a word and a valid one, from 0 to 1, above which it is a slip of the pen."""
 
 UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 
@@ -83,7 +87,7 @@ def _unknown(
     kind: str,
     problems: list[Problem],
 ) -> str | None:
-    """Refuse a word; the nearest valid one, to go on as if the file said that."""
+    """Refuse a word; the valid one that it misspells, to go on as if the file said that."""
     temporal = with_temporal_word(word) if kind == "predicate" else None
     if temporal is not None:
         before, predicate = temporal
@@ -101,9 +105,21 @@ def _unknown(
         message = f"`{word}:` is not written; the {kind} itself is the key"
     else:
         message = f"no {kind} is called `{word}`"
-    hints = [did_you_mean(word, words, f"{kind}s"), *broken_plugins()]
-    problems.append(place.problem(message, "; ".join(hints)))
-    return nearest(word, words)
+    near = nearest(word, words)
+    is_misspelt = near is not None and _is_misspelt(word, near, content, words[near])
+    of_plugin = f"a {kind} of a plug-in that is not installed needs `--plugin`"
+    hints = [did_you_mean(word, words, f"{kind}s"), *([] if is_misspelt else [of_plugin])]
+    problems.append(place.problem(message, "; ".join([*hints, *broken_plugins()])))
+    return near if is_misspelt else None
+
+
+def _is_misspelt(word: str, near: str, content: Located, model: object) -> bool:
+    """Whether a word is nearly the same as the nearest one, or has keys of that one alone."""
+    plain = word.lower().replace("-", "_")
+    if SequenceMatcher(None, plain, near).ratio() > SURELY_MISSPELT:
+        return True
+    keys = content.value.keys() if isinstance(content.value, dict) else ()
+    return is_model(model) and all(key in keys_of(model) for key in keys)
 
 
 def with_temporal_word(word: str) -> tuple[str, str] | None:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 _ELF64_LITTLE_ENDIAN = b"\x7fELF\x02\x01"
 _X86_64 = 62
-_SECTION, _SYMBOL, _RELOCATION = map(struct.Struct, ("<IIQQQQIIQQ", "<IBBHQQ", "<QIIq"))
+_SECTION, _SYMBOL, _RELOCATION = map(struct.Struct, ("<4xIQ8xQQIIQ8x", "<I2xHQ8x", "<QIIq"))
 _SYMBOL_TABLE, _RELOCATIONS, _NO_BITS = 2, 4, 8
 _ALLOCATED = 2
 _ADDRESS_64 = 1
@@ -27,16 +27,13 @@ class CannotLinkError(Exception):
 
 
 class _Section(NamedTuple):
-    name: int
     kind: int
     flags: int
-    address: int
     offset: int
     size: int
     link: int
     info: int
     alignment: int
-    entry_size: int
 
 
 class LinkedObject:
@@ -62,7 +59,7 @@ class LinkedObject:
                 self._starts[number] = size + -size % max(section.alignment, 1)
                 size = self._starts[number] + section.size
         access = mmap.PROT_READ | mmap.PROT_WRITE | mmap.PROT_EXEC
-        self._memory = mmap.mmap(-1, max(size, 1), prot=access)
+        self._memory = mmap.mmap(-1, max(size, 1), flags=mmap.MAP_PRIVATE, prot=access)
         self._base = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
         for number, start in self._starts.items():
             section = self._sections[number]
@@ -89,7 +86,7 @@ class LinkedObject:
 
     def _address(self, symbol: tuple[int, ...]) -> int:
         """Where a symbol is: in a section of the file, or in a library of this process."""
-        section, value = symbol[3:5]
+        _, section, value = symbol
         if section >= _RESERVED:
             raise CannotLinkError
         if section:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import PlanningFailed
+from harness.core.errors import HarnessError, PlanningFailed
 from harness.core.registry import described, raised
 from harness.core.types import FloatArray
 from harness.ports.kinematics import IkRequest, IkResult, IkSolver
@@ -27,19 +27,33 @@ def solve_with_third_party(solver: type[IkSolver], request: IkRequest) -> IkResu
         found = solver().solve(request)
     except Exception as error:
         raise PlanningFailed("CRASH", f"{who} raised {raised(error)}", *details) from error
-    if not isinstance(found, IkResult):  # pyright: ignore[reportUnnecessaryIsInstance]
-        what = f"returned {type(found).__name__}, not an IkResult"
-        raise PlanningFailed("CRASH", f"{who} {what}", *details)
-    solutions = [_positions(each) for each in found.solutions]
-    for each in solutions:
-        if each is None or each.shape != (request.space.dof,) or not np.all(np.isfinite(each)):
-            what = f"returned a solution that is not {request.space.dof} finite joint positions"
-            raise PlanningFailed("CRASH", f"{who} {what}", *details)
-    return IkResult(tuple(each for each in solutions if each is not None), float(found.excess))
-
-
-def _positions(solution: Any) -> FloatArray | None:
     try:
-        return np.array(solution, dtype=float)
+        solutions = read_solutions(found, request.space.dof)
+    except UnusableIkResult as error:
+        raise PlanningFailed("CRASH", f"{who} {error}", *details) from error
+    if not all(np.all(np.isfinite(each)) for each in solutions):
+        what = f"returned a solution that is not {request.space.dof} finite joint positions"
+        raise PlanningFailed("CRASH", f"{who} {what}", *details)
+    return IkResult(solutions, float(found.excess))
+
+
+class UnusableIkResult(HarnessError):
+    """A solver returned something else than joint positions in an IkResult."""
+
+
+def read_solutions(found: Any, dof: int) -> tuple[FloatArray, ...]:
+    """The solutions of what a solver returned, shape (dof,) each; they may hold NaN.
+
+    Raises:
+        UnusableIkResult: These are no joint positions in an IkResult.
+    """
+    if not isinstance(found, IkResult):
+        raise UnusableIkResult(f"returned {type(found).__name__}, not an IkResult")
+    try:
+        solutions = tuple(np.array(each, dtype=float) for each in found.solutions)
     except (TypeError, ValueError):
-        return None
+        solutions = (np.empty(0),)
+    if any(each.shape != (dof,) for each in solutions):
+        what = f"returned a solution that is not {dof} joint positions"
+        raise UnusableIkResult(f"{what}: `solutions` is a sequence of vectors")
+    return solutions

@@ -100,8 +100,8 @@ def _moving(run: Run) -> dict[str, FloatArray]:
         poses = run.signals.object_poses.get(obj.name)
         if poses is None or obj.is_static or not obj.in_simulation:
             continue
-        known = poses[np.isfinite(poses).all(axis=1), :3]
-        travel = float(np.ptp(known, axis=0).max()) if len(known) else 0.0
+        known = poses[np.isfinite(poses[:, 0]), :3]
+        travel = max(float(np.ptp(axis)) for axis in known.T) if len(known) else 0.0
         if travel > 1e-3:
             found[obj.name] = (travel, poses)
     order = sorted(found, key=lambda name: (-found[name][0], name))[:MOST_SERIES]
@@ -125,7 +125,7 @@ def displacements(run: Run) -> Group:
 
 
 def _first(poses: FloatArray) -> FloatArray:
-    return poses[int(np.isfinite(poses).all(axis=1).argmax())]
+    return poses[int(np.isfinite(poses[:, 0]).argmax())]
 
 
 def tcp_turn(run: Run) -> Group:

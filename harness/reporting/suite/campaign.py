@@ -6,7 +6,7 @@ import json
 import math
 import os
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
 from urllib.parse import quote
@@ -16,9 +16,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.reporting.suite.columns import PASSED, Columns, VariedQuantity
 from harness.reporting.suite.record import SuiteCase
-
-FEWEST_RUNS = 8
-"""With fewer runs a table shows all there is to see."""
+from harness.reporting.suite.sensitivity import FEWEST_RUNS, FileSensitivity, sensitivities
 
 MOST_POINTS = 10_000
 """Runs that the map draws; of more, an even choice of the passed and of the failed ones."""
@@ -26,7 +24,7 @@ MOST_POINTS = 10_000
 MOST_CAUSES = 10
 MOST_HISTOGRAMS = 12
 BINS = 24
-SENSITIVITY_BINS = 8
+MOST_FILES = 5
 WIDTH, HEIGHT = 260, 64  # [pixels]
 
 
@@ -40,7 +38,7 @@ def campaign_html(columns: Columns, cases: Sequence[SuiteCase], folder: Path) ->
     if len(columns.numbers) < FEWEST_RUNS or not parameters:
         return ""
     drawn = _map(columns, parameters, cases, folder)
-    return drawn + _margins(columns) + _sensitivities(columns, parameters)
+    return drawn + _margins(columns) + _sensitivities(columns)
 
 
 def _map(
@@ -114,19 +112,33 @@ def _short(number: float) -> float | None:
 
 
 def _margins(columns: Columns) -> str:
-    """A histogram of the margins of each expectation; those with failures first."""
-    found = ((key, np.array(values)) for key, values in columns.margins.items())
-    varying = [(key, values) for key, values in found if np.ptp(values) > 0]
-    varying.sort(key=lambda each: each[1].min() >= 0)
-    if not varying:
-        return ""
-    blocks = "".join(_histogram(*key, values) for key, values in varying[:MOST_HISTOGRAMS])
-    more = len(varying) - MOST_HISTOGRAMS
+    """A histogram of the margins of each expectation and unit; those with failures first.
+
+    Margins that do not vary say nothing, except those of failures.
+    """
+    found = {key: np.array(values) for key, values in columns.margins.items()}
+    chosen = {key: each for key, each in found.items() if np.ptp(each) > 0 or each.min() < 0}
+    failed = {key[0] for key, values in found.items() if values.min() < 0}
+    failed |= columns.without_margin.keys()
+    keys = sorted(chosen, key=lambda key: (key[0] not in failed, _first(found, key[0])))
+    blocks = "".join(_histogram(*key, chosen[key]) for key in keys[:MOST_HISTOGRAMS])
+    more = len(keys) - MOST_HISTOGRAMS
     rest = f'<p class="quiet">{more} more expectations</p>' if more > 0 else ""
+    rest += "".join(
+        f'<p class="quiet">{escape(expectation)}: {count} more failed without a margin</p>'
+        for expectation, count in columns.without_margin.most_common(MOST_HISTOGRAMS)
+    )
+    if not blocks and not rest:
+        return ""
     return (
         '<section class="panel"><h2>Margins <span class="key">left of the line: failed</span></h2>'
         f'<div class="margins">{blocks}{rest}</div></section>'
     )
+
+
+def _first(keys: Iterable[tuple[str, str]], expectation: str) -> int:
+    """The place of an expectation, so that its units stand next to each other."""
+    return next(place for place, key in enumerate(keys) if key[0] == expectation)
 
 
 def _histogram(expectation: str, unit: str, values: FloatArray) -> str:
@@ -156,50 +168,35 @@ def _histogram(expectation: str, unit: str, values: FloatArray) -> str:
     )
 
 
-def _sensitivities(columns: Columns, parameters: Sequence[VariedQuantity]) -> str:
-    shares = sensitivities(columns, parameters)
-    rows = "".join(
-        f'<li><span>{escape(path)}</span><span class="bar" role="img" aria-label="{share:.0%}">'
-        f'<i class="effect" style="width:{100 * share:.1f}%"></i></span>'
-        f'<span class="number">{share:.0%}</span></li>'
-        for path, share in sorted(shares.items(), key=lambda item: -item[1])
-    )
+def _sensitivities(columns: Columns) -> str:
+    files = [each for each in sensitivities(columns) if each.runs < FEWEST_RUNS or each.effects]
+    blocks = "".join(_effects(each, len(columns.files)) for each in files if each.effects)
+    few = [f"{each.file} ({each.runs})" for each in files if not each.effects]
+    if few:
+        names = ", ".join(few[:MOST_FILES])
+        names += f" and {len(few) - MOST_FILES} more files" if len(few) > MOST_FILES else ""
+        blocks += (
+            f'<p class="quiet">Too few runs, fewer than {FEWEST_RUNS} of a file: {escape(names)}'
+            "</p>"
+        )
     return (
-        '<section class="panel"><h2>Sensitivity <span class="key">share of the worst margin&#x27;s'
-        " variance that each parameter explains alone</span></h2>"
-        f'<ol class="effects">{rows}</ol></section>'
+        '<section class="panel"><h2>Sensitivity <span class="key">share of the variance that each'
+        " parameter explains alone, among the runs of a file</span></h2>"
+        f'<div class="effects">{blocks}</div></section>'
     )
 
 
-def sensitivities(columns: Columns, parameters: Sequence[VariedQuantity]) -> Mapping[str, float]:
-    """How much of the variance of the worst margin each parameter explains alone, from 0 to 1.
-
-    The runs are divided into groups of equal size by the parameter; the share is epsilon squared
-    [1], the variance between the groups without what chance puts there. Where margins do not vary,
-    outcomes are used.
-
-    References:
-        [1] T. L. Kelley, "An Unbiased Correlation Ratio Measure", Proceedings of the National
-            Academy of Sciences 21(9), 1935.
-    """
-    measured = np.array(columns.shares)
-    if len(np.unique(measured[np.isfinite(measured)])) < 2:
-        measured = columns.is_good.astype(float)
-    return {each.path: _explained(each, measured) for each in parameters}
-
-
-def _explained(parameter: VariedQuantity, measured: FloatArray) -> float:
-    known = np.isfinite(parameter.numbers) & np.isfinite(measured)
-    numbers, values = parameter.numbers[known], measured[known]
-    distinct = np.unique(numbers)
-    if len(values) < FEWEST_RUNS or len(distinct) < 2 or not np.var(values):
-        return 0.0
-    if len(distinct) <= SENSITIVITY_BINS:
-        groups = [values[numbers == each] for each in distinct]
-    else:
-        count = min(SENSITIVITY_BINS, len(values) // 4)
-        groups = np.array_split(values[np.argsort(numbers, kind="stable")], count)
-    within = sum(float(((group - group.mean()) ** 2).sum()) for group in groups)
-    total = float(((values - values.mean()) ** 2).sum())
-    freedom = (len(values) - 1) / max(1, len(values) - len(groups))
-    return max(0.0, 1 - within / total * freedom)
+def _effects(sensitivity: FileSensitivity, files: int) -> str:
+    """The effects in one file; its name is shown where there are several."""
+    name = f"<b>{escape(sensitivity.file)}</b> " if files > 1 else ""
+    rows = "".join(
+        f'<li><span>{escape(each.path)}</span><span class="quiet unknown">{escape(each.reason)}'
+        "</span></li>"
+        if each.share is None
+        else f'<li><span>{escape(each.path)}</span><span class="bar" role="img" aria-label='
+        f'"{each.share:.0%}"><i class="effect" style="width:{100 * each.share:.1f}%"></i></span>'
+        f'<span class="number">{each.share:.0%}</span></li>'
+        for each in sensitivity.effects
+    )
+    said = f"variance of the {sensitivity.measured} in {sensitivity.runs} runs"
+    return f'<div>{name}<span class="quiet">{said}</span></div><ol>{rows}</ol>'

@@ -94,6 +94,8 @@ class Columns:
         numbers: Indices among all runs of the valid runs that vary; the other columns are of these.
         shares: The worst margin of each as a share of its limit; NaN where there is none.
         groups: Index of each run's cause among `causes`; -1: passed.
+        file_numbers: Index of each run's file among `files`.
+        without_margin: The number of failures without a finite margin, by expectation.
     """
 
     def __init__(self, cases: Iterable[SuiteCase] = (), *, most_listed: int = 0) -> None:
@@ -110,6 +112,9 @@ class Columns:
         self.numbers = array("Q")
         self.shares = array("d")
         self.groups = array("l")
+        self.file_numbers = array("l")
+        self.without_margin = Counter[str]()
+        self._files: dict[str, int] = {}
         self._columns: dict[str, _Column] = {}
         self._most_listed = most_listed
         self._urgent: list[tuple[bool, float, int]] = []  # a heap: the least urgent is first
@@ -141,9 +146,17 @@ class Columns:
             if math.isfinite(verdict.margin):
                 key = verdict.expectation, verdict.unit
                 self.margins.setdefault(key, array("d")).append(verdict.margin)
+            elif verdict.status == "failed":
+                self.without_margin[verdict.expectation] += 1
         self.numbers.append(index)
         self.shares.append(case.share)
         self.groups.append(group)
+        self.file_numbers.append(self._files.setdefault(case.result.file, len(self._files)))
+
+    @property
+    def files(self) -> list[str]:
+        """The files of the runs that vary, in their order."""
+        return list(self._files)
 
     @property
     def listed(self) -> list[int]:

@@ -13,7 +13,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
-from harness.robot.description import Joint, Link, Mimic, PlanningGroup
+from harness.robot.description import Joint, Link, Mimic, NamedState, PlanningGroup
 from harness.robot.mesh_file import hull_of
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import DOT, box_corners, coal_geometry, hull_corners
@@ -128,6 +128,7 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     )
     has_body = hand.has_shape(palm) and palm not in pads
     body = hand.middle(palm, closed) if has_body else np.zeros(3)
+    srdf = _with_states(srdf, facts)
     center = hand.center(pads, closed)
     return IntegratedGripper(facts, urdf, srdf, center, body, tuple(pairs), tuple(notes))
 
@@ -375,6 +376,18 @@ def _outermost(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, .
         return max(float(np.maximum(low * out, high * out).sum()) for low, high in boxes)
 
     return sorted(links, key=reach, reverse=True)
+
+
+def _with_states(srdf: Srdf, facts: GripperFacts) -> Srdf:
+    """The SRDF with states `open` and `close` of the hand, unless it has such ones."""
+    named = {state.name.lower() for state in srdf.states if state.group == facts.group}
+    ends = {"open": facts.open_position, "closed": facts.closed_position}
+    added = (
+        NamedState(STATES[word][0], facts.group, {facts.joint: position})
+        for word, position in ends.items()
+        if named.isdisjoint(STATES[word])
+    )
+    return replace(srdf, states=(*srdf.states, *added))
 
 
 def _state(srdf: Srdf, group: str, joint: str, word: str, default: float) -> float:

@@ -12,7 +12,7 @@ from harness.core.spatial import SE3
 from harness.robot.description import Joint, Link, PlanningGroup
 from harness.robot.gripper.inferred_gripper import IntegratedGripper
 from harness.robot.srdf.default_pairs import urdf_poses
-from harness.robot.srdf.srdf import Srdf, SrdfGroup
+from harness.robot.srdf.srdf import Srdf
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
 
@@ -125,8 +125,8 @@ def _ending_at(
     if carrier.get(link) != carrier.get(tip):
         return srdf
 
-    def changed(group: SrdfGroup) -> SrdfGroup:
-        chains = tuple((base, link if end == tip else end) for base, end in group.chains)
-        return replace(group, chains=chains) if group.name == arm.name else group
+    def moved(end: str) -> str:
+        return link if end == tip else end
 
-    return replace(srdf, groups=tuple(changed(group) for group in srdf.groups))
+    groups = (each.with_links(moved) if each.name == arm.name else each for each in srdf.groups)
+    return replace(srdf, groups=tuple(groups))

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -121,20 +121,27 @@ def tendon_joints(model: Any, tendon: int) -> dict[int, float]:
     }
 
 
-def _driven_together(model: Any, mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
+def _driven_together(model: Any, followed: Container[str]) -> dict[str, Mimic]:
     """The second of two joints that one actuator pulls by a fixed tendon, following the first."""
+    found: dict[str, Mimic] = {}
+    for pulled in pulled_pairs(model):
+        (first, slope), (second, other_slope) = pulled.items()
+        names = [str(model.joint(joint).name) for joint in (first, second)]
+        if not any(name in followed for name in names):
+            found[names[1]] = Mimic(names[0], other_slope / slope)
+    return found
+
+
+def pulled_pairs(model: Any) -> list[dict[int, float]]:
+    """Coefficients of the two joints of each fixed tendon of two that an actuator pulls."""
     import mujoco
 
-    found: dict[str, Mimic] = {}
-    for actuator in range(model.nu):
-        if int(model.actuator_trntype[actuator]) != int(mujoco.mjtTrn.mjTRN_TENDON):
-            continue
-        pulled = tendon_joints(model, int(model.actuator_trnid[actuator, 0]))
-        names = [str(model.joint(joint).name) for joint in pulled]
-        if len(names) == 2 and all(pulled.values()) and not set(names) & set(mimics):
-            first, second = pulled.values()
-            found[names[1]] = Mimic(names[0], second / first)
-    return found
+    pulled = [
+        tendon_joints(model, int(model.actuator_trnid[actuator, 0]))
+        for actuator in range(model.nu)
+        if int(model.actuator_trntype[actuator]) == int(mujoco.mjtTrn.mjTRN_TENDON)
+    ]
+    return [each for each in pulled if len(each) == 2 and all(each.values())]
 
 
 def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[Joint]:
@@ -159,7 +166,7 @@ def with_mimics(model: Any, joints: Iterable[Joint], notes: list[str]) -> list[J
         zero, other_zero = (float(model.qpos0[model.jnt_qposadr[j]]) for j in (first, second))
         mimics[name] = Mimic(other, slope, zero + offset - slope * other_zero)
     followed = set(mimics) | {mimic.joint for mimic in mimics.values()}
-    for name, mimic in _driven_together(model, dict.fromkeys(followed, Mimic(""))).items():
+    for name, mimic in _driven_together(model, followed).items():
         notes.append(f"joint '{name}' follows '{mimic.joint}': one actuator pulls both by a tendon")
         mimics[name] = mimic
     linked, count = linkage_mimics(model, mimics, notes)

@@ -17,7 +17,7 @@ from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Link, NamedState
 from harness.robot.mjcf.files import read_tree
-from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, with_mimics
+from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, pulled_pairs, with_mimics
 from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
 from harness.robot.srdf.srdf import link_pair
@@ -83,9 +83,11 @@ def _remove_textures(spec: Any) -> None:
 
 
 def _problem(message: str, root: XmlElement, path: Path) -> Problem:
-    """MuJoCo's message, at the line that it names."""
+    """MuJoCo's message with the element, at the line that it names."""
     lines = [line for line in message.splitlines() if line.strip()]
     text = lines[0].removeprefix("Error: ").removeprefix("XML Error: ")
+    named = re.search(r"Element name '([^']+)'", message)
+    text += f": '{named[1]}'" if named else ""
     found = re.search(r"line (\d+)", message)
     source: Source = root.place.source
     line = int(found[1]) if found else 0
@@ -160,7 +162,7 @@ class _Reader:
         model = self.model
         for count, what in (
             (model.nu, "actuators are not used: the program drives every joint with its own servo"),
-            (model.ntendon, "tendons are ignored"),
+            (model.ntendon - len(pulled_pairs(model)), "tendons are ignored"),
             (model.nsensor, "sensors are ignored"),
             (_with_own_dynamics(model), "joints have an armature or a spring, which is ignored"),
             (int(model.body_geomnum[0]), "geoms of the world body are not part of the robot"),

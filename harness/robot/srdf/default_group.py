@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from harness.robot.description import Joint
 from harness.robot.gripper.inferred_gripper import is_gripper
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
-from harness.robot.tree import carriers
+from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf
 
 DEFAULT_GROUP = "arm"
@@ -17,8 +17,12 @@ DEFAULT_GROUP = "arm"
 FINGER_NAMES = re.compile(r"jaw|finger|claw|pinch", re.IGNORECASE)
 """Names by which a single movable jaw differs from an arm's last joint.
 
-A whole tool that a wrist turns can be called a gripper too, so that its shapes decide.
+A whole tool that a wrist turns can be called a gripper too: a jaw is then carried by a hand, or
+closes on the link that carries it.
 """
+
+HAND_NAMES = re.compile(r"grip|hand|palm", re.IGNORECASE)
+"""Names of the body of a hand."""
 
 LEAST_ARM = 2
 """Fewest joints that remain when a jaw is left out."""
@@ -31,19 +35,10 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     several chains are longest, the group ends where they branch, as at fingers that move alone; of
     several arms it is the first.
     """
-    before = {joint.child: joint for joint in urdf.joints}
-
-    def chain(link: str) -> list[Joint]:
-        found: list[Joint] = []
-        while link in before:
-            found.append(before[link])
-            link = before[link].parent
-        return found[::-1]
-
-    if tip_link in before:
+    if tip_link in {joint.child for joint in urdf.joints}:
         tips = [tip_link]
     else:
-        chains = [chain(link.name) for link in urdf.links]
+        chains = [joints_to(link.name, urdf.joints) for link in urdf.links]
         tips = _tips([_without_fingers(each, urdf) for each in chains]) or _tips(chains)
     if not tips:
         return Srdf()
@@ -106,7 +101,9 @@ def _is_jaw(joint: Joint, urdf: Urdf) -> bool:
     names = f"{joint.name} {joint.child}"
     if FINGER_NAMES.search(names):
         return True
-    return "grip" in names.lower() and is_gripper(urdf, (joint.name,))
+    if "grip" not in names.lower():
+        return False
+    return HAND_NAMES.search(joint.parent) is not None or is_gripper(urdf, (joint.name,))
 
 
 def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:

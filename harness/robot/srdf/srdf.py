@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
 from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import NamedState
@@ -26,6 +26,10 @@ class SrdfGroup:
     chains: tuple[tuple[str, str], ...] = ()
     subgroups: tuple[str, ...] = ()
     element: XmlElement | None = field(default=None, compare=False, repr=False)
+
+    def with_links(self, name: Callable[[str], str]) -> SrdfGroup:
+        """The group with other names for the ends of its chains."""
+        return replace(self, chains=tuple((name(base), name(tip)) for base, tip in self.chains))
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,10 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
         root.refuse(f"the root element is <{root.tag}>, an SRDF's is <robot>")
     link = root.find("link")
     if link is not None:
-        link.refuse("this is a URDF", "its groups, states and allowed pairs are in an SRDF")
+        link.refuse(
+            "this is a URDF",
+            "its groups, states and allowed pairs are in an SRDF; a URDF is named by `urdf`",
+        )
     ignored = Counter(child.tag for child in root.children if child.tag not in READ)
     return Srdf(
         tuple(_group(item) for item in root.findall("group")),

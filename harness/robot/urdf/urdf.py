@@ -24,6 +24,7 @@ from harness.robot.urdf.values import rgba
 from harness.robot.xacro.file import xacro_parts
 
 MOST_LINKS = 500
+OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
 READ = frozenset({"link", "joint", "material", "ros2_control"})
 
 
@@ -87,6 +88,10 @@ def parse_urdf(
     joints = collected(read_joint, root.findall("joint"))
     notes += zero_limits(root.findall("joint"))
     notes += ranges_of_continuous(root.findall("joint"))
+    if not links and any(root.find(tag) is not None for tag in OF_SRDF):
+        root.refuse(
+            "this is an SRDF", "its links and joints are in a URDF; an SRDF is named by `srdf`"
+        )
     if not links:
         root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:

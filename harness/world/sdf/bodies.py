@@ -87,6 +87,7 @@ def bodies_of(world: SdfScope, notes: Notes) -> list[SdfBody]:
             fixed.add(link.name)
             groups.join(firsts.setdefault(id(static), link.name), link.name)
     for scope in _scopes(world):
+        _check_links(scope)
         for name, item in scope.named.items():
             if item.kind == "joint":
                 _join(scope, name, item, groups, fixed, notes)
@@ -96,6 +97,23 @@ def bodies_of(world: SdfScope, notes: Notes) -> list[SdfBody]:
     held = {groups.find(name) for name in fixed}
     sizes = Counter(id(_top(link.scope)) for link in links)
     return [_body(members, sizes, group in held) for group, members in by_group.items()]
+
+
+def _check_links(scope: SdfScope) -> None:
+    """Refuse a model that has no link, or not the one that represents it; and names given twice."""
+    if scope.parent is not None:
+        if scope.canonical_link:
+            link_name(scope, scope.canonical_link, scope.element)
+        if not scope.is_static and not any(scope.links()):
+            scope.element.refuse(f"the model '{scope.name}' has no link, and is not static")
+    for link in (item for item in scope.named.values() if item.kind == "link"):
+        for tag in ("collision", "visual"):
+            names = set[str]()
+            for each in link.element.findall(tag):
+                name = each.get("name").strip()
+                if name and name in names:
+                    each.refuse(f"another <{tag}> of this link is called '{name}'", at="name")
+                names.add(name)
 
 
 def _links(world: SdfScope) -> list[SdfLink]:
@@ -139,6 +157,9 @@ def _join(
         link_name(scope, text_of(item.element, tag), item.element) for tag in ("parent", "child")
     ]
     first, second = sides
+    if first == second:
+        place = item.element.find("child") or item.element
+        place.refuse(f"'{first}' is parent and child of this joint")
     if WORLD in sides:
         fixed.update(side for side in sides if side != WORLD)
     else:

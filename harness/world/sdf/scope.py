@@ -155,8 +155,5 @@ def check_frames(scope: SdfScope) -> None:
 
 
 def _check_joint(joint: XmlElement) -> None:
-    parent, child = text_of(joint, "parent"), text_of(joint, "child")
-    if child == WORLD:
+    if text_of(joint, "child") == WORLD:
         (joint.find("child") or joint).refuse("the child of a joint cannot be the world")
-    if parent == child:
-        (joint.find("child") or joint).refuse(f"'{child}' is parent and child of this joint")

@@ -14,6 +14,9 @@ from harness.world.sdf.scope import WORLD, Named, SdfScope, check_frames
 from harness.world.sdf.values import PlacedPose, is_flag, is_true, pose_of, text_of
 
 OLDEST, NEWEST = (1, 4), (1, 11)
+NO_COLONS = (1, 8)
+"""The version from which `::` separates the names of nested models, and is in no name."""
+
 MOST_MODELS = 2000
 MOST_INCLUDES_DEEP = 30
 MERGED = "_merged__"
@@ -46,6 +49,7 @@ class SdfTree:
         self.notes = Notes()
         self._model_path = model_path
         self._files: dict[Path, XmlElement] = {}
+        self._versions: dict[str, tuple[int, int]] = {}
         self._count = 0
         sdf = self._sdf(path)
         worlds = sdf.findall("world")
@@ -92,6 +96,7 @@ class SdfTree:
         if len(parts) != 2 or not all(part.isdigit() for part in parts):
             sdf.refuse(f"`{text}` is not a version of SDF", "such as 1.9", at="version")
         version = (int(parts[0]), int(parts[1]))
+        self._versions[sdf.place.source.path] = version
         if version < OLDEST:
             hint = "`gz sdf -p FILE` converts it to a newer version"
             sdf.refuse(f"SDF {text} is older than 1.4", hint, at="version")
@@ -133,6 +138,9 @@ class SdfTree:
             )
         if name in (WORLD, "__model__", "__root__"):
             element.refuse(f"'{name}' is a reserved name", "choose another name", at="name")
+        version = self._versions[element.place.source.path]
+        if "::" in name and version >= NO_COLONS:
+            element.refuse(f"'{name}': a name has no '::' since SDF 1.8", at="name")
         if name in scope.named:
             first = scope.named[name].element.place.line
             element.refuse(f"'{name}' is defined twice; first in line {first}", at="name")

@@ -51,6 +51,7 @@
     frame(pen, width, height, [x, left, right, px], [y, low, high, py]);
     placed = [];
     const points = data.points.filter((point) => point[x] !== null && point[y] !== null);
+    legend(points);
     if (kind.value === "rate") rate(pen, width, height, points, x, y, [left, right], [low, high]);
     else runs(pen, points, x, y, px, py);
     if (marked) ring(pen);
@@ -173,21 +174,23 @@
   });
   for (const select of [across, up, kind]) select.addEventListener("change", draw);
   new ResizeObserver(draw).observe(canvas);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { legend(); draw(); });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 
-  function legend() {
-    const present = new Set(data.points.map((point) => point[CAUSE]));
+  /** The causes of the drawn runs, and how many have no place on these axes. */
+  function legend(points) {
+    const present = new Set(points.map((point) => point[CAUSE])), missing = data.points.length - points.length;
     const entries = [[-1, "passed"], ...data.causes.map((cause, index) => [index, cause]), [data.causes.length, "other causes"]];
-    section.querySelector(".legend").replaceChildren(...entries.filter(([index]) => present.has(index)).map(([index, name]) => {
+    const shown = entries.filter(([index]) => present.has(index)).map(([index, name]) => {
       const entry = document.createElement("span"), dot = document.createElement("i");
       dot.style.background = index < 0 ? color("--good") : causeColor(index);
       entry.append(dot, name);
       return entry;
-    }));
+    });
+    if (missing) shown.push(`${missing} of ${data.points.length} runs have no such values and are not drawn`);
+    section.querySelector(".legend").replaceChildren(...shown);
   }
 
   section.hidden = false;
   up.value = count > 1 ? 1 : SHARE;
-  legend();
   draw();
 })();

@@ -1,0 +1,40 @@
+"""Pictures are drawn by another process, so that what breaks a graphics library costs no run."""
+
+import os
+import subprocess
+import sys
+
+from tests.engine.front_door import file_of
+
+PROGRAM = """
+import sys
+from pathlib import Path
+from harness.session import run_case as session
+from harness.session.background import Background
+from harness.session.run_request import RunRequest
+
+begun, begin = [], Background.__init__
+
+def noted(background, *arguments):
+    begin(background, *arguments)
+    begun.append(background.is_apart)
+
+Background.__init__ = noted
+folder = Path(sys.argv[1]).parent / "run"
+request = RunRequest(Path(sys.argv[1]), report_dir=folder, only_failed=True, page=False)
+print(session.run_case(request).outcome, begun, len(list((folder / "images").iterdir())))
+"""
+
+
+def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_path):
+    rest = "expect: [{joints: {positions: {joint1: 0.25}, tolerance: 0.01}}]"
+    steps = "- ptp: {joints: {joint1: 0.5}}"
+    file = file_of(tmp_path, steps, robot="open_manipulator_x", rest=rest)
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(file)],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+    )
+    assert done.stdout.split("\n")[0] == "failed [True] 1"
