@@ -87,7 +87,8 @@ Both formats are read: objects have poses since MoveIt 1.1; before, only their s
 | colour | read | four zeros are no colour |
 | subframes | ignored | with a note |
 | object without shapes | ignored | with a note |
-| `cone`, octrees | refused | |"""
+| `cone` | read | as a pyramid of 32 sides |
+| octrees | refused | |"""
 
 MESSAGES = """## MoveIt messages in YAML
 

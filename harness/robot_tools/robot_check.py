@@ -95,9 +95,9 @@ def _findings(
     yield look_at.masses(description)
     yield look_at.limits(description)
     yield look_at.states(description)
-    shapes = look_at.shapes(description)
-    if shapes is not None:
-        yield shapes
+    for found in (look_at.sizes(description), look_at.shapes(description)):
+        if found is not None:
+            yield found
     yield look_at.self_collisions(touches)
     if description.arm_group and description.tcp_link:
         free = positions[touches.is_free]

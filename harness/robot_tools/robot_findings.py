@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from harness.core.types import FloatArray
@@ -13,6 +15,7 @@ from harness.reporting.robot_report import RobotFinding
 from harness.robot.collision_shapes import mesh_shapes
 from harness.robot.description import RobotDescription
 from harness.robot.link_masses import mass_notes, mass_problems
+from harness.robot.solids import box_corners, coal_geometry
 from harness.simulation.agreement import link_poses_in_physics
 
 AGREEMENT = 1e-9
@@ -23,6 +26,10 @@ TOO_OFTEN = 0.9
 """Part of the configurations that collide from which a description is wrong and not crowded."""
 
 PLACEHOLDER_EFFORT = 1000.0
+MOST_TURNS = 10
+"""Turns of a revolute joint from which its limits are in degrees in all likelihood."""
+LARGEST_LINK = 10.0
+"""Length of a shape from which it is in millimetres in all likelihood [m]."""
 
 
 def forward_kinematics(
@@ -77,9 +84,34 @@ def limits(description: RobotDescription) -> RobotFinding:
             notes.append(f"{joint.name} has no effort limit")
         elif joint.effort >= PLACEHOLDER_EFFORT:
             notes.append(f"{joint.name}: an effort of {joint.effort:g} is a placeholder")
+        if joint.kind == "revolute" and joint.upper - joint.lower > MOST_TURNS * math.tau:
+            notes.append(
+                f"{joint.name}: {joint.lower:g} to {joint.upper:g} rad are"
+                f" {(joint.upper - joint.lower) / math.tau:.0f} turns; degrees are"
+                f" {math.radians(joint.lower):.3g} to {math.radians(joint.upper):.3g} rad"
+            )
     count = len(description.movable_joints)
     text = f"{count} joint{'s move' if count != 1 else ' moves'}"
     return RobotFinding("limits", text, details=tuple(notes))
+
+
+def sizes(description: RobotDescription) -> RobotFinding | None:
+    """Links that are too large for an arm; None where there are none."""
+    lengths: dict[str, float] = {}
+    for link in description.links:
+        for shape in link.collisions:
+            corners = box_corners(coal_geometry(shape))
+            length = float((corners.max(axis=0) - corners.min(axis=0)).max())
+            lengths[link.name] = max(length, lengths.get(link.name, 0.0))
+    details = tuple(
+        f"{name}: a shape is {length:.3g} m long; files in millimetres need `scale` 0.001"
+        for name, length in lengths.items()
+        if length > LARGEST_LINK
+    )
+    if not details:
+        return None
+    text = f"{len(details)} of {len(lengths)} links are larger than {LARGEST_LINK:g} m"
+    return RobotFinding("sizes", text, is_good=False, details=details)
 
 
 def states(description: RobotDescription) -> RobotFinding:

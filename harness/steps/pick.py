@@ -261,6 +261,13 @@ def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Ce
     blockers = [name for name in pair if name in cell.presence and name != step.object]
     can_move = bool(blockers) and not cell.scene.is_ground(blockers[0])
     tried = f"none of {grasps} grasps is free" if grasps > 1 else "the grasp is not free"
+    if step.object in pair and not blockers and _moves_with_object(step):
+        link = next(name for name in pair if name != step.object)
+        return (
+            f"{tried}: it moves with '{step.object}', so moving that does not help; state another"
+            f" one with `grasp_pose`, which keeps '{link}' {depth} farther out, or give"
+            f" '{step.object}' a shape that fits between the fingers"
+        )
     moved = f"move '{step.object}' to where the gripper has {depth} more room"
     if blockers:
         moved = f"move '{step.object}' {depth} farther from '{blockers[0]}'"
@@ -268,13 +275,16 @@ def _collision_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Ce
         shift = nearest.nearest_free.shift
         axis = max(range(3), key=lambda index: abs(shift[index]))
         sign = "+" if shift[axis] > 0 else "-"
-        moved = (
-            f"move '{step.object}' {millimetres(abs(shift[axis]))} along {sign}{'xyz'[axis]} of the"
-            " world"
-        )
+        far, along = millimetres(abs(shift[axis])), f"{sign}{'xyz'[axis]}"
+        moved = f"move '{step.object}' {far} along {along} of the world"
     if can_move:
         moved += f", or '{blockers[0]}' out of the way"
     return f"{tried}: {moved}; or state another grasp with `grasp_pose`"
+
+
+def _moves_with_object(step: Pick) -> bool:
+    """Whether the grasp stays where it is on the object when that is moved."""
+    return step.grasp_pose is None or step.grasp_pose.frame == step.object
 
 
 def millimetres(metres: float) -> str:

@@ -103,9 +103,9 @@ def test_nothing_is_overwritten_unless_requested(tmp_path, capsys):
 
 def test_a_mistake_of_the_file_is_reported_at_its_line_and_nothing_written(tmp_path, capsys):
     source = tmp_path / "a.scene"
-    source.write_text(NEW.replace("cylinder", "cone"))
+    source.write_text(NEW.replace("cylinder", "torus"))
     assert main(["import", "scene", str(source)]) == 2
-    assert "a.scene:11:1: a shape cannot be a `cone`" in capsys.readouterr().err
+    assert "a.scene:11:1: a shape cannot be a `torus`" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["a.scene"]
 
 

@@ -101,8 +101,11 @@ UNIT = INERTIAL.replace('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="1" iyy="1" iz
          " of inertia 0.01, 0.01, 0.05 kg m^2"),
         (f"{AT}<axis xyz=\"0 0 1\"/>", f"{AT.replace('0.2', '-0.3')}<axis xyz=\"0 0 1\"/>",
          "✗ named states: 2 of 2 cannot be taken\n      the start: upper touches wrist"),
+        ('<cylinder radius="0.03" length="0.14"/>', '<cylinder radius="30" length="140"/>',
+         "✗ sizes: 3 of 3 links are larger than 10 m\n      upper: a shape is 140 m long;"
+         " files in millimetres need `scale` 0.001"),
     ],
-    ids=["triangle", "states"],
+    ids=["triangle", "states", "sizes"],
 )  # fmt: skip
 def test_what_is_wrong_is_exit_code_1_and_reported(old, new, said, folder, monkeypatch, capsys):
     assert old in URDF
@@ -119,6 +122,8 @@ def test_what_is_wrong_is_exit_code_1_and_reported(old, new, said, folder, monke
         (URDF.replace(f'"wrist">{INERTIAL}', f'"wrist">{UNIT}'),
          "link 'wrist': the inertia is the unit tensor, a placeholder"),
         (URDF.replace('effort="80"', 'effort="1000"'), "reach: an effort of 1000 is a placeholder"),
+        (URDF.replace('lower="-2" upper="2"', 'lower="-110" upper="110"'),
+         "bend: -110 to 110 rad are 35 turns; degrees are -1.92 to 1.92 rad"),
         (URDF, "3 links have the same 1 kg and the same inertia, a placeholder: upper, lower"),
         (URDF.replace("</robot>", "<transmission name='t'/></robot>"), "left out or assumed\n"),
         (URDF.replace('"tool"/>', f'"tool">{SHAPE}</link>', 1), "no <inertial>: tool"),

@@ -273,6 +273,19 @@ def test_nothing_is_put_down_where_the_gripper_cannot_open(tmp_path):
     assert "farther from 'bin'" in advice(record, "steps[1]")
 
 
+def test_the_advice_does_not_move_an_object_with_which_the_grasp_moves(tmp_path):
+    """Following it had the same collision again: the palm stood as deep inside the post."""
+    post = (
+        "- {name: post, box: {size: [4 cm, 4 cm, 30 cm]}, pose: {xyz: [0.4, 0, 0.15]}, mass: 0.1}"
+    )
+    deep = "- pick: {object: post, grasp_pose: {xyz: [0, 0, -5 cm], frame: post}}"
+    result, record = run(tmp_path, deep, robot=UR5E, rest=objects(post))
+    assert result.steps[0].error_code == "GOAL_IN_COLLISION"
+    said = advice(record, "steps[0]")
+    assert "moving that does not help" in said
+    assert "state another one with `grasp_pose`" in said
+
+
 def test_the_first_length_of_an_approach_that_the_arm_can_follow_is_taken(tmp_path):
     """A shelf above leaves 6 cm."""
     result, _ = run(

@@ -118,6 +118,17 @@ def test_what_is_ignored_or_assumed_is_noted(tmp_path):
     )
 
 
+def test_the_range_of_a_continuous_joint_is_noted(tmp_path):
+    text = URDF.replace('<limit velocity="2"', '<limit lower="-1" upper="1" velocity="2"')
+    write_arm(tmp_path, text)
+    assert load_arm(tmp_path).notes[0] == (
+        "joint turn: `lower` and `upper` are ignored, since the type is continuous;"
+        " `revolute` has them"
+    )
+    write_arm(tmp_path, text.replace('lower="-1" upper="1" vel', 'lower="0" upper="0" vel'))
+    assert not any("ignored" in note for note in load_arm(tmp_path).notes)
+
+
 def test_a_state_may_place_joints_of_several_axes_that_stand_still_here(tmp_path):
     several = '<joint name="held" value="0 0 1"/><joint name="tip" value="0 0 0 0 0 0 1"/>'
     write_arm(tmp_path, srdf=SRDF.replace("</group_state>", f"{several}</group_state>"))

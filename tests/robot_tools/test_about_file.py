@@ -62,6 +62,14 @@ def test_an_angle_that_looks_like_degrees_is_noted_with_its_place(tmp_path, caps
     assert any(said in finding.message for finding in result.run.findings)
 
 
+def test_a_pose_in_millimetres_is_out_of_reach_with_a_hint(tmp_path, capsys):
+    path = written(tmp_path, "  - move_to: {position: [400, 0, 90]}\nexpect: [within_limits]\n")
+    assert main(["check", str(path)]) == 1
+    said = capsys.readouterr().out
+    assert "4:26: 400 is a length in metres; write `400 mm` for millimetres" in said
+    assert "90 is a length" not in said
+
+
 def test_a_joint_goal_in_degrees_is_out_of_reach_with_a_hint(tmp_path, capsys):
     path = written(tmp_path, "  - move_to: {joints: {joint1: 90}}\nexpect: [within_limits]\n")
     assert main(["check", str(path)]) == 1

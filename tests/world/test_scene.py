@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+import trimesh
 
 from harness.core.errors import SpecError
 from harness.world.moveit_scene.scene import load_scene
@@ -119,6 +120,18 @@ def test_a_mesh_comes_out_as_triangles(tmp_path):
     assert triangles[3].tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
 
 
+def test_a_cone_is_a_pyramid_about_its_middle(tmp_path):
+    found = scene(tmp_path, NEW.replace("cylinder\n0.02 0.4", "cone\n0.02 0.4"))
+    [corners] = (mesh.reshape(-1, 3) for mesh in found.meshes.values())
+    assert corners.min(axis=0) == pytest.approx([-0.02, -0.02, -0.2])
+    assert corners.max(axis=0) == pytest.approx([0.02, 0.02, 0.2])
+    assert np.abs(corners[corners[:, 2] > 0, :2]).max() == 0, "the tip is above"
+    body = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    body.merge_vertices()
+    assert body.is_watertight
+    assert body.volume == pytest.approx(math.pi * 0.02**2 * 0.4 / 3, rel=0.01)
+
+
 def test_a_plane_is_solid_behind_its_normal_at_its_distance(tmp_path):
     text = "x\n* floor\n1\nplane\n0 2 0 1\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n"
     found = scene(tmp_path, text)
@@ -134,7 +147,7 @@ def test_a_plane_is_solid_behind_its_normal_at_its_distance(tmp_path):
         (NEW.replace("\n.\n", "\n"), 29, "expected an object, found the end of the file"),
         (NEW.replace("* ball", "# ball"), 20, "expected an object, found `#`"),
         (NEW.replace("* ball", "* table"), 20, "another object has the name 'table'"),
-        (NEW.replace("cylinder", "cone"), 11, "a shape cannot be a `cone`"),
+        (NEW.replace("cylinder", "torus"), 11, "a shape cannot be a `torus`"),
         (NEW.replace("0.05", "-1"), 24, "a shape has sizes above 0"),
         (NEW.replace("0.05", "nan"), 25, "expected a finite number, found `nan`"),
         (NEW.replace("0 0 1\n0 0 0 1\n1\nsphere", "0 0 1\n0 0 0 0\n1\nsphere"), 22, "has norm 1"),

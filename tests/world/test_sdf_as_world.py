@@ -120,6 +120,16 @@ def test_a_fuel_address_leads_to_gazebos_cache(tmp_path, monkeypatch):
     assert [item.name for item in objects] == ["box10", "m", "crate"]
 
 
+@pytest.mark.parametrize("name", ["Sun", "Ground%20Plane"])
+def test_the_bundled_models_stand_for_those_of_fuel(tmp_path, monkeypatch, name):
+    monkeypatch.setenv("GZ_FUEL_CACHE_PATH", str(tmp_path / "fuel"))
+    address = f"https://fuel.gazebosim.org/1.0/OpenRobotics/models/{name}"
+    found = load(tmp_path, text_with("world", f"<include><uri>{address}</uri></include>"))
+    assert len(found.world.lights) == (2 if name == "Sun" else 1)
+    names = [item.name for item in found.world.objects]
+    assert ("ground_plane" in names) == (name != "Sun")
+
+
 def test_the_world_is_said_by_its_name_or_its_keys():
     folder = Path(__file__).parent
     text = "scenario: x\nrobot: ur3e\nworld: {name: a.sdf, model_path: [b]}\nsteps: [settle]\n"

@@ -55,6 +55,10 @@ READ = {
         "<include><name>o</name><uri>model://crate</uri></include>",
         lambda w: names(w) == ["o", "m", "crate"],
     ),
+    ("world", "state"): (
+        "<state><sim_time>9 0</sim_time><model name='m'><pose>3 0 1.5 0 0 0</pose></model></state>",
+        lambda w: xyz(w) == (3, 0, 1.5),
+    ),
     ("world", "light"): (
         "<light name='o' type='directional'><direction>1 0 0</direction></light>",
         lambda w: w.lights[0].direction == (1, 0, 0),

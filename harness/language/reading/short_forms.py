@@ -35,6 +35,8 @@ from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, TAG, Step
 
 TURN = 6.283186  # [rad], rounded up
+FAR = 100.0
+"""Length above which a number without a unit is one of millimetres in all likelihood [m]."""
 
 
 def models_shape(
@@ -57,7 +59,7 @@ class _Shaper:
         self.notes = notes
 
     def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
-        self._note_angle(item, annotation, metadata)
+        self._note_unit(item, annotation, metadata)
         annotation = bare(annotation)
         if annotation is Step:
             return self.step(item)
@@ -87,14 +89,19 @@ class _Shaper:
     def field(self, item: Located, field: FieldInfo) -> Located:
         return self.shape(item, field.annotation, field.metadata)
 
-    def _note_angle(self, item: Located, annotation: Any, metadata: Iterable[Any]) -> None:
-        """Note numbers that are degrees in all likelihood."""
+    def _note_unit(self, item: Located, annotation: Any, metadata: Iterable[Any]) -> None:
+        """Note numbers that are degrees or millimetres in all likelihood."""
         number = item.value
         if isinstance(number, bool) or not isinstance(number, int | float) or abs(number) <= TURN:
             return
-        if "rad" in units_of(annotation, metadata):
+        units = units_of(annotation, metadata)
+        if "rad" in units:
             message = f"{number:g} is an angle in radians, {math.degrees(number):.1f} degrees"
             hint = f"write `{number:g} deg` for degrees"
+            self.notes.append(item.place.problem(message, hint))
+        elif "m" in units and abs(number) > FAR:
+            message = f"{number:g} is a length in metres"
+            hint = f"write `{number:g} mm` for millimetres"
             self.notes.append(item.place.problem(message, hint))
 
     def model(self, item: Located, model: type[SpecModel], **names: str) -> Located:

@@ -83,7 +83,8 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     """
     urdf, joint, notes = _one_joint(urdf, group)
     if not np.isfinite([joint.lower, joint.upper]).all():
-        raise NoGripperError(f"'{joint.name}' has no limits")
+        kind = "is continuous and" if joint.kind == "continuous" else ""
+        raise NoGripperError(" ".join(f"'{joint.name}' {kind} has no limits".split()))
     fingers = _fingers(urdf, joint)
     palm = fingers[0][0].parent
     hand = _Hand(urdf, joint, palm)

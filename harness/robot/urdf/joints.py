@@ -39,6 +39,21 @@ def zero_limits(joints: Sequence[XmlElement]) -> list[str]:
     return notes
 
 
+def ranges_of_continuous(joints: Sequence[XmlElement]) -> list[str]:
+    """A note on the joints that have a range and are continuous, so that it counts for nothing."""
+    limits = {joint.get("name"): joint.find("limit") for joint in joints}
+    names = [
+        joint.get("name")
+        for joint in joints
+        if joint.get("type") == "continuous"
+        and (limit := limits[joint.get("name")]) is not None
+        and any(number(limit, key, 0.0) for key in ("lower", "upper"))
+    ]
+    plural = "s" if len(names) > 1 else ""
+    text = f"joint{plural} {', '.join(names)}: `lower` and `upper` are ignored, since the type is"
+    return [f"{text} continuous; `revolute` has them"] if names else []
+
+
 def read_joint(element: XmlElement) -> Joint:
     """A joint.
 

@@ -12,7 +12,12 @@ from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
-from harness.robot.urdf.joints import read_joint, resolved_mimics, zero_limits
+from harness.robot.urdf.joints import (
+    ranges_of_continuous,
+    read_joint,
+    resolved_mimics,
+    zero_limits,
+)
 from harness.robot.urdf.links import LinkReader
 from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
@@ -82,6 +87,7 @@ def parse_urdf(
     links = collected(reader.link, root.findall("link"))
     joints = collected(read_joint, root.findall("joint"))
     notes += zero_limits(root.findall("joint"))
+    notes += ranges_of_continuous(root.findall("joint"))
     if not links and any(root.find(tag) is not None for tag in OF_SRDF):
         root.refuse(
             "this is an SRDF", "its links and joints are in a URDF; an SRDF is named by `srdf`"

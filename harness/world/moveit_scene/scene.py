@@ -25,6 +25,8 @@ SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 LARGEST_FILE = 8_000_000  # [bytes]
 MOST_OBJECTS = 1000
 MOST_SHAPES = 10_000
+CONE_SIDES = 32
+"""Sides of the pyramid that stands for a cone."""
 MOST_CORNERS = 200_000
 """Most vertices of one mesh, and most triangles: the limit of the physics."""
 
@@ -138,13 +140,15 @@ class _Reader:
             case "cylinder":
                 radius, length = self._sizes(2, place)
                 words["cylinder"] = {"radius": radius, "length": length}
+            case "cone":
+                words["mesh"] = self._cone(name, *self._sizes(2, place))
             case "plane":
                 words["plane"] = {}
                 turn = self._plane(place)
             case "mesh":
                 words["mesh"] = self._mesh(name)
             case _:
-                hint = f"shapes: {', '.join(SHAPES)}"
+                hint = f"shapes: {', '.join((*SHAPES, 'cone'))}"
                 raise SpecError([place.problem(f"a shape cannot be a `{kind[:40]}`", hint)])
         pose = self._pose() @ turn
         return ShapeSpec(pose=pose_spec(pose), color=self._color(), **words)
@@ -166,9 +170,25 @@ class _Reader:
         faces: list[list[int]] = []
         for _ in range(triangles):
             faces.append([self._count("vertices", vertices - 1) for _ in range(3)])
+        return self._written(name, corners[np.array(faces, dtype=np.int64).reshape(-1, 3)])
+
+    def _cone(self, name: str, radius: float, length: float) -> MeshSpec:
+        """A cone about z, its tip up, the origin halfway between tip and base."""
+        angles = np.linspace(0.0, 2 * math.pi, CONE_SIDES, endpoint=False)
+        low = np.full(CONE_SIDES, -length / 2)
+        rim = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), low])
+        following = np.roll(rim, -1, axis=0)
+        tip, middle = (np.broadcast_to([0, 0, z], rim.shape) for z in (length / 2, -length / 2))
+        sides = np.stack([rim, following, tip], axis=1)
+        return self._written(
+            name, np.concatenate([sides, np.stack([following, rim, middle], axis=1)])
+        )
+
+    def _written(self, name: str, triangles: Triangles) -> MeshSpec:
+        """A mesh file of triangles, named after the object."""
         safe = "".join(c if c.isalnum() else "_" for c in name)[:60]
         file = f"{safe}_{len(self._meshes)}.stl"
-        self._meshes[file] = corners[np.array(faces, dtype=np.int64).reshape(-1, 3)]
+        self._meshes[file] = triangles
         return MeshSpec(file=file)
 
     def _color(self) -> Rgba | None:

@@ -73,7 +73,7 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "atmosphere": _ignored("there is no air"),
         "magnetic_field": _ignored("there is no magnetism"),
         "spherical_coordinates": _ignored("there is no globe"),
-        "state": _ignored("models start at their described poses"),
+        "state": _read("the poses of models in the first, as Gazebo classic has them on loading"),
         "population": _ignored("models that it would spawn are left out"),
         "actor": _ignored("nothing moves by a script"),
         "road": _ignored("there are no roads"),

@@ -101,7 +101,7 @@ class ModelPath:
         raise MissingFileError([element.problem(f"`{uri}` is not found", HINT)])
 
     def _cached(self, uri: str) -> list[Path]:
-        """Candidates for a Fuel model in Gazebo's cache: the newest version."""
+        """Candidates for a Fuel model: the newest version in Gazebo's cache, or the bundled one."""
         found = FUEL.match(uri)
         if found is None:
             return []
@@ -110,7 +110,10 @@ class ModelPath:
             return []
         folder = self._cache / host / owner / "models" / name.replace("%20", " ")
         versions = [path for path in folder.glob("*") if path.name.isdigit()]
-        return [max(versions, key=lambda path: int(path.name))] if versions else []
+        newest = sorted(versions, key=lambda path: int(path.name))[-1:]
+        is_bundled = owner == "openrobotics"
+        plain = name.replace("%20", "_").replace(" ", "_")
+        return [*newest, *[data_folder("worlds") / "models" / plain] * is_bundled]
 
 
 def model_file(folder: Path, element: XmlElement) -> Path:

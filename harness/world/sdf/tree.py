@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from harness.core.errors import SpecError, collected
@@ -64,7 +64,18 @@ class SdfTree:
         self.world = SdfScope("", self.root, path.parent)
         self.lights = [SdfLight(light, pose_of(light)) for light in self.root.findall("light")]
         self._fill(self.world, (path.resolve(),))
+        self._apply_state()
         check_frames(self.world)
+
+    def _apply_state(self) -> None:
+        """Place the world's models where the first `<state>` has them, as Gazebo classic does."""
+        state = self.root.find("state")
+        for item in state.findall("model") if state is not None else ():
+            known = self.world.named.get(item.need("name").strip())
+            if known is None or known.kind != "model":
+                self.notes.add(item.place, "a model of <state> is not in the world")
+            elif item.find("pose") is not None:
+                self.world.named[item.need("name").strip()] = replace(known, pose=pose_of(item))
 
     def _sdf(self, path: Path) -> XmlElement:
         """The `<sdf>` of a file."""
