@@ -80,7 +80,8 @@ def _check(arguments: argparse.Namespace) -> int:
         write_text(srdf, proposed_srdf(checked.touches, source.own_name or description.name))
         extra_lines.append(f"wrote {srdf}")
     elif source.has_no_srdf:
-        extra_lines.append("no SRDF is given: --write-srdf FILE writes one with these pairs")
+        pairs = " with these pairs" if checked.report.proposal else ""
+        extra_lines.append(f"no SRDF is given: --write-srdf FILE writes one{pairs}")
     if image is not None:
         extra_lines += _draw(description, arguments.state, image)
     code = 0 if checked.report.is_good else 1

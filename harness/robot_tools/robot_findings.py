@@ -28,6 +28,8 @@ TOO_OFTEN = 0.9
 PLACEHOLDER_EFFORT = 1000.0
 MOST_TURNS = 10
 """Turns of a revolute joint from which its limits are in degrees in all likelihood."""
+SHOWN_EXCESS = 5e-5
+"""Excess of a mesh's collision shapes from which the mesh has a line of its own [m]."""
 LARGEST_LINK = 10.0
 """Length of a shape from which it is in millimetres in all likelihood [m]."""
 
@@ -156,7 +158,8 @@ def shapes(description: RobotDescription) -> RobotFinding | None:
         f"{count} convex shapes stand for {len(found)} meshes, at most {1e3 * excess:.1f} mm larger"
     )
     values = {"parts": count, "meshes": len(found), "excess": excess}
-    return RobotFinding("collision shapes", text, True, tuple(map(str, found)), values)
+    details = tuple(str(each) for each in found if each.excess >= SHOWN_EXCESS)
+    return RobotFinding("collision shapes", text, True, details, values)
 
 
 def self_collisions(touches: SelfTouches) -> RobotFinding:

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from harness.cell.approach import approach_axis
 from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
@@ -133,11 +135,15 @@ class Candidates:
         the more a configuration counts; likewise above the place, where the approach starts.
         """
         description = self._description
-        links = (description.base_link, description.tcp_link, gripper.palm_link)
-        base, tcp, palm = np.moveaxis(self._kinematics.link_poses(self._samples, links), 1, 0)
+        links = (description.base_link, description.tcp_link)
+        base, tcp = np.moveaxis(self._kinematics.link_poses(self._samples, links), 1, 0)
         away = (tcp - base)[:, :3] / self._reach
-        along = (tcp - palm)[:, :3]
-        cosine = -along[:, 2] / np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+        opened = self._start.copy()
+        opened[description.joint_index[gripper.joint]] = gripper.open_position
+        opened = description.with_mimics(opened)
+        axis = approach_axis(description, self._kinematics, self._scene, opened)
+        along = Rotation.from_quat(tcp[:, 3:], scalar_first=True).apply(axis / np.linalg.norm(axis))
+        cosine = -along[:, 2]
         weights = np.exp(-((np.arccos(np.clip(cosine, -1.0, 1.0)) / DOWNWARD) ** 2))
         if len(description.groups[description.arm_group].joint_names) < FREE_ROTATION:
             weights[:] = 1.0
