@@ -120,7 +120,7 @@ def test_what_the_physics_refuses_of_a_robot_is_refused_at_the_robot(tmp_path, i
 def test_a_shape_of_a_robot_that_is_too_small_is_refused_with_its_link(tmp_path):
     problems = check_file(arm_with(tmp_path, length="5e-324")).problems
     assert {Path(problem.path).name for problem in problems} == {"arm.urdf"}
-    assert [(problem.line, problem.column) for problem in problems] == [
+    assert [(each.line, each.column) for each in problems] == [(4, 203), (5, 203), (6, 203)]
         (4, 203),
         (5, 203),
         (6, 203),
