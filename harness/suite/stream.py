@@ -155,7 +155,7 @@ class Stream:
         self.path = Path(name) if folder is None else folder / name
         self._known: dict[str, tuple[Place, ResultHead]] = {}
         self._unused = set[str]()
-        self._is_resumed = resume
+        self._leaves_out = False  # whether an earlier run did
         try:
             if folder is None:
                 file = TemporaryFile(buffering=0)  # noqa: SIM115 - closed with this object
@@ -176,6 +176,8 @@ class Stream:
             for place, line in lines_of(file):
                 if (head := head_of(line)) is not None:
                     self._known[head.key] = place, head.result
+                elif (keys := left_out_of(line)) is not None:
+                    self._leaves_out = bool(keys)
         self._unused.update(self._known)
         if os.pread(self._file.fileno(), 1, self._end - 1) != b"\n":
             self.append(b"\n")
@@ -219,7 +221,7 @@ class Stream:
             HarnessError: The disk is full.
         """
         keys = [*(self.entry(each).key for each in places), *sorted(self._unused)]
-        if keys or self._is_resumed:
+        if keys or self._leaves_out:
             self.append(f"{compact_json(LeftOut(LEFT_OUT, keys))}\n".encode())
 
     def append(self, line: bytes) -> Place:
