@@ -98,9 +98,8 @@ def why_not_excused(run: Run, pair: Pair) -> str:
                 continue
             if contact.dragged.max() >= DRAG:
                 return f"dragged along it by {amount(float(contact.dragged.max()), 'm')}"
-            span = contact.samples
-            limits[span] = _limit_of(run, held, contact, force[span])
-            beyond[span] = force[span] - limits[span]
+            limits[contact.samples] = _limit_of(run, held, contact, force)
+            beyond[contact.samples] = (force - limits)[contact.samples]
     worst = int(np.argmax(beyond))
     if beyond[worst] <= 0:
         return ""
@@ -179,23 +178,34 @@ def _holds(run: Run, name: str) -> BoolArray:
 
 
 def _limit_of(run: Run, held: str, contact: _Contact, force: FloatArray) -> FloatArray:
-    """Largest mean force of a contact of an object in the hand that is excused [N], shape (n,)."""
+    """Largest mean force of a contact of an object in the hand that is excused [N].
+
+    Args:
+        run: The run with its recorded signals.
+        held: The name of the object.
+        contact: The contact, of n samples.
+        force: The mean force of the contact in the whole run [N], shape (N,).
+
+    Returns:
+        The limit at the samples of the contact, shape (n,).
+    """
     span = contact.samples
     limit = held_limit(run, held, _samples_of(run, lambda step: step.moves_gripper))[span]
-    return leaving_limit(run, span, force, limit) if contact.leaves else limit
+    return leaving_limit(run, span, force[span], limit) if contact.leaves else limit
 
 
 def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:
     """Samples at which an object in the hand touches another without excuse, shape (N,)."""
     guilty = np.zeros(len(run.signals.times), dtype=bool)
-    for contact in _contacts_in_hand(run, held, other):
+    contacts = _contacts_in_hand(run, held, other)
+    force = mean_force(run, held, other) if contacts else guilty.astype(float)
+    for contact in contacts:
         span = contact.samples
         if contact.dragged is None:
             guilty[span] = True
-            continue
-        force = mean_force(run, held, other)[span]
-        presses = force > _limit_of(run, held, contact, force)
-        guilty[span] |= presses | (contact.dragged >= DRAG)
+        else:
+            presses = force[span] > _limit_of(run, held, contact, force)
+            guilty[span] |= presses | (contact.dragged >= DRAG)
     return guilty
 
 

@@ -6,11 +6,9 @@ over `SPAN`, stays below `FACTOR` times what they explain, plus `SLACK`:
 - a link of the hand presses what it grips with the grip that the gripper's motor exerts now, and
   with the weight of the object and of what rests on it;
 - what the hand holds presses another body with that weight; while the gripper moves, also with the
-  grip, since fingers that close on an object push it about.
-
-- what leaves the body that it stood on when it was gripped presses that body, for at most `LEAVE`
-  in all, with the grip too: it stands slightly tilted in the fingers, and its lower edge is pressed
-  until it is free.
+  grip, since fingers that close on an object push it about;
+- what leaves the body that it stood on when it was gripped presses that body with the grip too, for
+  at most `LEAVE` in all: the fingers have pressed it down, and do until it is free.
 
 The average is an impulse: contacts between stiff bodies peak at ten times the force of the grip for
 a millisecond, and say nothing. In the bundled picks it reaches 1.1 times what is explained. What
@@ -38,7 +36,8 @@ FACTOR = 2.0
 SLACK = 1.0
 """What a position error of a tenth of a millimetre presses with [N]: the weight of 100 g."""
 LEAVE = 2 * SPAN
-"""Longer than an edge is pressed when an object leaves at once, in one average [s]."""
+"""How long an object that is lifted at once may still be pressed onto its support [s]: the averages
+over the time before contain the grip for one `SPAN`, and the object leaves within another."""
 DRAG = 0.02
 """Longer than contact points wander while an object is gripped, tilts and leaves [m]."""
 

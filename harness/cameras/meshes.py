@@ -71,7 +71,8 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
     materials = _material_file(geometry.path, content)
     if len(content) < LARGE:
         return _read_obj(content, materials, geometry)
-    name = f"meshes/{exact_key(geometry, materials, Path(__file__).read_text())}.npz"
+    inputs = content, materials, geometry.scale, Path(__file__).read_bytes()
+    name = f"meshes/{exact_key(*inputs)}.npz"
     stored = cached(name)
     if stored is None:
         parts = _read_obj(content, materials, geometry)

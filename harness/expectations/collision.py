@@ -20,7 +20,7 @@ from harness.assertions.excused_force import SPAN
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
-from harness.assertions.temporal import episodes, without_gaps
+from harness.assertions.temporal import episodes, trailing_max, without_gaps
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
 from harness.cell.possible_contacts import check_contact
@@ -148,7 +148,10 @@ class Collision(Predicate):
             return MarginSignal(values, "1", lambda _: Evidence("contacts are not known"))
         forces: dict[Pair, FloatArray] = {}
         for pair in pairs:
-            force = _force(run, colliding(run, pair, allowed_too), run.signals.contact_forces[pair])
+            guilty = colliding(run, pair, allowed_too)
+            if not guilty.any():
+                continue
+            force = _force(run, guilty, run.signals.contact_forces[pair])
             lasting = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
             if (lasting > 0).any():
                 forces[pair] = lasting
@@ -235,9 +238,8 @@ def _force(run: Run, guilty: BoolArray, forces: FloatArray) -> FloatArray:
     force of this time.
     """
     found = np.where(guilty, forces, 0.0)
-    for start, _ in episodes(guilty):
-        averaged = (run.signals.times > run.signals.times[start] - SPAN)[: start + 1]
-        found[start] = forces[: start + 1][averaged].max()
+    starts = [start for start, _ in episodes(guilty)]
+    found[starts] = trailing_max(forces, run.signals.times, SPAN)[starts]
     return found
 
 

@@ -43,6 +43,7 @@ class RobotPart:
         srdf: The groups of the gripper.
         source: Its name in messages.
         notes: Notes on ignored elements and assumptions.
+        rejected_grippers: Why parts that look like grippers are none, a sentence each.
     """
 
     name: str
@@ -51,6 +52,7 @@ class RobotPart:
     srdf: Srdf
     source: str
     notes: tuple[str, ...] = ()
+    rejected_grippers: tuple[str, ...] = ()
 
 
 def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -> RobotDescription:
@@ -113,6 +115,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
             if names
         },
         notes=tuple(note for part in parts for note in part.notes),
+        rejected_grippers=tuple(why for part in parts for why in part.rejected_grippers),
     )
 
 

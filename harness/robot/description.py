@@ -144,7 +144,7 @@ class Gripper:
         widths: Rows (joint position, pad gap [m]) with rising position, shape (N, 2); for `width`.
         friction: Sliding friction coefficient of the pads.
         approach_axis: Unit approach axis in the TCP frame, shape (3,); None for the one that
-            `harness.robot.gripper.approach` derives.
+            `harness.cell.approach` derives.
     """
 
     group: str
@@ -210,6 +210,7 @@ class RobotDescription:
         controllers: Names of its ROS 2 controllers, of `arm` and `gripper`; MoveIt's by default.
         joint_controller: A plug-in of the kind `controller`, which moves the joints in the physics.
         notes: Notes on ignored elements and assumptions.
+        rejected_grippers: Why parts that look like grippers are none, a sentence each.
     """
 
     name: str
@@ -232,6 +233,7 @@ class RobotDescription:
     controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     joint_controller: str = "position_servo"
     notes: tuple[str, ...] = ()
+    rejected_grippers: tuple[str, ...] = ()
 
     @cached_property
     def key(self) -> str:
@@ -300,11 +302,6 @@ class RobotDescription:
     def group_indices(self, group: str) -> tuple[int, ...]:
         """Indices of a group's joints in description order."""
         return tuple(self.joint_index[name] for name in self.groups[group].joint_names)
-
-    @property
-    def rejected_grippers(self) -> list[str]:
-        """Why parts that look like grippers are not used as such, one sentence each."""
-        return [note for note in self.notes if "is not used as a gripper" in note]
 
     def states_of(self, group: str) -> Mapping[str, NamedState]:
         """Named states of a group, by name."""

@@ -64,8 +64,9 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
                 "no allowed pairs are given, so the pairs that touch at the start are allowed:"
                 f" {_listed(pairs)}"
             )
-    gripper = None
-    own = _own_gripper(spec, urdf, srdf, groups, arm, notes)
+    gripper, rejected = None, list[str]()
+    own = _own_gripper(spec, urdf, srdf, groups, arm, rejected)
+    notes += rejected if own is None else []
     if own is not None:
         urdf, srdf, tcp_link = with_integrated_gripper(own, arm, tip, spec.tcp_link, notes)
         gripper = own.facts
@@ -87,7 +88,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         start_state=StartState(joints=start),
         gripper=gripper,
     )
-    return RobotPart(path.stem, facts, urdf, srdf, source, tuple(notes))
+    return RobotPart(path.stem, facts, urdf, srdf, source, tuple(notes), tuple(rejected))
 
 
 def names_integrated_gripper(name: str | None, srdf: Srdf) -> bool:
@@ -101,9 +102,11 @@ def _own_gripper(
     srdf: Srdf,
     groups: Mapping[str, PlanningGroup],
     arm: PlanningGroup,
-    notes: list[str],
+    rejected: list[str],
 ) -> IntegratedGripper | None:
     """The arm's own gripper: the named group, else the first group that is a gripper.
+
+    Why groups before it are none is added to `rejected`.
 
     Raises:
         RobotError: The named group is not a gripper.
@@ -116,13 +119,11 @@ def _own_gripper(
             raise RobotOptionError(
                 "gripper", f"'{spec.gripper}' is not a gripper: {error}"
             ) from error
-    reasons: list[str] = []
     for hand, with_hand in hand_candidates(urdf, srdf, groups, arm):
         try:
             return recognise(urdf, with_hand, hand)
         except NoGripperError as error:
-            reasons.append(f"'{hand.name}' is not used as a gripper: {error}")
-    notes += reasons
+            rejected.append(f"'{hand.name}' is not used as a gripper: {error}")
     return None
 
 

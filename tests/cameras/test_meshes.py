@@ -51,6 +51,9 @@ def test_a_large_file_is_read_once_as_long_as_it_and_its_colours_stay_the_same(
         (tmp_path / "two.mtl").write_text(materials)
         parts = load_obj(Mesh(tmp_path / "two.obj"))
         assert len(list((tmp_path / "cache").rglob("*.npz"))) == count
+    (tmp_path / "two.obj").write_text(CUBE_SIDES.replace("usemtl black", "usemtl grey"))
+    parts = load_obj(Mesh(tmp_path / "two.obj"))
+    assert len({part.rgba for part in parts}) == 1, "the file has changed"
     monkeypatch.setattr("harness.cameras.meshes.LARGE", 1e9)
     for part, other in zip(parts, load_obj(Mesh(tmp_path / "two.obj")), strict=True):
         assert part.rgba == other.rgba
