@@ -1,12 +1,13 @@
 """Whole verdicts, findings and problems of tests, compared with those that were approved.
 
 A test states what matters in a verdict on a hand-made run, or in a problem of a file.
-`approved.txt` has the rest of it: every number, measure, text, hint and warning, as they were when
-somebody read them last. After a change,
+`approved.txt` has the rest of it: every number, measure, text, hint and warning, as they were last
+approved. After a change,
 
     APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation tests/engine
 
-writes the file again; the difference shows what changed, and is to be read.
+writes the file again, in one process (without `-n`); the difference shows what changed, and is to
+be read.
 """
 
 from __future__ import annotations

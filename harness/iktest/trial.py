@@ -49,7 +49,7 @@ class SolverTrial:
         offset: Error that all answers share, once it is known.
         last_cost: Cost of the calls since it was last read.
         has_hung: Whether a call ever hung.
-        outcomes: The outcomes of the queries since somebody cleared them.
+        outcomes: The outcomes of the queries since the list was cleared.
     """
 
     chain: Chain
