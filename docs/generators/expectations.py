@@ -98,7 +98,11 @@ W of `within`. With `during`, their window is that step.
 | `eventually: A` | `eventually[0, W] always[0, T] A` |
 | `never: A` | `not eventually[0, W] always[0, T] A` |
 | `always: A` | `always A`; with a deadline `eventually[0, W] always A` |
-| `{always: A, until: B}` | `A until[0, W] always[0, T] B` |"""
+| `{always: A, until: B}` | `A until[0, W] always[0, T] B` |
+
+They differ where the window ends before W or T is over. What must come true and was not seen to
+do so has failed, while its formula is `not reached`. `never` is `not reached`, as its formula is,
+where A holds at the end and could go on for T, or could still begin by W."""
 FORMULA_TEXT = """\
 ```yaml
 expect:
