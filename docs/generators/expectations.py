@@ -26,7 +26,9 @@ JUDGED = {
 }
 EXPECTATIONS_HEAD = """\
 An expectation is a predicate, alone or inside a temporal word. Its window is the step if it is
-listed under the step's `expect`, and the whole run if it is listed under the file's.
+listed under the step's `expect`, and the whole run if it is listed under the file's. A step that
+puts, adds or removes objects takes no time: the sample after it is the first that shows what it
+did, and belongs to it.
 
 ```yaml
 expect:
