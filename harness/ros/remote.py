@@ -17,8 +17,7 @@ from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import Signals
 from harness.reporting.result import CaseResult
-from harness.ros.action_client import ActionClient, ClientGoal
-from harness.ros.action_server import Status
+from harness.ros.actions import ActionClient, ClientGoal, Status
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until

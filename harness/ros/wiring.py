@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.commands import CommandKind, CommandRecord
-from harness.ros.action_server import ActionServer
+from harness.ros.actions import ActionServer
 from harness.ros.control.cell import ExternalCell
 from harness.ros.control.controller import Window
 from harness.ros.graph import Graph

@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 
-from harness.ros.action_client import ActionClient
+from harness.ros.actions import ActionClient
 from harness.ros.graph import spin_until
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message
 from harness.ros.rtps.graph import RtpsGraph

@@ -12,7 +12,7 @@ import pytest
 
 import harness.ros.remote
 from harness.cli.main import main
-from harness.ros.action_server import ActionServer
+from harness.ros.actions import ActionServer
 from harness.ros.domain import free_domain
 from harness.ros.interfaces import FOLLOW, message, stamp
 from harness.ros.rtps.graph import RtpsGraph

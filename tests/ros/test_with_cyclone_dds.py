@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from harness.ros.action_server import Status
+from harness.ros.actions import Status
 from harness.ros.domain import free_domain
 from harness.ros.interfaces import CANCEL, message
 from harness.ros.rtps.graph import RtpsGraph

@@ -18,12 +18,11 @@ from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
 from harness.reporting.rosbag import cameras, joints
 from harness.reporting.rosbag.events import event_messages
-from harness.reporting.rosbag.foxglove import foxglove_layout
 from harness.reporting.rosbag.frames import moving_tf, static_tf
+from harness.reporting.rosbag.layouts import foxglove_layout, rviz_configuration
 from harness.reporting.rosbag.markers import scene_markers
 from harness.reporting.rosbag.messages import TYPESTORE, String, nanoseconds
 from harness.reporting.rosbag.plans import planned, tcp_path
-from harness.reporting.rosbag.rviz import rviz_configuration
 from harness.reporting.rosbag.samples import Message, samples_at
 from harness.reporting.rosbag.topics import ROBOT_DESCRIPTION, Topic
 from harness.reporting.rosbag.urdf import MeshAddresses, urdf_of

@@ -6,9 +6,8 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
-from harness.ros.control.controller import Command, Outcome, Window
+from harness.ros.control.controller import Command, Outcome, Rows, Window
 from harness.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
-from harness.ros.control.spline import Rows
 from harness.ros.interfaces import GRIPPER, message
 from harness.simulation.gripper_drive import GOAL_TOLERANCE, STALL_SPEED, STALL_TIME, joint_speed
 from harness.simulation.set_points import ramp
