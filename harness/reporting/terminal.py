@@ -113,9 +113,8 @@ def _count(event: ProgressEvent) -> str:
 
 def case_line(result: CaseResult, style: Style = PLAIN) -> str:
     """One line of a finished case."""
-    name = f"{result.title} [{result.case}]" if result.case else result.title
     outcome = style.outcome(result.outcome, f"{result.outcome:<8}")
-    parts = [f"{outcome}{style.strong(name)}"]
+    parts = [f"{outcome}{style.strong(result.name)}"]
     if result.outcome in {"passed", "failed"}:
         held = sum(verdict.status == "passed" for verdict in result.verdicts)
         simulated = f"{result.sim_time:.1f} s simulated"
