@@ -317,7 +317,7 @@ class RemoteArm:
                 continue
             worst = int(np.argmax(errors))
             name, error = str(feedback.joint_names[worst]), float(errors[worst])
-            unit = "m" if self.description.joint_by_name[name].kind == "prismatic" else "rad"
+            unit = self.description.joint_by_name[name].position_unit
             raise StepFailed(
                 "CONTROL_FAILED",
                 f"{name} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"

@@ -359,7 +359,7 @@ class LiveStudio:
         joint = description.joint_by_name[str(message["joint"])]
         value = float(message["value"])
         if not joint.lower <= value <= joint.upper:
-            unit = "m" if joint.kind == "prismatic" else "rad"
+            unit = joint.position_unit
             raise RefusedError(
                 f"{joint.name} goes from {joint.lower:.4g} to {joint.upper:.4g} {unit},"
                 f" not to {value:.4g}"

@@ -139,7 +139,7 @@ class TrajectoryMotion:
         which = 0 if (excess[0, row] > 0).any() else 1
         column = int(np.argmax(excess[which, row]))
         joint = self.joints[column]
-        unit = ("m" if joint.kind == "prismatic" else "rad") + ("", "/s")[which]
+        unit = joint.position_unit + ("", "/s")[which]
         return row, (
             f"'{joint.name}' is off by {errors[which, row, column]:.4g} {unit}"
             f" (tolerance {bounds[which, column]:.4g} {unit})"
