@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from harness.reporting.rosbag.messages import message
 from harness.ros.graph import Graph, Reply
-from harness.ros.interfaces import CANCEL, UUID, message, seconds, stamp
+from harness.ros.interfaces import CANCEL, UUID, seconds, stamp
 
 INFO = "action_msgs/msg/GoalInfo"
 MOST_ENDED = 100

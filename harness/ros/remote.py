@@ -17,11 +17,12 @@ from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import Signals
 from harness.reporting.result import CaseResult
+from harness.reporting.rosbag.messages import message
 from harness.ros.actions import ActionClient, ClientGoal, Status
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, stamp
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, stamp
 from harness.ros.joint_states import GRID, JointStates
 from harness.ros.names import actions
 from harness.session.prepare import Prepared, prepare

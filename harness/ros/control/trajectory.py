@@ -9,10 +9,11 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from harness.core.types import FloatArray
+from harness.reporting.rosbag.messages import message
 from harness.robot.description import Joint
 from harness.ros.control.controller import Command, Outcome, Rows, Window
 from harness.ros.control.goals import Code, Defaults, TrajectoryGoal, checked_goal
-from harness.ros.interfaces import FOLLOW, message
+from harness.ros.interfaces import FOLLOW
 
 
 class Spline:
