@@ -10,6 +10,7 @@ from harness.cli.files import refuse_existing, refusing_unwritable
 from harness.cli.output import say
 from harness.cli.robot_options import add_robot_options, source_of
 from harness.core.files import replaced
+from harness.core.printable import counted
 from harness.suite.discovery import SUFFIX, UsageError
 
 MOST_NOTES = 20
@@ -72,7 +73,7 @@ def _moveit(arguments: argparse.Namespace) -> int:
     if len(found.notes) > MOST_NOTES:
         say(f"note: {len(found.notes) - MOST_NOTES} more of the other files")
     scenarios = sum(path.name.endswith(SUFFIX) for path in found.files)
-    say(f"wrote {scenarios} scenario{'s' if scenarios != 1 else ''} into {folder}")
+    say(f"wrote {counted(scenarios, 'scenario')} into {folder}")
     return 0
 
 
@@ -134,7 +135,7 @@ def _world(arguments: argparse.Namespace) -> int:
     for note in imported.notes:
         say(f"note: {note}")
     count = len(imported.world.objects)
-    say(f"wrote {target}: {count} object{'s' if count != 1 else ''}; `world: {target.name}`")
+    say(f"wrote {target}: {counted(count, 'object')}; `world: {target.name}`")
     return 0
 
 

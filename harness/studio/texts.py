@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
 from harness.language.step import STEPS
 from harness.robot.description import RobotDescription
 from harness.studio.document import flow
-from harness.studio.reach import WHOLE_POSE_JOINTS, pitch_of
+from harness.studio.reach import WHOLE_POSE_JOINTS
 
 _TO_A_GOAL = {verb: step for verb, step in STEPS.items() if issubclass(step, GoalFields)}
 
@@ -38,7 +38,7 @@ def pose_keys(description: RobotDescription, group: str, pose: SE3, frame: str) 
     place: dict[str, Any] = {} if frame == "world" else {"frame": frame}
     place["xyz"] = [round(float(value), 5) for value in pose.translation]
     if len(description.groups[group].joint_names) < WHOLE_POSE_JOINTS:
-        return {"position": place, "pitch": round(pitch_of(pose), 5)}
+        return {"position": place, "pitch": round(pitch_of(pose.rotation), 5)}
     w, x, y, z = (float(value) for value in pose.as_vector()[3:])
     place["quat_xyzw"] = [round(value, 6) for value in (x, y, z, w)]
     return {"pose": place}
