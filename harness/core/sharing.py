@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from harness.core.exact_key import NoKeyError, exact_key
+from harness.core.files import replaced
 
 PREFIX = "harness-shared-"
 """How the names of folders begin; the number of the process that owns it follows."""
@@ -80,15 +81,12 @@ class SharedResults:
 
     def keep(self, key: str, result: object) -> None:
         """Keep a result, if there is room on the disk."""
-        part = self.folder / f".{key}.{os.getpid()}"
-        try:
-            part.write_bytes(pickle.dumps(result, pickle.HIGHEST_PROTOCOL))
-            part.replace(self.folder / key)
+        with suppress(OSError):
+            with replaced(self.folder / key) as file:
+                pickle.dump(result, file, pickle.HIGHEST_PROTOCOL)
             self._kept += 1
             if (os.getpid() + self._kept) % LOOK_EVERY == 0:  # in some of the processes at least
                 self._make_room()
-        except OSError:
-            part.unlink(missing_ok=True)
 
     def was_seen(self, key: str) -> bool:
         """Whether a case has computed the result of a key before; from now on it has."""

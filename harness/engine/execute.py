@@ -92,7 +92,7 @@ class _Runner:
             end_index=cell.simulator.sample_count,
             trajectory=notes.trajectory,
             planner=notes.planner,
-            explanation=(notes.explanation + _details(failure, cell)).plain(),
+            explanation=notes.explanation + _details(failure, cell),
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
