@@ -81,7 +81,8 @@ class Pick(Step):
     other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
     round; a mesh, or several shapes, are taken as the box around them. With a `grasp_pose` that has
     no rotation the same rotations are tried at its point. The first grasp that the arm can
-    approach, and lift from, is taken; the step reports which `grasp` of how many `grasps`.
+    reach, approach, and lift from, is taken, in the posture for which this was verified; the step
+    reports which `grasp` of how many `grasps`.
 
     An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
     object, or its upper part, with the first pitch of the gripper that works, from level (0) to
@@ -194,12 +195,12 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
         raise with_advice(failure, pick_advice(step, failure, len(goals), cell)) from failure
-    cell.report(GraspChoice(len(goals), chosen.number + 1))
+    cell.report(GraspChoice(len(goals), chosen.approach.number + 1))
+    reach = MoveTo(**chosen.reach_keys, group=step.group)
+    lin = Lin(**chosen.approach.at.keys, group=step.group)
     return [
-        cell.child(
-            "reach", MoveTo(**chosen.before.keys, group=step.group), f"move_to before {step.object}"
-        ),
-        cell.child("approach", Lin(**chosen.at.keys, group=step.group), f"lin to {step.object}"),
+        cell.child("reach", reach, f"move_to before {step.object}"),
+        cell.child("approach", lin, f"lin to {step.object}"),
     ]
 
 
