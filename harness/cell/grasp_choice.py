@@ -40,6 +40,13 @@ class Approach:
     at: TcpGoal
     number: int
 
+    @property
+    def direction(self) -> tuple[float, float, float]:
+        """Unit vector of the motion in the world."""
+        way = np.subtract(self.at.target.xyz, self.before.target.xyz)
+        x, y, z = (float(value) for value in way / np.linalg.norm(way))
+        return x, y, z
+
 
 @dataclass(frozen=True)
 class GraspSearch:
@@ -143,7 +150,8 @@ def _most_promising(approaches: Sequence[Approach], search: GraspSearch, cell: C
                 MotionRequest(search.group, search.start, FreeMotion(joint_goal), options)
             )
         except PlanningFailed as failure:
-            failure.details += Details.of(ApproachFailure(goal is best.before))
+            direction = best.direction
+            failure.details += Details.of(ApproachFailure(goal is best.before, direction))
             raise
     return best
 

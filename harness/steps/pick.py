@@ -49,6 +49,10 @@ MAX_TURN = math.radians(15)
 """Heading off the direction to the object up to which an arm of few joints grasps it [rad]."""
 
 
+STRAIGHT = 89.5
+"""Angle with the horizontal from which an approach is straight down, or up [degrees]."""
+
+
 class Travel(SpecModel):
     """A straight move of a pick or place."""
 
@@ -194,7 +198,8 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
     try:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
-        raise with_advice(failure, pick_advice(step, failure, len(goals), cell)) from failure
+        advice = pick_advice(step, failure, len(goals), cell)
+        raise with_advice(failure, advice, approach_words(failure)) from failure
     cell.report(GraspChoice(len(goals), chosen.approach.number + 1))
     reach = MoveTo(**chosen.reach_keys, group=step.group)
     lin = Lin(**chosen.approach.at.keys, group=step.group)
@@ -293,10 +298,29 @@ def millimetres(metres: float) -> str:
     return f"{1000 * metres:.1f} mm"
 
 
-def with_advice(failure: PlanningFailed, advice: str) -> PlanningFailed:
-    """The failure with advice that can be followed in the step that it is reported for."""
+def with_advice(failure: PlanningFailed, advice: str, more: str = "") -> PlanningFailed:
+    """The failure with advice that can be followed in the step that it is reported for.
+
+    Args:
+        failure: The failure of the planner.
+        advice: What to do; empty where nothing is known.
+        more: What is added to the message.
+    """
     added = Details.of(Explanation(advice=advice) if advice else None)
-    return PlanningFailed(failure.code, failure.message, *failure.details, *added)
+    return PlanningFailed(failure.code, failure.message + more, *failure.details, *added)
+
+
+def approach_words(failure: PlanningFailed) -> str:
+    """`, approached 30° below the horizontal`; empty for a failure without an approach."""
+    approach = failure.details.find(ApproachFailure)
+    if approach is None or approach.approach_direction is None:
+        return ""
+    down = -math.degrees(math.asin(min(1.0, max(-1.0, approach.approach_direction[2]))))
+    if abs(down) > STRAIGHT:
+        return f", approached straight {'down' if down > 0 else 'up'}"
+    if abs(down) < 90 - STRAIGHT:
+        return ", approached horizontally"
+    return f", approached {abs(down):.0f}° {'below' if down > 0 else 'above'} the horizontal"
 
 
 def nearest_state(failure: PlanningFailed) -> NearestState | None:

@@ -230,6 +230,9 @@ def test_a_missing_visual_mesh_is_a_note(tmp_path):
     for name in ("gone.stl", "package://gone/a.stl"):
         [note] = [each for each in arm_with(tmp_path, visual.format(name)).notes if name in each]
         assert note.startswith("link 'upper': the visual is not drawn: ")
+    several = "".join(visual.format(f"gone_{number}.stl") for number in range(13))
+    [note] = [each for each in arm_with(tmp_path, several).notes if "gone" in each]
+    assert note.startswith("13 visuals are not drawn, of upper; the first: 'gone_0.stl'")
 
 
 def test_a_robots_folder_says_how_its_links_collide_unless_the_scenario_does(tmp_path):
