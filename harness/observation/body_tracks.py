@@ -44,8 +44,10 @@ class BodyTrack:
         """Samples with a pose, shape (N,)."""
         return np.isfinite(self.translations[:, 0])
 
-    def part(self, samples: BoolArray) -> BodyTrack:
+    def part(self, samples: BoolArray | slice) -> BodyTrack:
         """The same body at some samples only."""
+        if not isinstance(samples, slice) and samples.all():
+            return self
         return BodyTrack(self.rotations[samples], self.translations[samples])
 
 
@@ -197,6 +199,52 @@ def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArr
     moved = np.zeros((len(centers), len(radii)))
     np.cumsum(shifts + seen.turns[:, None] * radii, axis=0, out=moved[1:])
     return moved
+
+
+@dataclass(frozen=True, eq=False)
+class MovingBody:
+    """The shapes of a body, and where the body is at N samples.
+
+    Attributes:
+        shapes: The collision shapes of the body.
+        track: T_world_body at every sample; absent at none.
+    """
+
+    shapes: Sequence[TrackedShape]
+    track: BodyTrack
+
+    @cached_property
+    def radius(self) -> float:
+        """The radius of a ball about the balls of all shapes [m]; inf with a half space."""
+        radii = [shape.radius for shape in self.shapes]
+        if not np.isfinite(radii).all():
+            return np.inf
+        offsets = [np.linalg.norm(shape.center - self._center) for shape in self.shapes]
+        return float(np.add(offsets, radii).max())
+
+    @cached_property
+    def centers(self) -> FloatArray:
+        """The centre of that ball in the world [m], shape (N, 3)."""
+        return self.track.translations + self.track.rotations @ self._center
+
+    @cached_property
+    def travelled(self) -> FloatArray:
+        """Bound the path length of every point since the first sample [m], shape (N,)."""
+        shifts = np.linalg.norm(np.diff(self.centers, axis=0), axis=1)
+        turns = self.track.turns
+        turned = np.multiply(turns, self.radius, out=np.zeros_like(turns), where=turns > 0)
+        return np.concatenate([[0.0], np.cumsum(shifts + turned)])
+
+    @cached_property
+    def _center(self) -> FloatArray:
+        centers = np.array([each.center for each in self.shapes if np.isfinite(each.radius)])
+        if not len(centers):
+            return np.zeros(3)
+        return (centers.min(axis=0) + centers.max(axis=0)) / 2
+
+    def part(self, samples: BoolArray) -> MovingBody:
+        """The same body at some samples only."""
+        return self if samples.all() else MovingBody(self.shapes, self.track.part(samples))
 
 
 def links_with_shapes(

@@ -9,10 +9,10 @@ import numpy as np
 
 from harness.core.types import FloatArray, Pair
 from harness.observation.body_tracks import (
+    MovingBody,
     TrackedShape,
     link_track,
     links_with_shapes,
-    relative_track,
 )
 from harness.observation.nearest import ShapePair, pairs_between, smallest_distances
 from harness.observation.sampled_clearance import between, knots
@@ -68,8 +68,8 @@ def _pairs_apart_by_design(
 def _shape_pairs(
     shapes: Mapping[str, tuple[TrackedShape, ...]], poses: LinkPoses, first: str, second: str
 ) -> list[ShapePair]:
-    seen = relative_track(link_track(poses, first), link_track(poses, second))
-    return pairs_between(shapes[first], shapes[second], seen)
+    one, other = (MovingBody(shapes[name], link_track(poses, name)) for name in (first, second))
+    return pairs_between(one, other)
 
 
 def link_overlap_findings(run: Run) -> tuple[Finding, ...]:
