@@ -19,6 +19,9 @@ from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.forward_kinematics import LinkPoses
 from harness.robot.solids import coal_geometry
 
+LOOKS = 8
+"""Samples from one at which the gaps of balls and boxes are computed to the next."""
+
 
 @dataclass(frozen=True, eq=False)
 class BodyTrack:
@@ -214,33 +217,37 @@ class MovingBody:
     track: BodyTrack
 
     @cached_property
-    def radius(self) -> float:
-        """The radius of a ball about the balls of all shapes [m]; inf with a half space."""
-        radii = [shape.radius for shape in self.shapes]
-        if not np.isfinite(radii).all():
-            return np.inf
-        offsets = [np.linalg.norm(shape.center - self._center) for shape in self.shapes]
-        return float(np.add(offsets, radii).max())
+    def radii(self) -> FloatArray:
+        """The radii of the balls about the shapes [m], shape (shapes,)."""
+        return np.array([shape.radius for shape in self.shapes])
 
     @cached_property
-    def centers(self) -> FloatArray:
-        """The centre of that ball in the world [m], shape (N, 3)."""
-        return self.track.translations + self.track.rotations @ self._center
+    def centers_at_looks(self) -> FloatArray:
+        """The centres of these balls in the world, at every look [m], shape (looks, 3, shapes)."""
+        return centers_of(self.track.part(slice(None, None, LOOKS)), self.shapes)
+
+    @cached_property
+    def reach(self) -> FloatArray:
+        """The most that a point of a shape moves from each look to the next [m], shape (looks,)."""
+        travelled = self.travelled
+        ends = np.append(travelled[LOOKS::LOOKS], travelled[-1])
+        begins = travelled[::LOOKS]
+        return ends[: len(begins)] - begins
 
     @cached_property
     def travelled(self) -> FloatArray:
         """Bound the path length of every point since the first sample [m], shape (N,)."""
-        shifts = np.linalg.norm(np.diff(self.centers, axis=0), axis=1)
+        is_finite = np.isfinite(self.radii)
+        centers = np.array([shape.center for shape in self.shapes])[is_finite]
+        middle = centers.mean(axis=0) if len(centers) else np.zeros(3)
+        radius = (np.linalg.norm(centers - middle, axis=1) + self.radii[is_finite]).max(initial=0.0)
+        if not is_finite.all():
+            radius = np.inf
+        path = self.track.translations + self.track.rotations @ middle
         turns = self.track.turns
-        turned = np.multiply(turns, self.radius, out=np.zeros_like(turns), where=turns > 0)
-        return np.concatenate([[0.0], np.cumsum(shifts + turned)])
-
-    @cached_property
-    def _center(self) -> FloatArray:
-        centers = np.array([each.center for each in self.shapes if np.isfinite(each.radius)])
-        if not len(centers):
-            return np.zeros(3)
-        return (centers.min(axis=0) + centers.max(axis=0)) / 2
+        turned = np.multiply(turns, radius, out=np.zeros_like(turns), where=turns > 0)
+        moved = np.linalg.norm(np.diff(path, axis=0), axis=1) + turned
+        return np.concatenate([[0.0], np.cumsum(moved)])
 
     def part(self, samples: BoolArray) -> MovingBody:
         """The same body at some samples only."""

@@ -41,8 +41,8 @@ from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
 
-Bodies = tuple[MovingBody, MovingBody]
-"""Two bodies whose distance is measured."""
+Bodies = tuple[Sequence[MovingBody], MovingBody]
+"""Bodies whose distances from another one are measured."""
 
 
 class CoalClearance:
@@ -187,9 +187,8 @@ class CoalClearance:
         def bodies() -> Iterator[Bodies]:
             names = list(links)
             for later, second in enumerate(names):
-                for first in names[:later]:
-                    if self._is_self_pair(first, second):
-                        yield links[first], links[second]
+                firsts = [name for name in names[:later] if self._is_self_pair(name, second)]
+                yield [links[name] for name in firsts], links[second]
 
         inputs = self.description.key, motion.joint_positions
         everywhere = np.ones(found.count, dtype=bool)
@@ -210,9 +209,7 @@ class CoalClearance:
         def bodies() -> Iterator[Bodies]:
             standing = self.description.static_links if record.is_static else frozenset()
             other = MovingBody(tracked_shapes(record.name, record.shapes), track)
-            for link, body in links.items():
-                if link not in standing:
-                    yield body.part(there), other
+            yield [body.part(there) for link, body in links.items() if link not in standing], other
 
         inputs = (
             *(self.description.key, motion.joint_positions[there]),
@@ -265,7 +262,7 @@ class CoalClearance:
                 MovingBody(tracked_shapes(*each), track)
                 for each, track in zip(shapes, tracks, strict=True)
             )
-            yield first, second
+            yield [first] if first.shapes else [], second
 
         inputs = shapes, [(track.rotations, track.translations) for track in tracks]
         (first, _), (second, _) = shapes
@@ -285,7 +282,7 @@ class CoalClearance:
             return
 
         def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
-            some = [each for each in bodies() if each[0].shapes and each[1].shapes]
+            some = [each for each in bodies() if each[0] and each[1].shapes]
             if not some:
                 return ()
             every = [pair for each in some for pair in pairs_between(*each, cutoff)]

@@ -69,7 +69,7 @@ def _shape_pairs(
     shapes: Mapping[str, tuple[TrackedShape, ...]], poses: LinkPoses, first: str, second: str
 ) -> list[ShapePair]:
     one, other = (MovingBody(shapes[name], link_track(poses, name)) for name in (first, second))
-    return pairs_between(one, other)
+    return pairs_between([one], other)
 
 
 def link_overlap_findings(run: Run) -> tuple[Finding, ...]:

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import coal
 import numpy as np
 
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.observation.body_tracks import (
+    LOOKS,
     BodyTrack,
     MovingBody,
     TrackedShape,
@@ -22,9 +23,6 @@ from harness.observation.body_tracks import (
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
-
-LOOKS = 8
-"""Samples from one at which the gap of ball and box is computed to the next."""
 
 BLOCK = 64
 """Samples for which the pairs that may be the nearest are chosen at once."""
@@ -63,56 +61,63 @@ class ShapePair:
 _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
-def pairs_between(first: MovingBody, second: MovingBody, cutoff: float = np.inf) -> list[ShapePair]:
-    """Shapes of one body against shapes of another, in their order.
+def pairs_between(
+    firsts: Sequence[MovingBody], second: MovingBody, cutoff: float = np.inf
+) -> list[ShapePair]:
+    """Shapes of some bodies against shapes of another, in their order.
 
     Args:
-        first: The body whose shapes come first in a pair.
+        firsts: The bodies whose shapes come first in a pair; each has some, as the second does.
         second: Another body, at the same samples.
         cutoff: Pairs that are never nearer than this [m], between samples neither, may be left out.
     """
-    if not first.shapes or not second.shapes:
-        return []
-    gaps = _gaps_at_looks(first, second, cutoff)
-    if gaps is None:
-        return []
-    near, gaps = gaps
-    shapes = [first.shapes[index] for index in near.tolist()]
-    seen = relative_track(first.track, second.track)
-    radii = np.array([shape.radius for shape in shapes])
-    travelled = travels(seen, centers_of(seen, shapes), radii)
-    since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
-    margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
-    found: list[tuple[int, ShapePair]] = []
-    for gap, b in zip(gaps, second.shapes, strict=True):
-        least = np.repeat(gap, LOOKS, axis=0)[: len(travelled)] - since - radii
-        kept = np.flatnonzero(least.min(axis=0) - margin < cutoff).tolist()
-        found += [(i, ShapePair(shapes[i], b, seen, travelled[:, i], least[:, i])) for i in kept]
-    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
+    gaps, is_near = _gaps_at_looks(firsts, second, cutoff)
+    found: list[ShapePair] = []
+    begin = 0
+    for first in firsts:
+        near = begin + np.flatnonzero(is_near[begin : begin + len(first.shapes)])
+        if len(near):
+            shapes = [first.shapes[index] for index in (near - begin).tolist()]
+            found += _pairs_of(MovingBody(shapes, first.track), second, gaps[:, :, near], cutoff)
+        begin += len(first.shapes)
+    return found
 
 
 def _gaps_at_looks(
-    first: MovingBody, second: MovingBody, cutoff: float
-) -> tuple[IntArray, list[FloatArray]] | None:
-    """The shapes of the first body that may come nearer than the cutoff; None without any.
+    firsts: Sequence[MovingBody], second: MovingBody, cutoff: float
+) -> tuple[FloatArray, BoolArray]:
+    """Gaps between balls and boxes, and which balls may come nearer to a box than the cutoff.
 
     Returns:
-        Indices of these shapes, shape (K,), and for each shape of the second body the gaps between
-        the centre of their balls and its box at every look [m], shape (looks, K).
+        The gaps between the boxes about the second body's shapes, and the centres of the balls
+        about all K shapes of the first bodies at every look [m], shape (shapes, looks, K); then
+        whether a ball may come that near before the last sample, shape (K,).
     """
-    looks = slice(None, None, LOOKS)
-    moved = first.travelled + second.travelled
-    reach = np.append(moved[LOOKS::LOOKS], moved[-1])[: len(moved[looks])] - moved[looks]
-    apart = np.linalg.norm(first.centers[looks] - second.centers[looks], axis=1)
-    if (apart - first.radius - second.radius - reach >= cutoff).all():
-        return None
-    seen = relative_track(first.track.part(looks), second.track.part(looks))
-    centers = centers_of(seen, first.shapes)
-    radii = np.array([shape.radius for shape in first.shapes])
-    gaps = [shape.gap(centers) for shape in second.shapes]
-    least = np.minimum.reduce(gaps) - radii - reach[:, None]
-    near = np.flatnonzero((least < cutoff).any(axis=0))
-    return (near, [gap[:, near] for gap in gaps]) if len(near) else None
+    looks = second.track.part(slice(None, None, LOOKS))
+    centers = np.concatenate([body.centers_at_looks for body in firsts], axis=2)
+    turned = np.swapaxes(looks.rotations, 1, 2)
+    seen = turned @ (centers - looks.translations[:, :, None])
+    gaps = np.array([shape.gap(seen) for shape in second.shapes])
+    count = [len(body.shapes) for body in firsts]
+    reach = np.repeat([body.reach + second.reach for body in firsts], count, axis=0).T
+    radii = np.concatenate([body.radii for body in firsts])
+    return gaps, (gaps.min(axis=0) - reach - radii < cutoff).any(axis=0)
+
+
+def _pairs_of(
+    first: MovingBody, second: MovingBody, gaps: FloatArray, cutoff: float
+) -> list[ShapePair]:
+    """The pairs of two bodies that come nearer than the cutoff; gaps as of `_gaps_at_looks`."""
+    seen = relative_track(first.track, second.track)
+    travelled = travels(seen, centers_of(seen, first.shapes), first.radii)
+    since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
+    margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
+    least = np.repeat(gaps, LOOKS, axis=1)[:, : len(travelled)] - (since + first.radii)
+    is_near = least.min(axis=1) - margin < cutoff
+    return [
+        ShapePair(first.shapes[i], second.shapes[j], seen, travelled[:, i], least[j, :, i])
+        for i, j in np.argwhere(is_near.T).tolist()
+    ]
 
 
 def largest_travel(pairs: Sequence[ShapePair], cutoff: float, count: int) -> FloatArray:
