@@ -153,7 +153,7 @@ def smallest_distances(
     """
     nearest = np.full(count, cutoff)
     which = np.full(count, -1, dtype=np.int64)
-    first = np.array([pair.distance(0) if pair.least.min() < cutoff else np.inf for pair in pairs])
+    first = np.array([pair.distance(0) for pair in pairs])
     total = np.array([pair.travel[-1] for pair in pairs])
     near = np.flatnonzero(first - total < cutoff)
     if not len(near):
