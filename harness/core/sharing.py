@@ -34,9 +34,6 @@ MOST_RESULTS = 4096
 LOOK_EVERY = 64
 """Results that are kept, approximately, until a process looks again whether there is room."""
 
-FEW = 100
-"""Results that are taken for each one computed where a case repeats another one."""
-
 T = TypeVar("T")
 
 
@@ -185,18 +182,9 @@ def begin(*, share: bool = True) -> SharedTally:
     return tally
 
 
-def count(tally: SharedTally) -> None:
-    """Add what a fork of this process took and computed to the tally of its case."""
-    if _shared is not None:
-        _shared.tally.taken += tally.taken
-        _shared.tally.computed += tally.computed
-
-
-def is_repeating(kind: str) -> bool:
-    """Whether the case has taken nearly all results of a kind from others so far."""
-    if _shared is None:
-        return False
-    return _shared.tally.taken[kind] > FEW * _shared.tally.computed[kind]
+def is_sharing() -> bool:
+    """Whether this process shares results with others."""
+    return _shared is not None
 
 
 def chain(kind: str) -> KeyChain | None:

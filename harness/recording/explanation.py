@@ -150,9 +150,10 @@ class GoalRegion(Detail):
 
 @dataclass(frozen=True)
 class ApproachFailure(Detail):
-    """Which end of a straight approach cannot be reached."""
+    """Which end of a straight approach cannot be reached, and its direction in the world."""
 
     is_start_of_approach: bool
+    approach_direction: tuple[float, float, float] | None = None
 
 
 def recorded_explanation(details: Details) -> Explanation:

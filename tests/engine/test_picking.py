@@ -131,6 +131,15 @@ def test_advice_for_a_pick_names_keys_that_it_has(tmp_path, step, words):
     assert set(keys) <= {"grasp_pose", "pitch", "approach", "distance", "direction", "base"}
 
 
+@pytest.mark.parametrize(
+    ("pitch", "words"), [("10 deg", "10° below the horizontal"), ("90 deg", "straight down")]
+)
+def test_a_pick_out_of_reach_says_how_it_approaches(tmp_path, pitch, words):
+    step = f"- pick: {{object: far, pitch: {pitch}}}"
+    _, record = run(tmp_path, step, robot=OM, rest=objects(cube("far", 4, 0.6, 0.2)))
+    assert record.steps[0].message.endswith(f", approached {words}")
+
+
 @pytest.mark.parametrize("robot", [OM, UR5E])
 def test_a_place_out_of_reach_gives_the_nearest_pose_and_that_one_is_reached(tmp_path, robot):
     (x, y), far = ((0.2, -0.05), "[0.3, 0.3, 0.04]") if robot == OM else ((0.5, -0.2), "[1, 1, 1]")
