@@ -1,8 +1,9 @@
-"""Whole verdicts, findings and problems of tests, compared with those that were approved.
+"""The facts of verdicts, findings and problems of tests, compared with those that were approved.
 
 A test states what matters in a verdict on a hand-made run, or in a problem of a file.
-`approved.txt` has the rest of it: every number, measure, text, hint and warning, as they were last
-approved. After a change,
+`approved.txt` has the rest of it: every status, number and measure, and of each text, hint and
+warning its numbers and its quoted names, as they were last approved. Words are free to change.
+After a change of a fact,
 
     APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation tests/engine
 
@@ -13,6 +14,7 @@ be read.
 from __future__ import annotations
 
 import os
+import re
 from functools import cache
 from pathlib import Path
 
@@ -35,7 +37,8 @@ def approved_texts(request):
     marks = {mark.name for mark in request.node.iter_markers()} - {"parametrize"}
     if marks or hasattr(request.function, "hypothesis"):
         return
-    said = "\n".join(SAID)
+    lines = [line.rstrip() for text in SAID for line in text.splitlines()]
+    said = "\n".join(filter(None, lines))
     if os.environ.get("APPROVE"):
         _write({**_approved(), request.node.nodeid: said})
     elif request.node.nodeid in _approved():
@@ -43,22 +46,22 @@ def approved_texts(request):
 
 
 def finding_text(finding: Finding) -> str:
-    """A finding of a run, with its numbers."""
+    """A finding of a run: when it is, and its numbers."""
     values = ", ".join(
         f"{key} {_number(value) if isinstance(value, float) else value}"
         for key, value in finding.values.items()
     )
-    when = _number(finding.time)
-    return f"{finding.kind} of {finding.step or '-'} at {when} s: {finding.message}\n  {values}"
+    place = f"{finding.kind} of {finding.step or '-'} at {_number(finding.time)} s"
+    return f"{place}: {_facts(finding.message)}\n  {values}"
 
 
 def problem_text(problem: Problem) -> str:
-    """A problem of a file, without the place of the file."""
-    return f"{problem.line}:{problem.column} {problem.message}\n  {problem.hint}"
+    """A problem of a file: its line and column, its numbers and its quoted names."""
+    return f"{problem.line}:{problem.column} {_facts(problem.message)}\n  {_facts(problem.hint)}"
 
 
 def verdict_text(verdict: Verdict) -> str:
-    """A verdict, with all of its numbers."""
+    """A verdict: its status, its numbers and its measures."""
     observed = verdict.observed
     counts = "" if observed is None else f", {observed.samples} samples"
     if observed is not None:
@@ -68,11 +71,16 @@ def verdict_text(verdict: Verdict) -> str:
     lines = [
         f"{verdict.expectation}",
         f"  {verdict.status} by {_number(verdict.margin)} {verdict.unit or '-'}"
-        f" at {_number(verdict.time)} s{counts}: {verdict.reason}",
+        f" at {_number(verdict.time)} s{counts}: {_facts(verdict.reason)}",
         *(f"    {_measure_text(measure)}" for measure in verdict.measures),
-        *(f"    warning {warning}" for warning in verdict.warnings),
+        *(f"    warning {warning.name}: {_facts(warning.message)}" for warning in verdict.warnings),
     ]
     return "\n".join(lines)
+
+
+def _facts(text: str) -> str:
+    """The numbers and the quoted names of a text, in their order."""
+    return " ".join(re.findall(r"'[^']*'|-?\d+(?:\.\d+)?", text or ""))
 
 
 def _measure_text(measure: Measure) -> str:

@@ -39,7 +39,7 @@ def _short(value: float, more_digits: int) -> str:
         return str(value)
     if more_digits:
         return f"{value:#.{3 + more_digits}g}"
-    if 1e-3 <= abs(value) < 0.05:
+    if 1e-3 <= abs(value) < 1:
         return f"{value:.2g}"
     value = 0.0 if abs(value) < 1e-3 else value
     return f"{value:.1f}" if abs(value) < 100 else f"{value:.0f}"

@@ -285,7 +285,7 @@ class Scope:
 
     def check_joint_unit(self, name: str, loc: Loc) -> None:
         """A value at a place of the file: an angle for a joint that turns, a length for others."""
-        unit = "m" if self.description.joint_by_name[name].kind == "prismatic" else "rad"
+        unit = self.description.joint_by_name[name].position_unit
         self.problems.check_unit(loc, unit, needs=("robot",))
 
     def check_gripper(self, loc: Loc, what: str) -> bool:

@@ -191,6 +191,22 @@ def _files_of(files: Sequence[Path]) -> Files:
     return Files(contents, str(Path.cwd()), environment)
 
 
+def _initialize(ray: Any, options: dict[str, Any]) -> None:
+    """Connect to Ray; three times, because a client's server sometimes dies at its start.
+
+    Source: ray-project/ray, issue 63202.
+    """
+    for further_tries in (2, 1, 0):
+        try:
+            ray.init(**options)
+        except ConnectionAbortedError:
+            if not further_tries:
+                raise
+            ray.shutdown()
+        else:
+            return
+
+
 @contextmanager
 def _connected(name: str, workers: int) -> Iterator[Any]:
     """Ray, connected; what Ray does with signals is undone."""
@@ -213,7 +229,7 @@ def _connected(name: str, workers: int) -> Iterator[Any]:
     else:
         options |= {"address": address}
     try:
-        ray.init(**options)
+        _initialize(ray, options)
     except (ConnectionError, ImportError, RuntimeError, ValueError) as error:
         where = "on this machine" if is_local else f"at '{address}'"
         raise HarnessError(f"the Ray cluster {where} cannot be reached: {error}") from error

@@ -18,6 +18,28 @@ STEPS = (
 )
 
 
+def test_what_a_step_puts_somewhere_shows_in_the_sample_after_it():
+    """The step begins with it, a step that it is part of ends with it, a later one begins there."""
+    put = {"result": {"moved": ["box"]}}
+    steps = (
+        step("wait", 0, 11, path="steps[0]"),
+        step("before", 10, 11, path="steps[1]"),
+        step("all", 10, 11, "sequence", path="steps[2]"),
+        step("put", 10, 11, "move_object", path="steps[2].steps[0]", **put),
+        step("after", 10, 11, path="steps[3]"),
+        step("move", 10, 21, path="steps[4]"),
+        step("last", 59, 60, "move_object", path="steps[5]", **put),
+    )
+    run = make_run(60, steps=steps)
+    windows = {name: window_of(run, name) for name in ("wait", "before", "all", "put", "after")}
+    assert {name: (window.start, window.stop) for name, window in windows.items()} == {
+        "wait": (0, 11), "before": (10, 11), "all": (10, 12), "put": (11, 12), "after": (11, 12)
+    }  # fmt: skip
+    assert (window_of(run, "move").start, window_of(run, "move").stop) == (11, 21)
+    with pytest.raises(NotReached, match="nothing was recorded"):
+        window_of(run, "last")
+
+
 def test_a_window_is_that_of_a_step_by_name_or_path_or_the_whole_run():
     run = make_run(60, steps=STEPS)
     for name in ("go", "steps[0]"):
@@ -74,7 +96,7 @@ def test_a_window_is_cut_short_by_a_step_that_failed_and_not_by_one_that_timed_o
         (0.0999, "m", "99.9 mm"),
         (0.1, "m", "100 mm"),
         (0.00004, "m", "0.04 mm"),
-        (0.00005, "m", "0.1 mm"),
+        (0.00005, "m", "0.05 mm"),
         (1e-6, "m", "0.001 mm"),
         (0.9e-6, "m", "0.0 mm"),
         (np.pi, "rad", "180 deg"),
@@ -82,7 +104,7 @@ def test_a_window_is_cut_short_by_a_step_that_failed_and_not_by_one_that_timed_o
         (0.9874, "m/s", "987 mm/s"),
         (1.0, "m/s", "1.0 m/s"),
         (-1.5, "m/s", "-1.5 m/s"),
-        (0.25, "1", "0.2"),
+        (0.25, "1", "0.25"),
         (3.0, "N", "3.0 N"),
         (np.inf, "N", "inf N"),
         (-np.nan, "m", "nan m"),

@@ -144,3 +144,38 @@ def test_no_predicate_of_the_physics_is_judged_of_what_only_the_planner_knows(tm
 
 
 MORE = {"in": ", container: ground_plane", "on": ", support: ground_plane"}
+
+
+UNKNOWN = """\
+expect:
+  - clearance: {between: [robot, nowhere], at_least: 1 cm}
+  - collision: {between: [gripper, nowhere]}
+  - displaced: {object: nowhere, distance: 1 cm}
+  - gripper: {named_target: nowhere}
+  - in: {object: nowhere, container: floor}
+  - in: {object: cube, container: nowhere}
+  - in_contact: {between: [cube, nowhere]}
+  - joints: {positions: {nowhere: 1 deg}}
+  - named_target: {group: nowhere, state: init}
+  - named_target: {group: arm, state: nowhere}
+  - "on": {object: cube, support: nowhere}
+  - placed: {object: cube, on: nowhere}
+  - placed: {object: cube, pose: {xyz: [0, 0, 0], frame: nowhere}}
+  - placed: {object: cube, pose: {xyz: [0, 0, 0]}, during: nowhere}
+  - sees: {camera: nowhere, object: cube}
+  - slip: {object: nowhere, less_than: 1 mm}
+  - static: {object: nowhere}
+  - tcp_path: {line: {start: {xyz: [0, 0, 0], frame: nowhere}, end: {xyz: [0, 0, 1]}}}
+  - tcp_path: {line: {start: {xyz: [0, 0, 0]}, end: {xyz: [0, 0, 1], frame: nowhere}}}
+  - tcp_pose: {link: nowhere, pose: {xyz: [0, 0, 0]}}
+  - tcp_pose: {pose: {xyz: [0, 0, 0], frame: nowhere}}
+  - upright: {object: nowhere}
+"""
+
+
+def test_an_expectation_refuses_every_name_that_means_nothing(tmp_path):
+    rest = f"objects: [{CUBE % 'cube'}]\n{UNKNOWN}"
+    found = problems(tmp_path, "- wait: 0.1 s", robot=ARM, rest=rest)
+    lines = (tmp_path / "test.scenario.yaml").read_text(encoding="utf-8").splitlines()
+    refused = {line for line, message in found if "'nowhere'" in message}
+    assert refused == {number for number, line in enumerate(lines, 1) if "nowhere" in line}
