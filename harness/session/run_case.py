@@ -25,7 +25,7 @@ from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
 from harness.session.distances_ahead import DistancesAhead
 from harness.session.external import ExternalSession, MakeSession, NoPrograms
-from harness.session.observe import observed_run, with_believed_poses
+from harness.session.observe import explained_run, observed_run, with_believed_poses
 from harness.session.pictures import Drawings, Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
@@ -75,6 +75,8 @@ def run_case(
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
+            with clock.part("judge"):
+                judged = replace(judged, run=explained_run(prepared, judged.run))
             return _reported(request, request.report_dir, judged, result, pictures, clock, progress)
     except HarnessError as error:
         return _broken(request, prepared, clock, error)
@@ -131,7 +133,7 @@ def _judged(
     ahead: DistancesAhead,
 ) -> StoredRun:
     """The observed run with its verdicts; a strict request fails with a warning."""
-    progress.activity("measuring distances and contacts")
+    progress.activity("measuring distances")
     with clock.part("judge"):
         run = observed_run(prepared, executed, ahead.part)
     with clock.part("render"):
