@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,7 @@ from harness.recording.signals import Signals
 from harness.session.prepare import Prepared
 
 if TYPE_CHECKING:
-    from harness.observation.measured_clearance import MeasuredClearance
+    pass
 
 
 def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Signals) -> Signals:
@@ -26,25 +25,15 @@ def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Sign
     return replace(recorded, object_poses={**recorded.object_poses, **believed})
 
 
-def observed_run(
-    prepared: Prepared,
-    executed: Run,
-    measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
-) -> Run:
-    """The run with distances, as verdicts and the digest need them.
-
-    Args:
-        prepared: The scenario that was executed.
-        executed: What was executed and recorded.
-        measured: The distances in a part of the run that were measured while it went on.
-    """
+def observed_run(prepared: Prepared, executed: Run) -> Run:
+    """The run with distances, as verdicts and the digest need them."""
     from harness.observation.clearance import CoalClearance
     from harness.observation.link_overlaps import with_link_overlaps
 
     description, needed = prepared.program.description, prepared.observations
     cutoff, bodies = needed.recorded_cutoff, (executed.objects, executed.attachments)
     observer = CoalClearance(description)
-    signals = observer.observe(executed.signals, *bodies, cutoff, measured)
+    signals = observer.observe(executed.signals, *bodies, cutoff)
     run = replace(executed, signals=with_link_overlaps(signals, description))
     if not needed.planned_clearances:
         return run
