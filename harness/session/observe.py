@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ from harness.recording.signals import Signals
 from harness.session.prepare import Prepared
 
 if TYPE_CHECKING:
-    pass
+    from harness.observation.measured_clearance import MeasuredClearance
 
 
 def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Signals) -> Signals:
@@ -25,15 +26,25 @@ def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Sign
     return replace(recorded, object_poses={**recorded.object_poses, **believed})
 
 
-def observed_run(prepared: Prepared, executed: Run) -> Run:
-    """The run with distances, as verdicts and the digest need them."""
+def observed_run(
+    prepared: Prepared,
+    executed: Run,
+    measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
+) -> Run:
+    """The run with distances, as verdicts and the digest need them.
+
+    Args:
+        prepared: The scenario that was executed.
+        executed: What was executed and recorded.
+        measured: The distances in a part of the run that were measured while it went on.
+    """
     from harness.observation.clearance import CoalClearance
     from harness.observation.link_overlaps import with_link_overlaps
 
     description, needed = prepared.program.description, prepared.observations
     cutoff, bodies = needed.recorded_cutoff, (executed.objects, executed.attachments)
     observer = CoalClearance(description)
-    signals = observer.observe(executed.signals, *bodies, cutoff)
+    signals = observer.observe(executed.signals, *bodies, cutoff, measured)
     run = replace(executed, signals=with_link_overlaps(signals, description))
     if not needed.planned_clearances:
         return run
