@@ -191,6 +191,20 @@ def _files_of(files: Sequence[Path]) -> Files:
     return Files(contents, str(Path.cwd()), environment)
 
 
+def _initialize(ray: Any, options: dict[str, Any]) -> None:
+    """Connect to Ray; three times, because a client's server sometimes dies at its start.
+
+    Source: ray-project/ray, issue 63202.
+    """
+    for _ in range(2):
+        try:
+            ray.init(**options)
+            return
+        except ConnectionAbortedError:
+            ray.shutdown()
+    ray.init(**options)
+
+
 @contextmanager
 def _connected(name: str, workers: int) -> Iterator[Any]:
     """Ray, connected; what Ray does with signals is undone."""
@@ -213,7 +227,7 @@ def _connected(name: str, workers: int) -> Iterator[Any]:
     else:
         options |= {"address": address}
     try:
-        ray.init(**options)
+        _initialize(ray, options)
     except (ConnectionError, ImportError, RuntimeError, ValueError) as error:
         where = "on this machine" if is_local else f"at '{address}'"
         raise HarnessError(f"the Ray cluster {where} cannot be reached: {error}") from error

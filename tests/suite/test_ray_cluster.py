@@ -153,17 +153,31 @@ def test_a_killed_node_loses_and_repeats_no_case(local, cluster):
     assert journal(local / "node") == journal(local / "local")
 
 
+# Ends the first server that Ray starts for a client, as an error of Ray's does now and then.
+DIES_ONCE = """
+import os, pathlib, sys
+mark = pathlib.Path(__file__).with_name("died")
+if "specific-server" in " ".join(sys.orig_argv) and "_worker" not in sys.orig_argv[1]:
+    if not mark.exists():
+        mark.touch()
+        os._exit(1)
+"""
+
+
 @pytest.fixture
-def head():
-    """The address of a cluster that is reached through Ray's client."""
+def head(tmp_path):
+    """The address of a cluster that is reached through Ray's client, at the second try."""
     ray = Path(sys.executable).with_name("ray")
+    (tmp_path / "sitecustomize.py").write_text(DIES_ONCE, encoding="utf-8")
     started = subprocess.Popen(
         [ray, "start", "--head", "--block", "--node-ip-address=127.0.0.1", "--port=26379",
          "--ray-client-server-port=21001", "--num-cpus=2", "--include-dashboard=false"],
-        env=ENVIRONMENT, start_new_session=True, stdout=subprocess.DEVNULL,
+        env={**ENVIRONMENT, "PYTHONPATH": str(tmp_path)},
+        start_new_session=True, stdout=subprocess.DEVNULL,
     )  # fmt: skip
     wait_for(lambda: answers(21001))
     yield "ray://127.0.0.1:21001"
+    assert (tmp_path / "died").exists()
     os.killpg(started.pid, signal.SIGTERM)
     started.wait()
 
