@@ -24,12 +24,14 @@ Timed = tuple[float, dict[str, Any]]
 StepInterval = tuple[float, float]
 
 
-def timed_events(content: BagContent, timeline: Timeline) -> list[Timed]:
-    """Every event with its time [s], in order."""
+def timed_events(content: BagContent, timeline: Timeline, begin: float) -> list[Timed]:
+    """Every event from a time on with its own time [s], in order."""
     logged = np.array([time for time, _ in content.events], dtype=np.int64)
     moments = timeline.at_logged(logged).tolist() if len(logged) else []
     timed = zip(moments, (event for _, event in content.events), strict=True)
-    return sorted(((time, event) for time, event in timed if time >= -RESOLUTION), key=_moment)
+    return sorted(
+        ((time, event) for time, event in timed if time >= begin - RESOLUTION), key=_moment
+    )
 
 
 def steps_of(
