@@ -13,7 +13,6 @@ from harness.assertions.joints import (
     ROUNDING,
     gripper_joints,
     is_measured,
-    joint_unit,
     resting_joints,
 )
 from harness.assertions.margins import MarginSignal, Part, all_of
@@ -109,7 +108,7 @@ def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: b
         return []
     values = window.cut(recorded)
     softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
-    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[joint_unit(joint)]))
+    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[joint.position_unit]))
 
 
 def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part]:
@@ -135,7 +134,7 @@ def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part
 def _between(
     quantity: Quantity, values: FloatArray, joint: JointRecord, slack: float
 ) -> list[Part]:
-    scale, unit = 0.5 * (joint.upper - joint.lower), joint_unit(joint)
+    scale, unit = 0.5 * (joint.upper - joint.lower), joint.position_unit
     lower, upper = joint.lower - slack, joint.upper + slack
     return [
         Part(quantity, values, lower, ">=", scale, detail=joint.name, measured_unit=unit),
@@ -144,7 +143,7 @@ def _between(
 
 
 def _rate_part(window: Window, column: int, joint: JointRecord, quantity: Quantity) -> list[Part]:
-    signals, unit = window.run.signals, joint_unit(joint)
+    signals, unit = window.run.signals, joint.position_unit
     match quantity.name:
         case "velocity":
             values, limit, unit = signals.joint_velocities, joint.velocity, f"{unit}/s"

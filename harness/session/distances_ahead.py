@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from harness.core import sharing
 from harness.core.activity import Activity, unobserved
-from harness.core.sharing import SharedTally
 from harness.engine.execute import ProgramExecution
 from harness.observation.beliefs import believed_poses
 from harness.ports.simulation import Simulator
@@ -33,7 +32,7 @@ class DistancesAhead:
         self._prepared = prepared
         self._measured: Parts = {}
         self._begun = 0
-        self._background: Background[tuple[Parts, SharedTally]] | None = None
+        self._background: Background[Parts] | None = None
 
     def close(self) -> None:
         """End the process that is at work."""
@@ -43,13 +42,13 @@ class DistancesAhead:
     def look(self, execution: ProgramExecution, simulator: Simulator) -> None:
         """Begin to measure the parts that are complete by now, unless others are being measured.
 
-        Only the record of the physics is complete at once; that of a robot arrives later. Where
-        another case has computed the same physics, its distances are known too.
+        Only the record of the physics is complete at once; that of a robot arrives later. Cases
+        that share results measure their own: another process for each costs more than it saves.
         """
         from harness.observation.sampled_clearance import complete_parts
         from harness.simulation.mujoco_simulator import MujocoSimulator
 
-        if not isinstance(simulator, MujocoSimulator) or sharing.is_repeating("physics"):
+        if not isinstance(simulator, MujocoSimulator) or sharing.is_sharing():
             return
         if self._background is not None and not self._background.has_message():
             return
@@ -69,9 +68,7 @@ class DistancesAhead:
 
     def _take(self) -> None:
         if self._background is not None:
-            measured, tally = self._background.result(unobserved)
-            self._measured |= measured
-            sharing.count(tally)
+            self._measured |= self._background.result(unobserved)
             self._background = None
 
     def _parts(
@@ -80,20 +77,18 @@ class DistancesAhead:
         simulator: MujocoSimulator,
         numbers: range,
         _: Activity,
-    ) -> tuple[Parts, SharedTally]:
-        """Parts of the run, and what was shared to measure them; in the other process."""
+    ) -> Parts:
+        """Parts of the run; in the other process."""
         from harness.observation.clearance import CoalClearance
 
-        tally = sharing.begin()
         prepared, done = self._prepared, execution.finish()
         motion = simulator.motion()
         believed = believed_poses(done.beliefs, motion.joint_positions, prepared.kinematics)
         poses = {**motion.object_poses, **believed}
-        parts = CoalClearance(prepared.program.description).measured_parts(
+        return CoalClearance(prepared.program.description).measured_parts(
             Motion(motion.times, motion.joint_positions, poses),
             done.objects,
             done.attachments,
             prepared.observations.recorded_cutoff,
             numbers,
         )
-        return parts, tally

@@ -426,7 +426,7 @@ class MujocoSimulator:
         """
         worst = int(np.argmax(errors))
         joint = self.description.movable_joints[int(joints[worst])]
-        unit = "m" if joint.kind == "prismatic" else "rad"
+        unit = joint.position_unit
         contacts = self._recording.strongest_robot_contacts(row)
         time = row * self._timestep
         command = self._command.copy()

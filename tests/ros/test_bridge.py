@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from harness.ros.action_server import Status
+from harness.ros.actions import Status
 from harness.ros.control.goals import Code
 from harness.ros.interfaces import TRAJECTORY
 from harness.ros.replay import replay

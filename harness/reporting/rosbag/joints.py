@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.types import IntArray
 from harness.recording.run import Run
-from harness.reporting.rosbag.messages import Clock, joint_state, stamp
+from harness.reporting.rosbag.messages import joint_state, message, stamp
 from harness.reporting.rosbag.samples import Message
 from harness.reporting.rosbag.topics import CLOCK, JOINT_COMMANDS, JOINT_STATES
 
@@ -16,7 +16,7 @@ from harness.reporting.rosbag.topics import CLOCK, JOINT_COMMANDS, JOINT_STATES
 def clock(run: Run, indices: IntArray) -> Iterator[Message]:
     """Simulation time, for nodes with `use_sim_time`."""
     for time in run.signals.times[indices].tolist():
-        yield Message(time, CLOCK, Clock(clock=stamp(time)))
+        yield Message(time, CLOCK, message("rosgraph_msgs/msg/Clock", clock=stamp(time)))
 
 
 def measured_states(run: Run, indices: IntArray) -> Iterator[Message]:
@@ -32,8 +32,8 @@ def measured_states(run: Run, indices: IntArray) -> Iterator[Message]:
                 time,
                 names,
                 signals.joint_positions[index],
-                signals.joint_velocities[index],
-                signals.joint_efforts[index],
+                velocity=signals.joint_velocities[index],
+                effort=signals.joint_efforts[index],
             ),
         )
 
@@ -47,5 +47,5 @@ def commanded(run: Run, indices: IntArray) -> Iterator[Message]:
         given = ~np.isnan(positions)
         if given.any():
             velocities = signals.joint_command_velocities[index][given]
-            state = joint_state(time, names[given].tolist(), positions[given], velocities)
+            state = joint_state(time, names[given].tolist(), positions[given], velocity=velocities)
             yield Message(time, JOINT_COMMANDS, state)

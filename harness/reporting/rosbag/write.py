@@ -18,12 +18,11 @@ from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
 from harness.reporting.rosbag import cameras, joints
 from harness.reporting.rosbag.events import event_messages
-from harness.reporting.rosbag.foxglove import foxglove_layout
 from harness.reporting.rosbag.frames import moving_tf, static_tf
+from harness.reporting.rosbag.layouts import foxglove_layout, rviz_configuration
 from harness.reporting.rosbag.markers import scene_markers
-from harness.reporting.rosbag.messages import TYPESTORE, String, nanoseconds
+from harness.reporting.rosbag.messages import TYPESTORE, message, nanoseconds
 from harness.reporting.rosbag.plans import planned, tcp_path
-from harness.reporting.rosbag.rviz import rviz_configuration
 from harness.reporting.rosbag.samples import Message, samples_at
 from harness.reporting.rosbag.topics import ROBOT_DESCRIPTION, Topic
 from harness.reporting.rosbag.urdf import MeshAddresses, urdf_of
@@ -94,12 +93,12 @@ def _write_messages(folder: Path, stored: StoredRun, options: BagOptions) -> Non
         writer.set_custom_data(key, value)
     connections: dict[str, Connection] = {}
     with writer:
-        for message in _messages(stored, options):
-            topic = message.topic
+        for each in _messages(stored, options):
+            topic = each.topic
             if topic.name not in connections:
                 connections[topic.name] = _connection(writer, topic)
-            content = TYPESTORE.serialize_cdr(message.content, topic.msgtype)
-            writer.write(connections[topic.name], nanoseconds(message.time), content)
+            content = TYPESTORE.serialize_cdr(each.content, topic.msgtype)
+            writer.write(connections[topic.name], nanoseconds(each.time), content)
 
 
 def _connection(writer: Writer, topic: Topic) -> Connection:
@@ -141,7 +140,7 @@ def _in_order(messages: Iterator[Message]) -> Iterator[Message]:
 
 
 def _description(run: Run, options: BagOptions) -> Message:
-    content = String(data=urdf_of(run, options.meshes))
+    content = message("std_msgs/msg/String", data=urdf_of(run, options.meshes))
     return Message(float(run.signals.times[0]), ROBOT_DESCRIPTION, content)
 
 
