@@ -12,7 +12,7 @@ from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_record import StepRecord, StepStatus
-from harness.recording.step_results import SavedResult
+from harness.recording.step_results import SavedResult, SceneChange
 
 RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
@@ -144,8 +144,12 @@ def _step(
     name, path = str(event["step"]), _path(event)
     line, summary = known.get(name, known.get(path, (0, "")))
     begin, end = span
-    # a step without duration is judged on the first sample after it
+    result = _result(event)
+    # a step without duration is judged on the first sample after it, which windows add themselves
+    # where it changes the scene
     start = min(int(np.searchsorted(times, begin - RESOLUTION)), len(times) - 1)
+    if result.find(SceneChange) is not None:
+        start = max(int(np.searchsorted(times, begin + RESOLUTION)) - 1, 0)
     return StepRecord(
         id=name,
         path=path,
@@ -159,7 +163,7 @@ def _step(
         end_index=max(int(np.searchsorted(times, end + RESOLUTION)), start + 1),
         error_code=str(event.get("error_code", "")),
         message=str(event.get("message", "")),
-        result=_result(event),
+        result=result,
     )
 
 
