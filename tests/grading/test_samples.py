@@ -14,10 +14,11 @@ from tests.grading.hand_made import (
     grade,
     outcomes,
     recorded,
+    state,
     statuses,
     times,
 )
-from tests.grading.recordings import Recording
+from tests.grading.recordings import Recording, transform
 
 LOW, STANDS = "formula: always z(box) < 3 cm", "always: {upright: box}"
 IN_RANGE = "formula: always abs(position(joint1)) < 1"
@@ -55,6 +56,28 @@ def test_what_moves_between_poses_of_the_box_has_failed(tmp_path):
 
     found = recorded(joints=100, box=5, position=swing)
     assert statuses(grade(found, tmp_path, IN_RANGE, STANDS)) == ["failed", "passed"]
+
+
+def test_a_command_between_joint_states_has_been_given(tmp_path):
+    """The joints stand still at 5 Hz, and one command of a hundred is beyond its limit."""
+    recording = recorded(joints=5)
+    for time in times(100):
+        command = state(4.0 if abs(time - 1.1) < 1e-6 else 0.0)
+        recording.add("/joint_commands", "sensor_msgs/msg/JointState", float(time), command)
+    limits = "within_limits: {effort: false, velocity: false}"
+    assert statuses(grade(recording, tmp_path, limits, IN_RANGE)) == ["failed", "passed"]
+
+
+def test_joint_states_of_another_robot_leave_the_joints_to_tf(tmp_path):
+    recording = add_box(Recording(), times(50), lambda _: box_pose())
+    content = {**state(0.0), "name": ["a", "b", "c", "d", "e"]}
+    for time in times(50):
+        recording.add("/joint_states", "sensor_msgs/msg/JointState", float(time), content)
+        turned = [0.012, 0, 0.017, np.cos(0.1 * time), 0, 0, np.sin(0.1 * time)]
+        transforms = [transform("link1", "link2", turned)]
+        recording.add("/tf", "tf2_msgs/msg/TFMessage", float(time), {"transforms": transforms})
+    found = grade(recording, tmp_path, IN_RANGE, "joints: {positions: {joint1: 0.6}}", STANDS)
+    assert statuses(found) == ["passed"] * 3
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.003, 0.01])

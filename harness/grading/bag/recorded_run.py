@@ -100,10 +100,9 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     timeline = Timeline(reference)
     placements = {placement.link: placement for placement in known.robot.placements}
     in_frames = messages_of_frames(content, placements, known.description, timeline)
-    messages = in_frames
-    if content.joints:
-        messages = joint_messages(content.joints, known.description, timeline, topics.joint_states)
-    else:
+    states = joint_messages(content.joints, known.description, timeline, topics.joint_states)
+    messages = states or in_frames
+    if not states:
         content.notes.append("there are no joint states; the joints are read from /tf")
     commands = joint_messages(content.commands, known.description, timeline, "/joint_commands")
     joints, commanded_joints = traces_of(messages), traces_of(commands)
@@ -114,7 +113,8 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         *(each for some in (joints, commanded_joints) for kinds in some.values() for each in kinds),
         *map(frames.trace, moving),
     ]
-    times = _judged_times(path, traces, [reference, *moving], content, timeline)
+    others = (*content.joints.values(), *content.commands.values(), *moving)
+    times = _judged_times(path, traces, [reference, *others], content, timeline)
     numbers = len(times) * (5 * len(known.robot.joints) + 7 * (len(seen) + len(known.frames) + 1))
     if numbers > MOST_NUMBERS:
         hint = "cut out what is to be graded, with `ros2 bag convert` for example"
@@ -157,7 +157,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     for name in shapes:
         for others in frames.other_poses(name, links, times):
             doubts += source_doubts(name, shapes[name], times, poses[name], others)
-    if content.joints:
+    if states:
         shown = joint_rows(traces_of(in_frames), known.description, times)
         doubts += tf_doubts(known.description, times, measured, shown)
         if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
