@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.grading.bag.clocks import SAME_CLOCK, Timeline
 from harness.grading.bag.content import BagContent, BagTopics, RecordedTrack
@@ -39,6 +39,7 @@ from harness.grading.bag.joints import (
     traces_of,
 )
 from harness.grading.bag.message_files import bag_error
+from harness.grading.bag.missing import gaps, no_joints
 from harness.grading.bag.reader import read_bag
 from harness.grading.bag.sampling import Trace, gap_limit, sample_times
 from harness.recording.link_poses import replayed_link_poses
@@ -96,7 +97,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     content = read_bag(path, topics)
     reference = reference_track(content, known.description, known.robot.arm_joints)
     if reference is None:
-        raise _no_joints(path, topics, content, known)
+        raise no_joints(path, topics, content, known.robot.arm_joints)
     timeline = Timeline(reference)
     placements = {placement.link: placement for placement in known.robot.placements}
     in_frames = messages_of_frames(content, placements, known.description, timeline)
@@ -146,11 +147,12 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
     is_own = _is_of_this_program(events)
     shapes = {obj.name: obj.shapes for obj in seen}
+    movable = [obj.name for obj in known.objects if not obj.is_static]
     doubts = [
         *joint_doubts(messages, is_own=is_own),
         *object_doubts(content.edges, timeline, shapes, is_own=is_own),
         *object_doubts(content.objects, timeline, shapes, is_own=is_own),
-        *_frame_doubts(frames, [obj for obj in seen if not obj.is_static], is_own=is_own),
+        *_once_doubts(frames, [name for name in movable if name in shapes], is_own=is_own),
         *_unknown_roots(frames, list(shapes)),
         *_step_doubts(events, steps),
     ]
@@ -168,7 +170,7 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         *timeline.notes,
         *frames.notes,
         *foreign_links(content, placements),
-        *_gaps(known, signals, present),
+        *gaps([joint.name for joint in known.robot.joints], movable, signals, present),
     ]
     return Run(
         scenario=known.title,
@@ -241,14 +243,12 @@ def _judged_times(
     return np.append(found, max(ends)) if max(ends) - found[-1] > limit else found
 
 
-def _frame_doubts(
-    frames: Frames, objects: Sequence[WorldObject], *, is_own: bool
-) -> Iterator[Doubt]:
+def _once_doubts(frames: Frames, names: Sequence[str], *, is_own: bool) -> Iterator[Doubt]:
     """Movable objects of which a single pose counts at all times."""
-    for obj in objects:
-        if frames.is_published_once(obj.name) and not is_own:
-            said = f"{obj.name} has one pose in all, or one in /tf_static; it counts all along"
-            yield Doubt("once", said, (obj.name,))
+    for name in names:
+        if frames.is_published_once(name) and not is_own:
+            said = f"{name} has one pose in all, or one in /tf_static; it counts all along"
+            yield Doubt("once", said, (name,))
 
 
 def _unknown_roots(frames: Frames, names: Sequence[str]) -> list[Doubt]:
@@ -293,60 +293,5 @@ def _object_record(
     return ObjectRecord.of(obj, present, obj.pose if is_known else None)
 
 
-def _gaps(
-    known: Recorded, signals: Signals, present: Mapping[str, tuple[StepInterval, ...]]
-) -> list[str]:
-    """Messages about gaps in joints and objects."""
-    messages: list[str] = []
-    unknown: BoolArray = np.isnan(signals.joint_positions)
-    spans = np.diff(signals.times)
-    names = [joint.name for joint in known.robot.joints]
-    without = [
-        name for name, gone in zip(names, np.all(unknown, axis=0).tolist(), strict=True) if gone
-    ]
-    if without:
-        messages.append(f"the recording lacks the joints {', '.join(without)}")
-    for column, name in enumerate(names):
-        gone = unknown[:, column]
-        if gone.any() and name not in without:
-            messages.append(f"{name} has a gap that begins at t={signals.times[gone][0]:.3f} s")
-    for name, poses in sorted(signals.object_poses.items()):
-        there = is_present(present[name], signals.times)
-        gone = np.isnan(poses[:, 0]) & there
-        if gone.any():
-            lost, whole = ((each[1:] & there[:-1] & there[1:]) @ spans for each in (gone, there))
-            share = 100 * float(lost / max(whole, spans.min()))
-            first = signals.times[gone][0]
-            messages.append(
-                f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s"
-            )
-    dynamic = [obj.name for obj in known.objects if not obj.is_static]
-    never = [name for name in dynamic if name not in signals.object_poses]
-    if never:
-        messages.append(f"the recording lacks poses of {', '.join(never)}")
-    return messages
-
-
 def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
     return np.array(np.broadcast_to(poses, (len(times), 7)))
-
-
-def _no_joints(path: Path, topics: BagTopics, content: BagContent, known: Recorded) -> Exception:
-    expected = known.robot.arm_joints
-    if content.joints:
-        seen = sorted({name for names in content.joints for name in names})
-        return bag_error(
-            path,
-            f"{topics.joint_states} names none of the robot's joints, but {', '.join(seen[:12])}",
-            f"expected: {', '.join(expected)}",
-        )
-    others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
-    if others:
-        hint = f"topics of joint states: {', '.join(others)} (--joint-states TOPIC)"
-    else:
-        hint = (
-            f"its topics: {', '.join(sorted(content.topics)[:20])}"
-            if content.topics
-            else "it has no messages"
-        )
-    return bag_error(path, f"has no {topics.joint_states} and no frames of this robot in /tf", hint)
