@@ -30,6 +30,8 @@ FEWEST_JUMPS = 3
 """Jumps there and back from which on a topic has two publishers; one is a wrong message."""
 FASTEST = 3.0
 """A joint that moves faster than this multiple of its velocity limit jumps."""
+UNKNOWN_LIMIT = 2 * np.pi
+"""Velocity limit of a joint whose description has none, or 0 [rad/s or m/s]."""
 SHORTEST_TIME = 0.02
 """Less time between two messages counts as this in the search for a single jump of a joint [s]: a
 message that is up to 60 ms late is no jump at the velocity limit."""
@@ -77,7 +79,7 @@ def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iter
     """
     for name, said in messages.items():
         joint, spans = said.joint, np.diff(said.times)
-        fastest = FASTEST * (joint.velocity if np.isfinite(joint.velocity) else 2 * np.pi)
+        fastest = FASTEST * (joint.velocity if 0 < joint.velocity < np.inf else UNKNOWN_LIMIT)
         sizes, slack = np.abs(said.steps), SLACK[joint.kind]
         is_back = said.steps[1:] * said.steps[:-1] < 0
         both = _there_and_back(sizes > slack + fastest * spans, is_back)
