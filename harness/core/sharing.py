@@ -182,11 +182,6 @@ def begin(*, share: bool = True) -> SharedTally:
     return tally
 
 
-def is_sharing() -> bool:
-    """Whether this process shares results with others."""
-    return _shared is not None
-
-
 def chain(kind: str) -> KeyChain | None:
     """A chain of results of a kind; None where nothing is shared."""
     return None if _shared is None else KeyChain(_shared, kind)

@@ -89,7 +89,7 @@ class Sees(Predicate):
     Judged from the picture at the window's end; next to a temporal word, `for` or `within` from
     pictures all along, at the camera's `update_rate`, at most 5 a second. What happens between two
     pictures is not seen. An object whose opacity is below 0.1 is not seen: its colours differ from
-    those behind it by less than a tenth of their range.
+    the background by less than a tenth of their range.
     """
 
     subject = "object"

@@ -60,7 +60,6 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
-        measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
     ) -> Signals:
         """The same signals with `clearances` and `clearance_links` filled in.
 
@@ -69,18 +68,18 @@ class CoalClearance:
             objects: All objects of the run.
             attachments: All attachments of the run.
             cutoff: Larger distances are reported as the cutoff [m].
-            measured: What `measured_parts` found in a part of the run, or None.
         """
         count = len(signals.times)
         if not count:
             return replace(signals, clearance_cutoff=cutoff)
         motion = Motion.of(signals)
         samples = knots(motion.times, objects, attachments)
-        parts = [
-            measured(number) or self._measured(motion.at(part), objects, attachments, cutoff)
-            for number, part in reversed([*enumerate(parts_of_run(motion.times, samples))])
-        ]  # the last ones first: others may still be measured by another process
-        found = MeasuredClearance.joined(parts[::-1])
+        found = MeasuredClearance.joined(
+            [
+                self._measured(motion.at(part), objects, attachments, cutoff)
+                for part in parts_of_run(motion.times, samples)
+            ]
+        )
         if not found.distances:
             return replace(signals, clearance_cutoff=cutoff)
         near = np.union1d(
@@ -101,21 +100,6 @@ class CoalClearance:
         return replace(
             signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
-
-    def measured_parts(
-        self,
-        motion: Motion,
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-        numbers: range,
-    ) -> dict[int, MeasuredClearance]:
-        """Distances in complete parts of a run that goes on, by the numbers of the parts."""
-        parts = parts_of_run(motion.times, knots(motion.times, objects, attachments))
-        return {
-            number: self._measured(motion.at(parts[number]), objects, attachments, cutoff)
-            for number in numbers
-        }
 
     def _look_between(
         self,

@@ -202,7 +202,7 @@ def test_impossible_words_are_refused(words, message):
 @pytest.mark.parametrize(
     ("opacity", "status"), [(0.0, "failed"), (0.09, "failed"), (0.1, "passed")]
 )
-def test_what_hardly_differs_from_what_is_behind_it_is_not_seen(opacity, status):
+def test_what_hardly_differs_from_the_background_is_not_seen(opacity, status):
     faint = ball("ball", AHEAD, 0.05, rgba=(1.0, 0.0, 0.0, opacity))
     run, objects = run_with([eye()], [faint])
     run = replace(run, objects=(ObjectRecord.of(faint, ((0.0, 1.0),), None),))

@@ -99,6 +99,16 @@ def test_what_is_recorded_before_the_joints_counts(tmp_path):
     assert statuses(grade(recording, tmp_path, STANDS, IN_RANGE)) == ["failed", "not observable"]
 
 
+@pytest.mark.parametrize(("late", "status"), [(0.2, "passed"), (0.3, "not observable")])
+def test_topics_may_begin_a_quarter_of_a_second_apart(late, status, tmp_path):
+    recording = add_joints(Recording(), times(100, first=late), lambda t: 0.2 * t)
+    add_box(recording, times(100), lambda _: box_pose())
+    assert statuses(grade(recording, tmp_path, IN_RANGE, STANDS)) == [status, "passed"]
+    recording = add_joints(Recording(), times(100))
+    add_box(recording, times(100, first=late), lambda t: box_pose(y=-0.2 + 0.1 * t))
+    assert statuses(grade(recording, tmp_path, IN_RANGE, STANDS)) == ["passed", status]
+
+
 def test_a_stamp_from_before_the_recording_does_not_lengthen_it(tmp_path):
     """A node that sent the pose once, a minute before, and the recorder got it at the start."""
     recording = add_joints(Recording(), times(50))

@@ -6,8 +6,8 @@ import pytest
 
 from harness.ros.actions import Status
 from harness.ros.control.goals import Code
+from harness.ros.handover import replay
 from harness.ros.interfaces import TRAJECTORY
-from harness.ros.replay import replay
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 

@@ -20,7 +20,7 @@ GAP_PERIODS = 10
 LONGEST_MOTION = 0.25
 """Longest time between two messages over which a motion is interpolated [s]: an arm that
 accelerates by 2 m/s^2 is 16 mm off the straight line then. Over a longer time only what is the same
-at both messages is known in between."""
+at both messages is known in between. The topics of a recorder begin so far apart, too."""
 SAME_PLACE, SAME_ORIENTATION = 0.01, 0.05
 """An object that moves and turns by less from one message to the next stands still [m, rad]."""
 
@@ -50,9 +50,10 @@ class Trace:
         """A trace of rows at rising times; `is_moving` says which steps are motions, (N - 1,)."""
         limit, spans = gap_limit(times), np.diff(times)
         is_hole = (spans > limit) | (is_moving & (spans > LONGEST_MOTION))
-        reach = np.where(is_moving, min(limit, LONGEST_MOTION), limit)
-        ends = (float(reach[0]), float(reach[-1])) if len(reach) else (limit, limit)
-        return cls(times, rows, steps, is_hole, ends)
+        moves = is_moving if len(is_moving) else np.array([False])
+        first = LONGEST_MOTION if moves[0] else max(limit, LONGEST_MOTION)
+        last = min(limit, LONGEST_MOTION) if moves[-1] else limit
+        return cls(times, rows, steps, is_hole, (first, last))
 
     def at(self, sample_times: FloatArray) -> FloatArray:
         """Linear interpolation; NaN where nothing is known, shape (len(sample_times), width)."""
