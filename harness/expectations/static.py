@@ -75,9 +75,11 @@ class Static(Predicate):
         parts: list[Part] = []
         names = [self.object] if self.object is not None else _dynamic(run)
         for name in names:
-            here = None if self.object is not None else window.cut(present(run, name))
+            there = present(run, name)
+            here = None if self.object is not None else window.cut(there)
             linear, angular = (
-                window.cut(calm(run, speed)) for speed in speeds(run, physical_poses(run, name))
+                window.cut(calm(run, speed, there))
+                for speed in speeds(run, physical_poses(run, name), there)
             )
             turning = self.max_angular_velocity
             parts += [
@@ -99,7 +101,7 @@ class Static(Predicate):
             slides = joint.kind == "prismatic"
             limit = self.max_velocity if slides else self.max_angular_velocity
             unit = "m/s" if slides else "rad/s"
-            still = window.cut(calm(window.run, speed))
+            still = window.cut(calm(window.run, speed, np.ones(len(speed), dtype=bool)))
             parts.append(
                 Part(JOINT_SPEED, still, limit, "<=", detail=joint.name, measured_unit=unit)
             )

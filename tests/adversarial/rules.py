@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+GRADING = "../guides/grading.md"
 EXPECTATIONS = "expectations.md"
 
 
@@ -228,6 +229,33 @@ RULES = (
             "digest written over as well",
         ),
         ("folder that was moved", "run of another robot"),
+    ),
+    Rule(
+        "Every recorded message is judged",
+        "The samples of a recording are the times of"
+        f" [all messages]({GRADING}#how-recordings-are-read) about joints and objects. What stands"
+        " still is known between messages that are up to ten periods of their topic apart, at most"
+        " 1.5 s; a motion is interpolated over at most 0.25 s.",
+        ("hop between two joint states", "box that is seen once a second"),
+        ("box that stands and is seen once a second", "four lost messages"),
+    ),
+    Rule(
+        "A recording that contradicts itself earns nothing",
+        f"Points are withheld for each [doubt]({GRADING}#points): positions that contradict"
+        " velocities, jumps and flips that no joint or body makes, topics that contradict each"
+        " other, and poses that were sent once. The grader may allow each of them.",
+        (
+            "velocities that are all 0",
+            "arm put at its goal by a program",
+            "box that flips in each message",
+            "/tf that contradicts the poses of the box",
+            "box glued to the hand by /tf_static",
+        ),
+        (
+            "box that tips over",
+            "/tf that agrees with the poses of the box",
+            "/tf that is 20 ms late",
+        ),
     ),
     Rule(
         "What is not checked is said",
