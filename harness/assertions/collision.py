@@ -30,6 +30,7 @@ from harness.assertions.contacts import (
     debounced,
     finger_links,
     force_between,
+    hand_links,
     side_forces,
 )
 from harness.assertions.excused_force import (
@@ -148,7 +149,7 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     along after letting go, or that opens against a wall.
     """
     gripper = run.robot.gripper
-    hand = frozenset[str]() if gripper is None else finger_links(gripper) | {gripper.palm_link}
+    hand = frozenset[str]() if gripper is None else hand_links(gripper)
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)

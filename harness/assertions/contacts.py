@@ -43,6 +43,11 @@ def finger_links(gripper: GripperRecord) -> frozenset[str]:
     return frozenset(link for links in gripper.sides.values() for link in links)
 
 
+def hand_links(gripper: GripperRecord) -> frozenset[str]:
+    """Links of all finger sides, and the palm."""
+    return finger_links(gripper) | ({gripper.palm_link} - {""})
+
+
 def force_between(run: Run, firsts: Collection[str], seconds: Collection[str]) -> FloatArray:
     """Sum of the normal forces between two sets of bodies at each sample [N], shape (N,)."""
     total = np.zeros(len(run.signals.times))
@@ -56,6 +61,11 @@ def force_between(run: Run, firsts: Collection[str], seconds: Collection[str]) -
 def debounced(run: Run, force: FloatArray) -> FloatArray:
     """Largest force of the last `DEBOUNCE` seconds [N], shape (N,)."""
     return trailing_max(force, run.signals.times, DEBOUNCE)
+
+
+def touched(run: Run, name: str) -> set[str]:
+    """Bodies that ever touched another one."""
+    return {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
 
 
 def bodies_touching(
@@ -73,9 +83,8 @@ def bodies_touching(
         among: Only these bodies; default any.
         but: Bodies that are left out.
     """
-    touching = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
     others = sorted(
-        body for body in touching if (among is None or body in among) and body not in but
+        body for body in touched(run, name) if (among is None or body in among) and body not in but
     )
     return {other: debounced(run, force_between(run, {name}, {other})) for other in others}
 
@@ -143,7 +152,7 @@ def bodies(run: Run, word: str) -> frozenset[str]:
         case "robot":
             return links
         case "gripper" if robot.gripper is not None:
-            return finger_links(robot.gripper) | ({robot.gripper.palm_link} - {""})
+            return hand_links(robot.gripper)
         case "any":
             return links | objects | {name for pair in run.signals.contact_forces for name in pair}
         case _ if word in links or word in objects:

@@ -8,8 +8,8 @@ from harness.assertions.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
     attached,
-    finger_links,
     gripper_of,
+    hand_links,
     side_forces,
 )
 from harness.assertions.facts import fact
@@ -133,7 +133,7 @@ def weight_of(run: Run, name: str) -> float:
 def _upward(run: Run, name: str, which: str) -> FloatArray:
     """Upward part of the hand's recorded forces on an object, mean of `HOLD_TIME` [N], (N,)."""
     gripper = gripper_of(run)
-    hand = finger_links(gripper) | {gripper.palm_link}
+    hand = hand_links(gripper)
     total = np.zeros((len(run.signals.times), 3))
     for key, rows in getattr(run.signals, which).items():
         if key[0] in hand and key[1] == name:
