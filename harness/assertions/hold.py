@@ -230,6 +230,12 @@ def weld_note(run: Run, name: str) -> str:
     return "; welded to the hand by `mode: weld`" if welded(run, name).any() else ""
 
 
+def gripped(run: Run, name: str) -> BoolArray:
+    """Samples at which the hand holds an object in the physics, by fingers or weld, shape (N,)."""
+    mask = welded(run, name)
+    return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)
+
+
 def in_hand(run: Run, name: str) -> BoolArray:
     """Samples at which an object is attached, or between all finger sides, shape (N,)."""
     mask = attached(run, name)

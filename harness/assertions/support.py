@@ -18,7 +18,7 @@ from harness.assertions.contacts import (
     touched,
 )
 from harness.assertions.facts import fact
-from harness.assertions.hold import in_hand, weight_of
+from harness.assertions.hold import gripped, in_hand, weight_of
 from harness.assertions.poses import object_poses
 from harness.assertions.temporal import without_gaps
 from harness.assertions.window import NotObservable, object_record
@@ -123,7 +123,7 @@ def standing(run: Run, name: str) -> dict[str, FloatArray]:
     free = {each.name for each in run.objects if not each.is_static}
     stack = _connected(run, name, free)
     moving = set(run.robot.link_names) - set(run.robot.static_links)
-    touching = {body for other in stack for body in touched(run, other)} - moving
+    touching = {body for other in stack for body in touched(run, other, moving)}
     always = np.ones(len(run.signals.times), dtype=bool)
     ground = dict.fromkeys(touching - free, always)
     grounded = carried(run, ground, {body: ~in_hand(run, body) for body in stack})
@@ -131,6 +131,20 @@ def standing(run: Run, name: str) -> dict[str, FloatArray]:
         body: np.where(grounded.get(body, always) | np.isnan(force), force, 0.0)
         for body, force in supports(run, name).items()
     }
+
+
+@fact
+def carried_by_hand(run: Run) -> dict[str, BoolArray]:
+    """Samples at which the hand holds objects, or what it holds carries them, (N,) each.
+
+    Of the objects that it holds or carries at some sample.
+    """
+    free = {each.name for each in run.objects if not each.is_static and each.in_simulation}
+    held = {name: mask for name in sorted(free) if (mask := gripped(run, name)).any()}
+    always = np.ones(len(run.signals.times), dtype=bool)
+    others = {other: always for name in held for other in (name, *_connected(run, name, free))}
+    found = carried(run, held, dict(sorted(others.items())))
+    return {name: mask for name, mask in found.items() if mask.any()}
 
 
 def carried(
@@ -173,7 +187,7 @@ def supports(run: Run, name: str, links: Collection[str] = ()) -> dict[str, Floa
         links: Links of the robot that count; by default none.
     """
     carrying: dict[str, FloatArray] = {}
-    for body in sorted(touched(run, name) - (set(run.robot.link_names) - set(links))):
+    for body in touched(run, name, set(run.robot.link_names) - set(links)):
         force, upward = force_between(run, {body}, {name}), _upward(run, body, name)
         if upward is None:
             upward = np.where(is_below(run, body, name), force, 0.0)

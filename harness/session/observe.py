@@ -41,6 +41,7 @@ def observed_run(
         measured: The distances in a part of the run that were measured while it went on.
     """
     from harness.observation.clearance import CoalClearance
+    from harness.observation.held_clearance import with_held_distances
     from harness.observation.link_overlaps import link_overlap_findings, with_link_overlaps
     from harness.observation.looks_differ import looks_differ
 
@@ -54,6 +55,7 @@ def observed_run(
         measured,
     )
     run = replace(executed, signals=with_link_overlaps(signals, description))
+    run = replace(run, signals=with_held_distances(run, observer))
     signals, findings = _compared_with_plan(prepared, run, observer)
     return replace(
         run,
