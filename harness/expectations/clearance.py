@@ -20,9 +20,10 @@ from harness.assertions.distances import (
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
+from harness.assertions.poses import present
 from harness.assertions.support import carried_by_hand
 from harness.assertions.text import amount, amounts
-from harness.assertions.window import NotObservable, NotReached, Window
+from harness.assertions.window import NotObservable, NotReached, Window, lasting
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
 from harness.language.base import Name, NonNegativeLength, PositiveLength
@@ -98,6 +99,8 @@ class Clearance(Predicate):
         distance = _smallest(window, rows)
         unknown = np.any([window.cut(unknown_distances(window.run, key)) for key in rows], axis=0)
         there = np.isfinite(distance.values) | unknown
+        for name in {record.name for record in window.run.objects} & set(self.between):
+            there &= lasting(window.cut(present(window.run, name)))
         if not there.any():
             raise NotReached(f"{self.between[0]} and {self.between[1]} were never there together")
         judged: list[_Judged] = []

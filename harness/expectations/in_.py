@@ -37,7 +37,7 @@ PARALLEL = 1e-9
 DEPTH = Quantity("distance inside", "m", "at least 0, to the nearest side of the outline")
 LEAN = Quantity("lean of the container", "rad", "at most `max_lean`")
 SIDES = Quantity(
-    "enclosed", "1", "a shape of it is under the object or on all four sides, and not the reverse"
+    "enclosed", "1", "a shape of it is under the object, or on all four sides; and not the reverse"
 )
 
 
@@ -47,7 +47,8 @@ class In(ObjectPredicate):
     The outline is the smallest box along the container's axes that holds all of its collision
     shapes; what it looks like does not count. Inside are the object's collision shapes whose
     centres are: they make half of its volume at least, wherever its origin is. A ring around a bin
-    is not in the bin, and of two objects one at most is in the other.
+    is not in the bin, and of two objects that have each other's middle inside the smaller one is in
+    the larger one.
 
     Along the container's axes a shape of it (the box around it) is under these centres, or there
     is one on each of the four sides: what lies under a table or next to the handle of a pan is in
@@ -86,10 +87,10 @@ class In(ObjectPredicate):
         )
         lean = window.cut(angle_between(rotate(container[:, 3:], UP), UP))
         with suppress(NotObservable):  # of a mesh it is not known what it surrounds
-            around = _inside(
-                content, outline(content), record, window.cut(relative(poses, container))
-            )
-            enclosed = np.where(around[0] >= 0, 0.0, enclosed)
+            bounds = outline(content)
+            around = _inside(content, bounds, record, window.cut(relative(poses, container)))[0]
+            if np.prod(bounds[1] - bounds[0]) > np.prod(upper - lower):
+                enclosed = np.where(around >= 0, 0.0, enclosed)
         there = window.cut(present(run, self.object) & present(run, self.container))
         parts = [
             Part(DEPTH, depth, 0.0, ">=", 0.01, detail=self.container),

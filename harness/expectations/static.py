@@ -11,7 +11,7 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import STILL, calm, observed_for, physical_poses, present, speeds
 from harness.assertions.text import amount
-from harness.assertions.window import NotReached, Window
+from harness.assertions.window import NotReached, Window, lasting
 from harness.cell.scope import At
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
@@ -90,7 +90,8 @@ class Static(Predicate):
         def text(_: int, measure: Measure) -> str:
             return f"{measure.detail} moves with {amount(measure.value, measure.unit)}"
 
-        return all_of(window, parts, text, applies=judged)
+        here = None if self.object is None else lasting(window.cut(present(run, self.object)))
+        return all_of(window, parts, text, applies=judged, present=here)
 
     def _of_joints(self, window: Window) -> list[Part]:
         parts: list[Part] = []
