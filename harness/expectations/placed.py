@@ -15,12 +15,12 @@ from harness.assertions.poses import (
     JUMP,
     STILL,
     UP,
+    body_speeds,
     calm,
     frame_poses,
     object_poses,
     observed_for,
     present,
-    speeds,
     start_samples,
 )
 from harness.assertions.support import required_support, standing, supports
@@ -54,7 +54,9 @@ PLACE_TILT = 0.1
 SUPPORT = Quantity(
     "support", "N", "at least half of its weight from below, by what the robot does not carry"
 )
-SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
+SPEED = Quantity(
+    "speed", "m/s", "of its fastest point at most `max_velocity`, for 50 ms too", "displacement"
+)
 TURNING = Quantity(
     "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
 )
@@ -124,7 +126,7 @@ class Placed(ObjectPredicate):
         support = np.sum([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
         force, hold = robot_contact(run, name)
         speed, turning = (
-            window.cut(calm(run, rate)) for rate in speeds(run, object_poses(run, name))
+            window.cut(calm(run, rate)) for rate in body_speeds(run, name, object_poses(run, name))
         )
         by = f"support by {self.on or 'anything but the robot'}"
         parts = [

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import STILL, calm, observed_for, physical_poses, present, speeds
+from harness.assertions.poses import STILL, body_speeds, calm, observed_for, physical_poses, present
 from harness.assertions.text import amount
 from harness.assertions.window import NotReached, Window, lasting
 from harness.cell.scope import At
@@ -18,7 +18,9 @@ from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
-SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
+SPEED = Quantity(
+    "speed", "m/s", "of its fastest point at most `max_velocity`, for 50 ms too", "displacement"
+)
 TURNING = Quantity(
     "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
 )
@@ -32,7 +34,8 @@ class Static(Predicate):
 
     It counts as still where it was slower for 50 ms: at the turning point of a swing it is slow for
     a moment. Those 50 ms may begin before the step's window. Where less was recorded of an object
-    it is not judged, since what is let go in the air is slow at first.
+    it is not judged, since what is let go in the air is slow at first. The speed is that of its
+    fastest point: the ends of a long plank that turns slowly are fast.
     """
 
     short = "object"
@@ -77,7 +80,8 @@ class Static(Predicate):
         for name in names:
             here = None if self.object is not None else window.cut(present(run, name))
             linear, angular = (
-                window.cut(calm(run, speed)) for speed in speeds(run, physical_poses(run, name))
+                window.cut(calm(run, speed))
+                for speed in body_speeds(run, name, physical_poses(run, name))
             )
             turning = self.max_angular_velocity
             parts += [

@@ -31,6 +31,16 @@ PART = CUBE % ("part", "0.12, 0, 0.0703")
 BOARD = "  - {name: %s, in: simulation, box: {size: [0.01, 0.06, 0.08]}, mass: 50 g, friction: 1, "
 BOARD += "pose: {xyz: [%s, 0, 0.0505], rpy: [0, %s, 0]}}\n"
 LEANING = BOARD % ("first", 0.10, 0.25) + BOARD % ("second", 0.131, -0.25)
+SAGS = (
+    "  - {name: part, in: simulation, pose: {xyz: [%s]}, mass: 500 g, center_of_mass: [%s], "
+    "shapes: [{box: {size: [0.12, 0.02, 0.04]}, pose: {xyz: [%s]}}], "
+    "friction: {sliding: 1, torsional: 0.001}}\n"
+)
+HOLD = (
+    "steps:\n  - gripper: open\n  - ptp: {joints: {slide: 0, lift: 0.08}}\n"
+    "  - gripper: {position: 0.0, max_effort: 17}\n  - ptp: {joints: {slide: 0, lift: 0.2}}\n"
+    "  - wait: 1 s\n"
+)
 FINGERS = ("palm", "finger_left", "finger_right")
 ROD = "objects:\n  - {name: rod, in: simulation, box: {size: [0.4, 0.03, 0.04]}, mass: 100 g, pose: {xyz: [0, 0, 0.0201]}}\n"  # noqa: E501
 LOW = GRIP.replace("0.12", "0.08")
@@ -65,6 +75,22 @@ def presses(run: Run, first: str, second: str) -> bool:
     """Two bodies touch when the run ends."""
     forces = run.signals.contact_forces
     return any(forces[pair][-1] > 0 for pair in forces if set(pair) == {first, second})
+
+
+def moved_in_palm(run: Run, name: str, point: tuple[float, float, float]) -> float:
+    """How far a point of an object moved along x and z against the TCP since it left its place [m].
+
+    The palm of the gantry never turns, and the object turns about y alone.
+    """
+    poses = run.signals.object_poses[name]
+    pitch = 2 * np.arctan2(poses[:, 5], poses[:, 3])
+    x = poses[:, 0] + np.cos(pitch) * point[0] + np.sin(pitch) * point[2]
+    z = poses[:, 2] - np.sin(pitch) * point[0] + np.cos(pitch) * point[2]
+    apart = np.column_stack([x, z]) - run.signals.tcp_pose[:, [0, 2]]
+    began = next(
+        step for step in run.steps if step.verb == "gripper" and step.start_time > 0
+    ).end_index
+    return float(np.linalg.norm(apart[began:] - apart[began], axis=1).max())
 
 
 def carried_within(run: Run, name: str, support: str, samples: int) -> bool:
@@ -243,5 +269,25 @@ CARRIED_SCENES = (
          "never: {collision: {between: [tray, ground_plane]}}",
          "clearance: {between: [cup, wall], at_least: 10 cm}",
          "lifted: {object: tray, above: 10 cm}"),
+    ),
+    gantry(
+        "post fixed in the world between the fingers",
+        "the hand grips a post that is part of the building",
+        "objects:\n" + SLAB % ("post", "0.03, 0.03, 0.05", "0, 0, 0.025") + LOW + WAIT,
+        "both fingers press it from opposite sides, and it does not slip",
+        lambda run: presses(run, "finger_left", "post") and presses(run, "finger_right", "post"),
+        ("grasped: post", "lifted: {object: post, above: 1 mm}"),
+        ("in_contact: {between: [gripper, post]}",),
+        truth=lambda run: bool(np.ptp(place_of(run, "post"), axis=0).max() == 0),
+    ),
+    gantry(
+        "part that sags in the grip, with its frame far away",
+        "a part turns by 7 degrees between the fingers; its origin is 60 cm above them",
+        "objects:\n" + SAGS % ("0, 0, 0.62", "0.03, 0, -0.6", "0, 0, -0.6") + HOLD,
+        "its origin moved by more than 2 cm in the hand: too strict",
+        lambda run: moved_in_palm(run, "part", (0, 0, 0)) > 0.02,
+        ("grasped: part",),
+        ("grasped: {object: part, max_rotation: 20 deg}", "lifted: {object: part, above: 5 cm}"),
+        truth=lambda run: moved_in_palm(run, "part", (0, 0, -0.6)) < 0.005,
     ),
 )  # fmt: skip

@@ -102,6 +102,28 @@ RULES = (
         ),
     ),
     Rule(
+        "The shapes of a body count, not its origin",
+        f"[`in`]({EXPECTATIONS}#in): half of the object's volume is inside, by the middles of its"
+        f" shapes. [`static`]({EXPECTATIONS}#static) and `placed`: the speed is that of the fastest"
+        " point. [`grasped`]"
+        f"({EXPECTATIONS}#grasped): the object slips as its point between the fingers does, and"
+        " what is fixed in the world is not held. Where a designer put the origin says nothing;"
+        " `displaced` and the signals x(), y(), z() and speed() of a formula are those of the"
+        " origin, and say so.",
+        (
+            "hoop on the floor around a bin",
+            "cover over a block",
+            "part whose origin is in a bin and nothing else of it",
+            "plank of 4 m that turns slowly",
+            "post fixed in the world between the fingers",
+            "part that sags in the grip, with its frame far away",
+        ),
+        (
+            "part whose origin is above the bin that it lies in",
+            "plank of 4 m that lies still",
+        ),
+    ),
+    Rule(
         "Shapes decide, pictures do not",
         f"[`in`]({EXPECTATIONS}#in), [`placed`]({EXPECTATIONS}#placed), distances and widths are"
         " those of collision shapes. Where `visuals` reach further, or less far, by 5 mm and a"
@@ -139,8 +161,15 @@ RULES = (
             "step that takes no time",
             "box that a step puts on the tray",
             "box that a step puts into the bin",
+            "bin that a step puts around a box",
+            "box that a step removes before the end",
+            "pillar that a step removes before the arm moves",
         ),
-        ("object that a push put there", "box that a step lets fall into the bin"),
+        (
+            "object that a push put there",
+            "box that a step lets fall into the bin",
+            "box that a step removes after it was judged",
+        ),
     ),
     Rule(
         "A variation varies something",

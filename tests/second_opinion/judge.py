@@ -66,6 +66,13 @@ def _model(trial: Trial) -> mujoco.MjModel:
     )
 
 
+def _matrix(quat: np.ndarray) -> np.ndarray:
+    """The rotation matrix of a unit quaternion wxyz."""
+    found = np.zeros(9)
+    mujoco.mju_quat2Mat(found, quat)
+    return found.reshape(3, 3)
+
+
 @dataclass(eq=False)
 class Judge:
     """What it measures of a run."""
@@ -152,13 +159,30 @@ class Judge:
         return (since >= count) & (np.linalg.norm(local - earlier, axis=1) <= 0.005)
 
     def grasped(self) -> bool:
-        """Held at the end, and moved and turned little in the palm's frame since it was pinched."""
+        """Held at the end, and moved and turned little since it was pinched, between the fingers."""
         if not self.held()[-1]:
             return False
-        local = (self.pose[:, :3] - self.palm)[-1 - self.since[-1] :]
-        quats = self.pose[-1 - self.since[-1] :, 3:]
+        began = -1 - self.since[-1]
+        quats = self.pose[began:, 3:]
         turned = 2 * np.arccos(min(1.0, abs(float(quats[0] @ quats[-1]))))
-        return bool(np.linalg.norm(local[-1] - local[0]) <= 0.005 and turned <= 0.1)
+        point = self._between_fingers(began)
+        turns = [_matrix(quat) for quat in (quats[0], quats[-1])]
+        moved = (turns[1] - turns[0]) @ turns[0].T @ (point - self.pose[began, :3])
+        moved = (
+            moved + (self.pose[-1, :3] - self.palm[-1]) - (self.pose[began, :3] - self.palm[began])
+        )
+        return bool(np.linalg.norm(moved) <= 0.005 and turned <= 0.1)
+
+    def _between_fingers(self, sample: int) -> np.ndarray:
+        """The middle of what the fingers and the thing's smallest upright box have in common [m]."""
+        half = np.abs(_matrix(self.pose[sample, 3:])) @ np.array(self.trial.size) / 2
+        half = half if self.trial.shape == "box" else np.full(3, self.trial.size[0] / 2)
+        finger = self.palm[sample] - (0, 0, FINGER_DROP)
+        reach = np.array([FINGER[0] / 2, 1.0, FINGER[2] / 2])
+        thing = self.pose[sample, :3]
+        return (
+            np.maximum(thing - half, finger - reach) + np.minimum(thing + half, finger + reach)
+        ) / 2
 
     def lifted(self) -> bool:
         held = self.held()
