@@ -160,7 +160,7 @@ def carried(
         others: Objects, and the samples at which something may bear them.
 
     Returns:
-        Of the carriers and the others.
+        The samples of the carriers and of the others, by their names.
     """
     never = np.zeros(len(run.signals.times), dtype=bool)
     forces = {name: supports(run, name, run.robot.static_links) for name in others}

@@ -159,7 +159,7 @@ class Judge:
         return (since >= count) & (np.linalg.norm(local - earlier, axis=1) <= 0.005)
 
     def grasped(self) -> bool:
-        """Held at the end, and moved and turned little since it was pinched, between the fingers."""
+        """Held at the end; since it was pinched, moved little between the fingers, turned little."""
         if not self.held()[-1]:
             return False
         began = -1 - self.since[-1]
@@ -168,21 +168,19 @@ class Judge:
         point = self._between_fingers(began)
         turns = [_matrix(quat) for quat in (quats[0], quats[-1])]
         moved = (turns[1] - turns[0]) @ turns[0].T @ (point - self.pose[began, :3])
-        moved = (
-            moved + (self.pose[-1, :3] - self.palm[-1]) - (self.pose[began, :3] - self.palm[began])
-        )
+        local = self.pose[:, :3] - self.palm
+        moved = moved + local[-1] - local[began]
         return bool(np.linalg.norm(moved) <= 0.005 and turned <= 0.1)
 
     def _between_fingers(self, sample: int) -> np.ndarray:
-        """The middle of what the fingers and the thing's smallest upright box have in common [m]."""
+        """The middle of what the fingers and the upright box around the thing share [m]."""
         half = np.abs(_matrix(self.pose[sample, 3:])) @ np.array(self.trial.size) / 2
         half = half if self.trial.shape == "box" else np.full(3, self.trial.size[0] / 2)
         finger = self.palm[sample] - (0, 0, FINGER_DROP)
         reach = np.array([FINGER[0] / 2, 1.0, FINGER[2] / 2])
         thing = self.pose[sample, :3]
-        return (
-            np.maximum(thing - half, finger - reach) + np.minimum(thing + half, finger + reach)
-        ) / 2
+        low = np.maximum(thing - half, finger - reach)
+        return (low + np.minimum(thing + half, finger + reach)) / 2
 
     def lifted(self) -> bool:
         held = self.held()
@@ -200,7 +198,10 @@ class Judge:
         dots = np.abs(np.sum(quats[1:] * quats[:-1], axis=1))
         turning = 2 * np.arccos(np.minimum(dots, 1.0)) / self.step
         rough = 2 * np.linalg.norm(np.diff(quats, axis=0), axis=1) / self.step
-        return bool(speed.max() <= 0.005 and np.minimum(turning, rough).max() <= 0.05)
+        turning = np.minimum(turning, rough)
+        size = np.linalg.norm(self.trial.size) if self.trial.shape == "box" else self.trial.size[0]
+        fastest = speed + turning * size / 2  # a bound: the farthest point from the middle
+        return bool(fastest.max() <= 0.005 and turning.max() <= 0.05)
 
     def released(self) -> bool:
         return not any(self.touches(link)[-1] for link in LINKS)
