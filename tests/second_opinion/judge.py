@@ -159,7 +159,7 @@ class Judge:
         return (since >= count) & (np.linalg.norm(local - earlier, axis=1) <= 0.005)
 
     def grasped(self) -> bool:
-        """Held at the end; since it was pinched, moved little between the fingers, turned little."""
+        """Held at the end; between the fingers it moved and turned little since the pinch began."""
         if not self.held()[-1]:
             return False
         began = -1 - self.since[-1]
