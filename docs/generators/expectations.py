@@ -26,7 +26,9 @@ JUDGED = {
 }
 EXPECTATIONS_HEAD = """\
 An expectation is a predicate, alone or inside a temporal word. Its window is the step if it is
-listed under the step's `expect`, and the whole run if it is listed under the file's.
+listed under the step's `expect`, and the whole run if it is listed under the file's. A step that
+puts, adds or removes objects takes no time: the sample after it is the first that shows what it
+did, and belongs to it.
 
 ```yaml
 expect:
@@ -58,7 +60,9 @@ at the end, where the robot never touched the object and it moved by no more tha
 since the run began |
 | premise never held | the left side of an `implies` holds at no sample of the window |
 | hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples \
-at most, as an object that the next step adds, or over a step that takes no time |
+at most, as an object that the next step adds, over a step that takes no time, or of fewer than \
+three pictures of more than 0.2 s |
+| partly seen | `never: sees` of an object of which a picture shows less than `min_visible` |
 | contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
 between two samples by more than its least width and the other's together: the physics looks for \
 contacts at the samples |
@@ -101,7 +105,11 @@ W of `within`. With `during`, their window is that step.
 | `eventually: A` | `eventually[0, W] always[0, T] A` |
 | `never: A` | `not eventually[0, W] always[0, T] A` |
 | `always: A` | `always A`; with a deadline `eventually[0, W] always A` |
-| `{always: A, until: B}` | `A until[0, W] always[0, T] B` |"""
+| `{always: A, until: B}` | `A until[0, W] always[0, T] B` |
+
+They differ where the window ends before W or T is over. What must come true and was not seen to
+do so has failed, while its formula is `not reached`. `never` is `not reached`, as its formula is,
+where A holds at the end and could go on for T, or could still begin by W."""
 FORMULA_TEXT = """\
 ```yaml
 expect:

@@ -108,7 +108,8 @@ Hundreds of files may be given at once; with a mistake in any of them nothing is
 | of a position, with an orientation | read | `position` or `pose` of the link, and tolerances |
 | `group_name`, scaling factors | read | the step's `group`, `planning` |
 | planner, time, attempts, colours, octomaps, padding | ignored | with a note |
-| planes, cones, attached objects, other frames | refused | |
+| `planes` | read | solid below their surface, with a note |
+| attached objects, other frames | refused | |
 | path and trajectory constraints | refused | the motion would be another one |"""
 
 

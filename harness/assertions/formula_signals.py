@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.assertions.contacts import bodies, could_touch, force_between, pairs_of
 from harness.assertions.distances import recorded_distances
-from harness.assertions.joints import joint_column, joint_unit
+from harness.assertions.joints import joint_column
 from harness.assertions.poses import UP, frame_poses, physical_poses, speeds
 from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
@@ -115,14 +115,14 @@ def _poses(window: Window, name: str) -> FloatArray:
 def _joint(name: str, joint: str, window: Window) -> Values:
     column, record = joint_column(window.run, joint)
     field, unit = {
-        "position": ("joint_positions", joint_unit(record)),
-        "velocity": ("joint_velocities", f"{joint_unit(record)}/s"),
+        "position": ("joint_positions", record.position_unit),
+        "velocity": ("joint_velocities", f"{record.position_unit}/s"),
         "effort": ("joint_efforts", _effort_unit(record)),
-        "command": ("joint_commands", joint_unit(record)),
+        "command": ("joint_commands", record.position_unit),
     }[name]
     recorded = getattr(window.run.signals, field)  # only this one need have been recorded
     return Values(window.cut(recorded)[:, column], unit)
 
 
 def _effort_unit(joint: JointRecord) -> str:
-    return "N" if joint_unit(joint) == "m" else "N m"
+    return "N" if joint.position_unit == "m" else "N m"

@@ -60,11 +60,6 @@ def joint_column(run: Run, name: str) -> tuple[int, JointRecord]:
     raise NotObservable(f"there is no joint '{name}' in this run")
 
 
-def joint_unit(joint: JointRecord) -> str:
-    """Of its position."""
-    return "m" if joint.kind == "prismatic" else "rad"
-
-
 def gripper_joints(run: Run) -> frozenset[str]:
     """Joints of the gripper's group, and those that follow them."""
     hand = run.robot.gripper
@@ -121,7 +116,7 @@ def near(
             error = np.arctan2(np.sin(error), np.cos(error))
         slides = joint.kind == "prismatic" and not is_given
         limit = min(tolerance, SLIDING_TOLERANCE) if slides else tolerance
-        off, unit = np.abs(error), joint_unit(joint)
+        off, unit = np.abs(error), joint.position_unit
         parts.append(Part(POSITION_ERROR, off, limit, "<=", detail=name, measured_unit=unit))
 
     def text(_: int, measure: Measure) -> str:

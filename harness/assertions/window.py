@@ -9,7 +9,8 @@ import numpy as np
 
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import ObjectRecord, Run
-from harness.recording.step_record import StepRecord
+from harness.recording.step_record import StepRecord, is_nested
+from harness.recording.step_results import SceneChange
 
 D = TypeVar("D", bound=np.dtype[Any])
 
@@ -97,10 +98,28 @@ def window_of(run: Run, step_id: str) -> Window:
             raise NotReached(f"there is no step '{step_id}' in this run")
         if step.status == "not reached":
             raise NotReached(f"the run ended before step '{step_id}'")
-        window = Window(run, step.start_index, step.end_index, step)
+        window = Window(run, *_samples(run, step), step)
     if window.stop <= window.start:
         raise NotReached("nothing was recorded in the time it is judged over")
     return window
+
+
+def _samples(run: Run, step: StepRecord) -> tuple[int, int]:
+    """The samples [start, stop) that show a step.
+
+    The physics shows one sample later what a step did that puts, adds or removes objects. That
+    sample belongs to the step and to those that it is part of, and later steps begin with it.
+    """
+    start, stop = step.start_index, step.end_index
+    place = run.steps.index(step)
+    for index, other in enumerate(run.steps):
+        if other.result.find(SceneChange) is None:
+            continue
+        if index <= place and other.end_index == step.start_index + 1:
+            start, stop = other.end_index, max(stop, other.end_index + 1)
+        if index == place or is_nested(other.path, step.path):
+            stop = max(stop, other.end_index + 1)
+    return start, min(stop, len(run.signals.times))
 
 
 def object_record(run: Run, name: str) -> ObjectRecord:

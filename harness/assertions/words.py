@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -123,6 +123,8 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
         return _too_short(terms, times[chosen])
     if is_open and (terms.word == "at_end" or not decision.holds):
         raise NotReached(window.cut_short)
+    if decision.holds and _is_undecided(terms, *arguments):
+        raise NotReached(window.cut_short or _ended_before(terms, times))
     if not decision.holds and unknown.any():
         _refuse_unknown(terms, window, unknown, chosen, arguments)
     index = int(chosen[decision.index])
@@ -258,6 +260,34 @@ def _could_hold(
     return _reduce(
         terms, with_future(values, best), later(times), np.append(applies, [True, True]), more
     ).holds
+
+
+def _is_undecided(
+    terms: Terms,
+    values: FloatArray,
+    times: FloatArray,
+    applies: np.ndarray,
+    progress: FloatArray | None,
+) -> bool:
+    """Whether what must never be could still come true, in its time, after the window's end."""
+    if terms.word != "never" or (terms.hold is None and terms.within is None):
+        return False
+    within = float(times[-1] - times[0]) if terms.within is None else terms.within
+    more = None if progress is None else with_future(progress, 0.0)
+    applies = np.append(applies, [True, True])
+    values = with_future(values, np.inf)
+    return not _reduce(replace(terms, within=within), values, later(times), applies, more).holds
+
+
+def _ended_before(terms: Terms, times: FloatArray) -> str:
+    """Why a window leaves undecided what it does not contradict."""
+    span = float(times[-1] - times[0])
+    if terms.within is not None and terms.within > span:
+        return f"the {span:.3f} s it is judged over end before the {terms.within:g} s of `within`"
+    return (
+        f"it holds when the {span:.3f} s end that it is judged over: a longer time, as after a"
+        f" `wait`, decides whether it holds for {terms.hold:g} s"
+    )
 
 
 def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 from harness.bench.collect import MotionTrials
 from harness.bench.plot import plot
 from harness.bench.trial import Trial
-from harness.core.errors import HarnessError
+from harness.core.files import replaced, writing
 from harness.reporting.json_text import json_text
 
 FORMAT = "armharness-bench/1"
@@ -54,21 +53,14 @@ def write_bench(
     """
     searched = sum(motion.is_searched for motion in motions)
     title = f"{searched} searched motions, {len(seeds)} seeds"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        _write(folder / RESULTS, json_text(document(motions, planners, seeds)))
-        _write(folder / PICTURE, plot(motions, planners, title))
-    except OSError as error:
-        raise HarnessError(
-            f"the comparison cannot be written to {folder}: {error.strerror or error};"
-            " choose another folder with --report-dir"
-        ) from error
-
-
-def _write(file: Path, text: str) -> None:
-    temporary = file.with_name(f".{file.name}.{os.getpid()}")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(file)
+    texts = {
+        RESULTS: json_text(document(motions, planners, seeds)),
+        PICTURE: plot(motions, planners, title),
+    }
+    with writing(folder):
+        for name, text in texts.items():
+            with replaced(folder / name) as file:
+                file.write(text.encode())
 
 
 def _without_time(trial: Trial) -> dict[str, Any]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +12,7 @@ from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlanner, MotionRequest
 from harness.recording.motion_failures import SearchFailure
+from harness.recording.plan_statistics import PlanStatistics
 
 SPACING = 0.05
 """Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
@@ -89,19 +88,20 @@ def try_plan(
     spent = time.process_time() - begin
     path = even(plan.trajectory.positions)
     nearest = _clearances(scene, request.group, request.start, path)
-    statistics: Mapping[str, Any] = plan.statistics
+    statistics = plan.statistics.find(PlanStatistics)
+    assert statistics is not None
     return Trial(
         name,
         seed,
         "",
-        int(statistics["state_checks"]),
+        statistics.state_checks,
         path_length=length(plan.trajectory.positions),
         duration=plan.trajectory.duration,
         smoothness=smoothness(path),
         clearance=float(nearest.min()) if len(nearest) else float("nan"),
         mean_clearance=float(nearest.mean()) if len(nearest) else float("nan"),
         planning_time=spent,
-        is_straight=statistics["planner_id"] == STRAIGHT,
+        is_straight=statistics.planner_id == STRAIGHT,
     )
 
 

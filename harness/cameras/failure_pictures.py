@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from harness.cameras.camera_scene import floor_height, scene_poses
 from harness.cameras.caption import captioned_jpeg
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.renderer import render_overview
 from harness.cameras.stills import HEIGHT, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from harness.cameras.camera_scene import floor_height, scene_poses
 from harness.cameras.caption import DARK, RED, captioned_jpeg
 from harness.cameras.picture_model import build_picture_model, undrawn
-from harness.cameras.recorded_scene import floor_height, scene_poses
 from harness.cameras.renderer import make_renderer
 from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved

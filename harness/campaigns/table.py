@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.campaigns.filters import Query, parameter_paths, sql_of
-from harness.reporting.suite.write import replaced, writing
+from harness.core.files import replaced, writing
 from harness.suite.discovery import UsageError
 
 COLUMNS = (

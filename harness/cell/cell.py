@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -66,7 +65,7 @@ class StepNotes:
     """What a step leaves in its record."""
 
     trajectory: JointTrajectory | None = None
-    planner: dict[str, Any] = field(default_factory=dict[str, Any])
+    planner: Details = field(default_factory=Details)
     explanation: Details = field(default_factory=Details)
     result: Details = field(default_factory=Details)
 
@@ -348,7 +347,7 @@ class Cell:
     def carry_out(self, plan: MotionPlan) -> None:
         """Note a plan, check it against the step's timeout, then follow it."""
         self.notes.trajectory = plan.trajectory
-        self.notes.planner.update(plan.statistics)
+        self.notes.planner += plan.statistics
         self.notes.explanation = plan.explanation
         for part in plan.result:
             self.report(part)

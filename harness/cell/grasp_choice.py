@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,13 +14,16 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
-from harness.ports.goals import JointGoal
+from harness.ports.goals import AnyGoal, JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion, LinearMotion
 from harness.recording.explanation import ApproachFailure
 
-MOST_BRANCHES = 2
+MOST_BRANCHES = 3
 """Free solutions of inverse kinematics before the approach from which it is tried."""
+
+REACH_CHECKS = 20_000
+"""State checks of the search for a motion to where an approach begins, for one approach."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +39,13 @@ class Approach:
     before: TcpGoal
     at: TcpGoal
     number: int
+
+    @property
+    def direction(self) -> tuple[float, float, float]:
+        """Unit vector of the motion in the world."""
+        way = np.subtract(self.at.target.xyz, self.before.target.xyz)
+        x, y, z = (float(value) for value in way / np.linalg.norm(way))
+        return x, y, z
 
 
 @dataclass(frozen=True)
@@ -56,22 +67,72 @@ class GraspSearch:
     then: Callable[[FloatArray], bool] = lambda _: True
 
 
-def choose_approach(approaches: Sequence[Approach], search: GraspSearch, cell: Cell) -> Approach:
-    """The first approach that the arm can follow, if possible one after which it can go on.
+@dataclass(frozen=True, eq=False)
+class ChosenApproach:
+    """The approach that is taken.
+
+    Attributes:
+        approach: Its ends, and the number of its grasp.
+        begin: Joint positions from which the arm can follow it, in group order, by joint; None
+            where no such positions are known.
+    """
+
+    approach: Approach
+    begin: Mapping[str, float] | None = None
+
+    @property
+    def reach_keys(self) -> dict[str, Any]:
+        """The goal of the motion to where it begins, as a motion step has it."""
+        return self.approach.before.keys if self.begin is None else {"joints": self.begin}
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """A straight approach that the arm can follow: the whole robot at its begin and at its end."""
+
+    begin: FloatArray
+    end: FloatArray
+
+
+def choose_approach(
+    approaches: Sequence[Approach], search: GraspSearch, cell: Cell
+) -> ChosenApproach:
+    """The first approach that the arm can reach and follow, if possible one after which it goes on.
 
     Raises:
         PlanningFailed: No approach has ends that the arm can reach free of collisions; the
             explanation is that of the end which comes nearest to being possible.
     """
     cell.sync_scene()
-    followed: Approach | None = None
+    followed: ChosenApproach | None = None
     for approach in approaches:
-        ends = list(_ends(approach, search, cell))
-        if any(search.then(end) for end in ends):
-            return approach
-        if ends and followed is None:
-            followed = approach
-    return followed or _most_promising(approaches, search, cell)
+        lines = list(_lines(approach, search, cell))
+        onward = [line for line in lines if search.then(line.end)]
+        if not onward and (not lines or (followed is not None and followed.begin is not None)):
+            continue
+        chosen = ChosenApproach(approach, _reached(onward or lines, search, cell))
+        if onward and chosen.begin is not None:
+            return chosen
+        if followed is None or (followed.begin is None and chosen.begin is not None):
+            followed = chosen
+    return followed or ChosenApproach(_most_promising(approaches, search, cell))
+
+
+def _reached(lines: Sequence[_Line], search: GraspSearch, cell: Cell) -> dict[str, float] | None:
+    """The begin that the arm reaches with the least motion; None where it finds none."""
+    options = cell.current.options
+    budget = min(options.max_state_checks, REACH_CHECKS)
+    options = replace(options, is_explained=False, max_state_checks=budget)
+    arm = list(cell.description.group_indices(search.group))
+    goal = AnyGoal(tuple(JointGoal(line.begin[arm]) for line in lines))
+    try:
+        plan = cell.planner.plan(
+            MotionRequest(search.group, search.start, FreeMotion(goal), options)
+        )
+    except PlanningFailed:
+        return None
+    names = cell.description.groups[search.group].joint_names
+    return dict(zip(names, map(float, plan.trajectory.positions[-1]), strict=True))
 
 
 def _most_promising(approaches: Sequence[Approach], search: GraspSearch, cell: Cell) -> Approach:
@@ -89,7 +150,8 @@ def _most_promising(approaches: Sequence[Approach], search: GraspSearch, cell: C
                 MotionRequest(search.group, search.start, FreeMotion(joint_goal), options)
             )
         except PlanningFailed as failure:
-            failure.details += Details.of(ApproachFailure(goal is best.before))
+            direction = best.direction
+            failure.details += Details.of(ApproachFailure(goal is best.before, direction))
             raise
     return best
 
@@ -118,8 +180,8 @@ def _depth(state: FloatArray, padding: float, cell: Cell) -> float:
     return max((touch.required - touch.distance for touch in touches), default=0.0)
 
 
-def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[FloatArray]:
-    """The whole robot at the end of each straight approach that it can follow."""
+def _lines(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[_Line]:
+    """The straight approaches that the arm can follow, from the nearest postures before them."""
     goal = resolve_goal(GoalFields(**approach.at.keys), search.group, cell)
     states = _solutions(approach.before, search, cell)
     padding = cell.current.options.padding
@@ -134,7 +196,7 @@ def _ends(approach: Approach, search: GraspSearch, cell: Cell) -> Iterator[Float
             continue
         end = with_arm(plan.trajectory.positions[-1], state, search.group, cell)
         if search.may_end(end):
-            yield end
+            yield _Line(state, end)
 
 
 def _solutions(goal: TcpGoal, search: GraspSearch, cell: Cell) -> list[FloatArray]:

@@ -158,6 +158,7 @@ class Scope:
         self.cameras: dict[str, Camera] = {}
         self.requested_time = 0.0
         self.step_ids: dict[str, None] = {}
+        self._lacks_gripper = False
 
     def add_object(self, obj: WorldObject, *, present: bool = False) -> None:
         """Make an object known; `present` when it is in the scene from the start."""
@@ -284,12 +285,15 @@ class Scope:
 
     def check_joint_unit(self, name: str, loc: Loc) -> None:
         """A value at a place of the file: an angle for a joint that turns, a length for others."""
-        unit = "m" if self.description.joint_by_name[name].kind == "prismatic" else "rad"
+        unit = self.description.joint_by_name[name].position_unit
         self.problems.check_unit(loc, unit, needs=("robot",))
 
     def check_gripper(self, loc: Loc, what: str) -> bool:
-        """Whether the robot has a gripper, which `what` needs."""
+        """Whether the robot has a gripper, which `what` needs; reports the first use without."""
         if self.description.gripper is None:
+            if self._lacks_gripper:
+                return False
+            self._lacks_gripper = True
             reasons = self.description.rejected_grippers
             self.problems.add(
                 loc,

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from harness.cli.output import output, say, say_json, say_text
 from harness.cli.shared_options import add_format, add_paths, add_seed
+from harness.core.printable import counted
 from harness.suite.discovery import discover
 from harness.suite.header import read_header
 from harness.suite.outcome import EXIT_CODES
@@ -59,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
             say(*(f"    {line}" for line in explained))
         count = len(found.problems)
         summaries = {
-            "invalid": f"{count} problem{'s' if count != 1 else ''}",
+            "invalid": counted(count, "problem"),
             "failed": "steps that will fail",
             "passed": "ok",
         }

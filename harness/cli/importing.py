@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import os
-import tempfile
+from contextlib import ExitStack
 from pathlib import Path
 
 from harness.cli.files import refuse_existing, refusing_unwritable
 from harness.cli.output import say
 from harness.cli.robot_options import add_robot_options, source_of
+from harness.core.files import replaced
+from harness.core.printable import counted
 from harness.suite.discovery import SUFFIX, UsageError
 
 MOST_NOTES = 20
@@ -72,7 +73,7 @@ def _moveit(arguments: argparse.Namespace) -> int:
     if len(found.notes) > MOST_NOTES:
         say(f"note: {len(found.notes) - MOST_NOTES} more of the other files")
     scenarios = sum(path.name.endswith(SUFFIX) for path in found.files)
-    say(f"wrote {scenarios} scenario{'s' if scenarios != 1 else ''} into {folder}")
+    say(f"wrote {counted(scenarios, 'scenario')} into {folder}")
     return 0
 
 
@@ -134,7 +135,7 @@ def _world(arguments: argparse.Namespace) -> int:
     for note in imported.notes:
         say(f"note: {note}")
     count = len(imported.world.objects)
-    say(f"wrote {target}: {count} object{'s' if count != 1 else ''}; `world: {target.name}`")
+    say(f"wrote {target}: {counted(count, 'object')}; `world: {target.name}`")
     return 0
 
 
@@ -147,24 +148,9 @@ def _write(files: dict[Path, bytes], *, is_forced: bool) -> None:
     """Write all files, or none where one is there already or cannot be written."""
     for path in files:
         refuse_existing(path, is_forced=is_forced)
-    written: list[tuple[str, Path]] = []
-    try:
-        with refusing_unwritable():
-            for path, content in files.items():
-                path.parent.mkdir(parents=True, exist_ok=True)
-                with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-                    written.append((file.name, path))
-                    file.write(content)
-                Path(file.name).chmod(0o666 & ~_umask())
-            for name, path in written:
-                Path(name).replace(path)
-    except UsageError:
-        for name, _ in written:
-            Path(name).unlink(missing_ok=True)
-        raise
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    with refusing_unwritable(), ExitStack() as parts:
+        for path, content in files.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            file = parts.enter_context(replaced(path))
+            file.write(content)
+            file.flush()

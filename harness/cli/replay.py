@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     folder = run_folder(arguments.run)
     from harness.recording.read_run import read_run
     from harness.recording.stored_run import RESOLVED
-    from harness.ros.replay import replay
+    from harness.ros.handover import replay
 
     target = Path(arguments.report_dir) if arguments.report_dir else None
     recorded = read_run(folder)

@@ -56,8 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     studio = Studio.opened(files, text, restored if is_restored else None, notice)
     if studio.problems and not files.path.exists():  # what the command line names is the mistake
-        said = (": ".join(filter(None, (each.message, each.hint))) for each in studio.problems)
-        raise UsageError("; ".join(said))
+        raise UsageError("; ".join(each.sentence for each in studio.problems))
     if time:
         say(f"going on to t={time:g} s, as the run did")
         studio.cell.run_until(time)

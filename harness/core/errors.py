@@ -87,6 +87,11 @@ class Problem:
     source_line: str = ""
     length: int = 1
 
+    @property
+    def sentence(self) -> str:
+        """The mistake and the advice."""
+        return f"{self.message}: {self.hint}" if self.hint else self.message
+
     def __str__(self) -> str:
         place = f"{self.path}:{self.line}:{self.column}" if self.line else self.path
         text = printable(f"{place}: {self.message}")

@@ -32,6 +32,11 @@ _STYLING = re.compile(rf"{ESC}(?:\[\d+m|\]8;;[^\x1b]*{ESC}\\)")
 """Control sequences of colours and links, which have no width."""
 
 
+def counted(count: int, noun: str) -> str:
+    """`1 case`, `2 cases`."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def printable(text: str) -> str:
     r"""The text as one line, with every control, direction and line end as `\x1b`, `\u202e`, `\n`.
 

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from harness.core.exact_key import NoKeyError, exact_key
+from harness.core.files import replaced
 
 PREFIX = "harness-shared-"
 """How the names of folders begin; the number of the process that owns it follows."""
@@ -32,9 +33,6 @@ MOST_RESULTS = 4096
 
 LOOK_EVERY = 64
 """Results that are kept, approximately, until a process looks again whether there is room."""
-
-FEW = 100
-"""Results that are taken for each one computed where a case repeats another one."""
 
 T = TypeVar("T")
 
@@ -80,15 +78,12 @@ class SharedResults:
 
     def keep(self, key: str, result: object) -> None:
         """Keep a result, if there is room on the disk."""
-        part = self.folder / f".{key}.{os.getpid()}"
-        try:
-            part.write_bytes(pickle.dumps(result, pickle.HIGHEST_PROTOCOL))
-            part.replace(self.folder / key)
+        with suppress(OSError):
+            with replaced(self.folder / key) as file:
+                pickle.dump(result, file, pickle.HIGHEST_PROTOCOL)
             self._kept += 1
             if (os.getpid() + self._kept) % LOOK_EVERY == 0:  # in some of the processes at least
                 self._make_room()
-        except OSError:
-            part.unlink(missing_ok=True)
 
     def was_seen(self, key: str) -> bool:
         """Whether a case has computed the result of a key before; from now on it has."""
@@ -185,20 +180,6 @@ def begin(*, share: bool = True) -> SharedTally:
     if _shared is not None:
         _shared.tally = tally
     return tally
-
-
-def count(tally: SharedTally) -> None:
-    """Add what a fork of this process took and computed to the tally of its case."""
-    if _shared is not None:
-        _shared.tally.taken += tally.taken
-        _shared.tally.computed += tally.computed
-
-
-def is_repeating(kind: str) -> bool:
-    """Whether the case has taken nearly all results of a kind from others so far."""
-    if _shared is None:
-        return False
-    return _shared.tally.taken[kind] > FEW * _shared.tally.computed[kind]
 
 
 def chain(kind: str) -> KeyChain | None:

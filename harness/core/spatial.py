@@ -85,6 +85,12 @@ def xyzw_from_wxyz(quat_wxyz: Vector) -> FloatArray:
     return np.array([x, y, z, w], dtype=float)
 
 
+def pitch_of(rotation: FloatArray) -> float:
+    """Angle of a frame's x axis below the horizontal [rad], -pi/2 to pi/2."""
+    x_axis = rotation[:, 0]
+    return float(np.arctan2(-x_axis[2], np.hypot(x_axis[0], x_axis[1])))
+
+
 @dataclass(frozen=True, eq=False)
 class SE3:
     """A pose T_a_b of frame b in frame a. ``T_a_c = T_a_b @ T_b_c``.

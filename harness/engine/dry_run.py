@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.cell.program import Program, ProgramStep
+from harness.core.details import Details
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -175,4 +176,4 @@ class DryPlanner:
         ends = np.vstack([request.start[indices], positions])
         still = np.zeros_like(ends)
         trajectory = JointTrajectory(names, np.array([0.0, 1e-3]), ends, still, still)
-        return MotionPlan(trajectory, {}, checked.explanation)
+        return MotionPlan(trajectory, Details(), checked.explanation)

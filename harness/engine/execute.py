@@ -20,6 +20,7 @@ from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.explanation import Explanation
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.step_record import StepRecord, StepStatus
+from harness.recording.step_results import SceneChange
 
 TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
 
@@ -91,7 +92,7 @@ class _Runner:
             end_index=cell.simulator.sample_count,
             trajectory=notes.trajectory,
             planner=notes.planner,
-            explanation=(notes.explanation + _details(failure, cell)).plain(),
+            explanation=notes.explanation + _details(failure, cell),
             result=notes.result,
         )
         self.on_step("step_finished", step, self.records[place])
@@ -178,6 +179,15 @@ class ProgramExecution:
             self._runner.run(steps)
         except _RunEndedError as ended:
             self.ended_early = str(ended.failure)
+        if self.ended_early or [step.path for step in steps[-1:]] == [self.program.steps[-1].path]:
+            self._show_last_change()
+
+    def _show_last_change(self) -> None:
+        """Let the physics show what the last step did where it put, added or removed objects."""
+        simulator = self.cell.simulator
+        changes = (record for record in self.records if record.result.find(SceneChange))
+        if any(record.end_index == simulator.sample_count for record in changes):
+            simulator.hold(self.program.world.timestep)
 
     def finish(self) -> Execution:
         """What the steps so far leave; those that were not run are not reached."""

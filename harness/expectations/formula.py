@@ -59,10 +59,7 @@ class Formula(Expectation):
         bodies = (*SPECIAL_BODIES, *at.scope.objects, *robot.link_names)
         frames = ("tcp", *at.scope.objects, *robot.link_names)
         root = parse_formula(self.formula)
-        units = {
-            joint.name: "m" if joint.kind == "prismatic" else "rad"
-            for joint in robot.movable_joints
-        }
+        units = {joint.name: joint.position_unit for joint in robot.movable_joints}
         for start, first, second in mixed_units(root, units):
             at.scope.problems.add_in_text(
                 at.key("formula"),

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from harness.assertions.expectation import Predicate
-from harness.assertions.looks import period
+from harness.assertions.looks import WATCH_RATE, period
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations, PictureRequest
 from harness.assertions.pixels import blob_pixels, label_pixels, marker_pixels
 from harness.assertions.window import NotObservable, Window
+from harness.assertions.words import HARDLY_OBSERVED
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
 from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
@@ -22,7 +24,7 @@ from harness.language.expectation import Quantity
 from harness.language.markers import MarkerName
 from harness.recording.looks import PictureKind
 from harness.recording.signals import CaptureRecord
-from harness.recording.verdict import Measure
+from harness.recording.verdict import Measure, VerdictWarning
 
 ColorName = Literal["red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink"]
 HUES: dict[ColorName, tuple[float, float]] = {
@@ -38,6 +40,8 @@ HUES: dict[ColorName, tuple[float, float]] = {
 """From, to on the colour circle [deg]."""
 
 PIXELS = Quantity("pixels", "px", "at least `min_area`")
+LEAST_OPACITY = 0.1
+LEAST_PICTURES = 3
 VISIBLE = Quantity("visible share", "1", "of an object: at least `min_visible`")
 
 
@@ -83,7 +87,9 @@ class Sees(Predicate):
     """A camera's picture shows a blob of a colour, an ArUco marker, or an object.
 
     Judged from the picture at the window's end; next to a temporal word, `for` or `within` from
-    pictures all along, at the camera's `update_rate`, at most 5 a second.
+    pictures all along, at the camera's `update_rate`, at most 5 a second. What happens between two
+    pictures is not seen. An object whose opacity is below 0.1 is not seen: its colours differ from
+    the background by less than a tenth of their range.
     """
 
     subject = "object"
@@ -145,6 +151,9 @@ class Sees(Predicate):
         files = window.run.files
         subject, name = self._subject()
         pixels = [self._pixels(picture, files[picture.files[self._kind]]) for picture in pictures]
+        opacity = self._opacity(window)
+        if opacity < LEAST_OPACITY:
+            pixels = [0] * len(pictures)
         parts = [_part(PIXELS, name, pixels, spoken_by, self.min_area)]
         outlines = [0] * len(pictures)
         if self.object is not None:
@@ -154,17 +163,46 @@ class Sees(Predicate):
             ]
             visible = np.minimum(shares, 1.0)
             parts.append(_part(VISIBLE, name, visible, spoken_by, self.min_visible))
+        warnings = self._few(pictures, window) + self._partly(pictures, pixels, outlines)
 
         def text(index: int, _: Measure) -> str:
             place = int(spoken_by[index])
             if place < 0:
                 return f"{self.camera} took no picture"
+            if opacity < LEAST_OPACITY:
+                return f"{self.camera} sees nothing of {subject}, whose opacity is {opacity:g}"
             if not pixels[place]:
                 return f"{self.camera} does not see {subject}"
             of = f" of the {outlines[place]} of its outline" if outlines[place] else ""
             return f"{self.camera} sees {pixels[place]} pixels of {subject}{of}"
 
-        return all_of(window, parts, text, applies=spoken_by >= 0)
+        return replace(all_of(window, parts, text, applies=spoken_by >= 0), warnings=warnings)
+
+    def _opacity(self, window: Window) -> float:
+        """The largest opacity of the object's shapes; 1 of what is no object."""
+        shown = [record.looks for record in window.run.objects if record.name == self.object]
+        return max((shape.rgba[3] for shapes in shown for shape in shapes), default=1.0)
+
+    def _few(self, pictures: Sequence[CaptureRecord], window: Window) -> tuple[VerdictWarning, ...]:
+        """A warning where fewer than three pictures show more than a fifth of a second."""
+        span = float(window.times[-1] - window.times[0])
+        if len(pictures) >= LEAST_PICTURES or span <= 1.0 / WATCH_RATE:
+            return ()
+        count = f"{len(pictures)} picture" + "s" * (len(pictures) > 1)
+        return (VerdictWarning(HARDLY_OBSERVED, f"{self.camera} took {count} in {span:.3g} s"),)
+
+    def _partly(
+        self, pictures: Sequence[CaptureRecord], pixels: Sequence[int], outlines: Sequence[int]
+    ) -> tuple[VerdictWarning, ...]:
+        """A warning for `never`, where a picture shows too little of an object, but something."""
+        for picture, seen, whole in zip(pictures, pixels, outlines, strict=True):
+            if seen >= self.min_area and whole and seen < self.min_visible * whole:
+                message = (
+                    f"{self.camera} sees {seen} pixels of {self.object} at t={picture.time:.3f} s,"
+                    f" {100 * seen / whole:.0f} % of its outline"
+                )
+                return (VerdictWarning("partly seen", message),)
+        return ()
 
     def _pictures(self, window: Window) -> list[CaptureRecord]:
         """The camera's pictures within the window that the expectation can be read from."""

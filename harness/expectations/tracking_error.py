@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.assertions.expectation import Predicate
-from harness.assertions.joints import gripper_joints, joint_unit
+from harness.assertions.joints import gripper_joints
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
@@ -55,7 +55,7 @@ class TrackingError(Predicate):
                 continue
             slides = joint.kind == "prismatic" and "max" not in self.model_fields_set
             limit = 0.1 * self.max if slides else self.max
-            unit = joint_unit(joint)
+            unit = joint.position_unit
             parts.append(
                 Part(
                     ERROR,

@@ -13,7 +13,6 @@ from harness.assertions.joints import (
     ROUNDING,
     gripper_joints,
     is_measured,
-    joint_unit,
     resting_joints,
 )
 from harness.assertions.margins import MarginSignal, Part, all_of
@@ -31,8 +30,11 @@ STOP_SOFTNESS = 0.02
 POSITION_TOLERANCE = {"rad": 1e-3, "m": 1e-4}
 """By which a measured position may exceed its limit [rad or m]: a controller that holds a joint
 at its limit deviates a little to either side."""
-VELOCITY_TOLERANCE = 1e-3
-"""Share of its limit by which a measured velocity may exceed it, for the same reason."""
+VELOCITY_TOLERANCE = 1e-3, 1e-2
+"""Least and largest share of its limit by which a measured velocity may exceed it."""
+SERVO_DELAY = 1e-3
+"""Time by which a servo follows the end of an acceleration late [s]: between these shares, a
+velocity may exceed its limit by what the joint gains in it at its acceleration limit."""
 
 POSITION = Quantity(
     "position",
@@ -47,7 +49,10 @@ COMMAND = Quantity(
     "position",
 )
 VELOCITY = Quantity(
-    "velocity", "rad/s or m/s", "at most the joint's limit, with a tolerance of 0.1 %", "velocity"
+    "velocity",
+    "rad/s or m/s",
+    "at most the joint's limit, with a tolerance of 1 ms at its acceleration limit, 0.1 % to 1 %",
+    "velocity",
 )
 EFFORT = Quantity("effort", "N m or N", "at most the joint's limit", "effort")
 ACCELERATION = Quantity("acceleration", "rad/s^2 or m/s^2", "at most the joint's limit")
@@ -57,9 +62,10 @@ class WithinLimits(Predicate):
     """Joints stay within their limits.
 
     A controller that holds a joint at its limit deviates a little to either side: a measured
-    position may exceed the limit by 0.001 rad or 0.1 mm, a measured velocity by 0.1 %. Commands and
-    efforts have no tolerance. The gripper's joints and idle ones may sink into their stops by 2 %
-    of their range.
+    position may exceed the limit by 0.001 rad or 0.1 mm. A servo follows the end of a ramp late: a
+    measured velocity may exceed the limit by what the joint gains in 1 ms at its acceleration
+    limit, at least by 0.1 % and at most by 1 %. Commands and efforts have no tolerance. The
+    gripper's joints and idle ones may sink into their stops by 2 % of their range.
     """
 
     judged = "always"
@@ -109,7 +115,7 @@ def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: b
         return []
     values = window.cut(recorded)
     softness = STOP_SOFTNESS * (joint.upper - joint.lower) if may_rest else 0.0
-    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[joint_unit(joint)]))
+    return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[joint.position_unit]))
 
 
 def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part]:
@@ -135,7 +141,7 @@ def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part
 def _between(
     quantity: Quantity, values: FloatArray, joint: JointRecord, slack: float
 ) -> list[Part]:
-    scale, unit = 0.5 * (joint.upper - joint.lower), joint_unit(joint)
+    scale, unit = 0.5 * (joint.upper - joint.lower), joint.position_unit
     lower, upper = joint.lower - slack, joint.upper + slack
     return [
         Part(quantity, values, lower, ">=", scale, detail=joint.name, measured_unit=unit),
@@ -144,7 +150,7 @@ def _between(
 
 
 def _rate_part(window: Window, column: int, joint: JointRecord, quantity: Quantity) -> list[Part]:
-    signals, unit = window.run.signals, joint_unit(joint)
+    signals, unit = window.run.signals, joint.position_unit
     match quantity.name:
         case "velocity":
             values, limit, unit = signals.joint_velocities, joint.velocity, f"{unit}/s"
@@ -159,5 +165,9 @@ def _rate_part(window: Window, column: int, joint: JointRecord, quantity: Quanti
     if not math.isfinite(limit) or not is_measured(values[:, column], joint, quantity.name):
         return []
     size = np.abs(window.cut(values)[:, column])
-    most = limit * (1 + (VELOCITY_TOLERANCE if quantity is VELOCITY else ROUNDING))
+    most = limit * (1 + ROUNDING)
+    if quantity is VELOCITY:
+        least, largest = (share * limit for share in VELOCITY_TOLERANCE)
+        gained = SERVO_DELAY * joint.acceleration if math.isfinite(joint.acceleration) else 0.0
+        most = limit + min(max(gained, least), largest)
     return [Part(quantity, size, most, "<=", limit, detail=joint.name, measured_unit=unit)]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from harness.core.errors import HarnessError
+from harness.core.files import replaced, writing
 from harness.core.printable import printable
 from harness.failure_search.evaluator import Sample
 from harness.failure_search.explore import FailureRate
@@ -18,7 +18,7 @@ from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, SuccessRate
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.reporting.suite.write import replaced, write_suite_page, writing
+from harness.reporting.suite.write import write_suite_page
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated
 from harness.suite.discovery import SUFFIX
@@ -62,14 +62,11 @@ def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> lis
         HarnessError: A file cannot be written.
     """
     files = [folder / f"failure{i}{SUFFIX}" for i in range(1, len(found.failures) + 1)]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with writing(folder):
         for stale in folder.glob(f"failure*{SUFFIX}"):
             stale.unlink()
         for file, failure in zip(files, found.failures, strict=True):
             file.write_text(scenario_text(found, failure, folder), encoding="utf-8")
-    except OSError as error:
-        raise HarnessError(f"'{folder}' cannot be written: {error.strerror}") from error
     jobs = [RunRequest(file, report_dir=folder / file.name.removesuffix(SUFFIX)) for file in files]
     cap = found.request.hard_cap
     results = dict(run_isolated(jobs, server, workers=found.request.workers, hard_cap=cap))

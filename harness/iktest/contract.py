@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.spatial import SE3, xyzw_from_wxyz
+from harness.core.spatial import SE3, pitch_of, xyzw_from_wxyz
 from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
-from harness.strategies.tasks import Task, pose_pitch
+from harness.strategies.tasks import Task
 from harness.suite.discovery import UsageError
 
 Value = float | FloatArray
@@ -47,7 +47,7 @@ WORDS: dict[str, ParameterWord] = {
     "pitch": ParameterWord(
         "angle of the link's x axis below the horizontal [rad], -pi/2 to pi/2, a float",
         "pitch",
-        lambda T, _: pose_pitch(T),
+        lambda T, _: pitch_of(T.rotation),
     ),
     "quat_wxyz": ParameterWord("unit quaternion w, x, y, z", "turn", lambda T, _: T.quat_wxyz),
     "quat_xyzw": ParameterWord(

@@ -106,7 +106,7 @@ def run_ik_test(test: IkTest) -> IkReport:
     )
     if test.report_dir is None:
         return report
-    from harness.iktest.write import write_ik_report
+    from harness.iktest.report import write_ik_report
 
     return write_ik_report(report, chain, test.report_dir)
 

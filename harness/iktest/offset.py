@@ -8,7 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from harness.core.spatial import SE3
+from harness.core.pose_arrays import rotation_vector
+from harness.core.spatial import SE3, quat_wxyz_from_rotation
 from harness.core.types import FloatArray
 from harness.strategies.tasks import Task
 
@@ -89,14 +90,10 @@ def _error(frame: str, task: Task, target: SE3, reached: SE3) -> FloatArray:
 
 def matrix_rotation_vector(rotation: FloatArray) -> FloatArray:
     """Axis times angle [rad] of a rotation; of a half turn, the axis whose largest part is > 0."""
-    w, *xyz = SE3(rotation, np.zeros(3)).quat_wxyz
-    axis = np.array(xyz)
-    sine = float(np.linalg.norm(axis))
-    if sine < 1e-12:
-        return np.zeros(3)
-    if w < 1e-6 and axis[int(np.argmax(np.abs(axis)))] < 0:
-        axis = -axis
-    return 2.0 * float(np.arctan2(sine, w)) * axis / sine
+    quat = quat_wxyz_from_rotation(rotation)
+    if quat[0] < 1e-6 and quat[1 + int(np.argmax(np.abs(quat[1:])))] < 0:
+        quat[1:] *= -1.0
+    return rotation_vector(quat)
 
 
 def numbers_text(values: FloatArray, digits: int) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from harness.core.printable import counted
 from harness.core.types import FloatArray
 from harness.iktest.report import IkFinding, IkReport, Speed
 
@@ -35,7 +36,7 @@ def report_lines(report: IkReport, folder: Path = Path()) -> list[str]:
     for finding in report.findings:
         lines += ["", *finding_lines(report, finding, folder)]
     count = len(report.findings)
-    count_text = f"{count} finding{'s' if count != 1 else ''}" if count else "nothing found"
+    count_text = counted(count, "finding") if count else "nothing found"
     return [*lines, "", f"{count_text} in {report.seconds:.1f} s"]
 
 

@@ -19,6 +19,9 @@ from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.forward_kinematics import LinkPoses
 from harness.robot.solids import coal_geometry
 
+LOOKS = 8
+"""Samples from one at which the gaps of balls and boxes are computed to the next."""
+
 
 @dataclass(frozen=True, eq=False)
 class BodyTrack:
@@ -44,8 +47,10 @@ class BodyTrack:
         """Samples with a pose, shape (N,)."""
         return np.isfinite(self.translations[:, 0])
 
-    def part(self, samples: BoolArray) -> BodyTrack:
+    def part(self, samples: BoolArray | slice) -> BodyTrack:
         """The same body at some samples only."""
+        if not isinstance(samples, slice) and samples.all():
+            return self
         return BodyTrack(self.rotations[samples], self.translations[samples])
 
 
@@ -197,6 +202,56 @@ def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArr
     moved = np.zeros((len(centers), len(radii)))
     np.cumsum(shifts + seen.turns[:, None] * radii, axis=0, out=moved[1:])
     return moved
+
+
+@dataclass(frozen=True, eq=False)
+class MovingBody:
+    """The shapes of a body, and where the body is at N samples.
+
+    Attributes:
+        shapes: The collision shapes of the body.
+        track: T_world_body at every sample; absent at none.
+    """
+
+    shapes: Sequence[TrackedShape]
+    track: BodyTrack
+
+    @cached_property
+    def radii(self) -> FloatArray:
+        """The radii of the balls about the shapes [m], shape (shapes,)."""
+        return np.array([shape.radius for shape in self.shapes])
+
+    @cached_property
+    def centers_at_looks(self) -> FloatArray:
+        """The centres of these balls in the world, at every look [m], shape (looks, 3, shapes)."""
+        return centers_of(self.track.part(slice(None, None, LOOKS)), self.shapes)
+
+    @cached_property
+    def reach(self) -> FloatArray:
+        """The most that a point of a shape moves from each look to the next [m], shape (looks,)."""
+        travelled = self.travelled
+        ends = np.append(travelled[LOOKS::LOOKS], travelled[-1])
+        begins = travelled[::LOOKS]
+        return ends[: len(begins)] - begins
+
+    @cached_property
+    def travelled(self) -> FloatArray:
+        """Bound the path length of every point since the first sample [m], shape (N,)."""
+        is_finite = np.isfinite(self.radii)
+        centers = np.array([shape.center for shape in self.shapes])[is_finite]
+        middle = centers.mean(axis=0) if len(centers) else np.zeros(3)
+        radius = (np.linalg.norm(centers - middle, axis=1) + self.radii[is_finite]).max(initial=0.0)
+        if not is_finite.all():
+            radius = np.inf
+        path = self.track.translations + self.track.rotations @ middle
+        turns = self.track.turns
+        turned = np.multiply(turns, radius, out=np.zeros_like(turns), where=turns > 0)
+        moved = np.linalg.norm(np.diff(path, axis=0), axis=1) + turned
+        return np.concatenate([[0.0], np.cumsum(moved)])
+
+    def part(self, samples: BoolArray) -> MovingBody:
+        """The same body at some samples only."""
+        return self if samples.all() else MovingBody(self.shapes, self.track.part(samples))
 
 
 def links_with_shapes(

@@ -12,12 +12,11 @@ from harness.core.sharing import shared
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.observation.body_tracks import (
     BodyTrack,
-    TrackedShape,
+    MovingBody,
     carried_track,
     link_track,
     links_with_shapes,
     object_track,
-    relative_track,
     tracked_shapes,
 )
 from harness.observation.measured_clearance import MeasuredClearance
@@ -42,8 +41,8 @@ from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
 
-Bodies = tuple[Sequence[TrackedShape], Sequence[TrackedShape], BodyTrack]
-"""The shapes of a moving body and of another, and the track of the first as the other sees it."""
+Bodies = tuple[Sequence[MovingBody], MovingBody]
+"""Bodies whose distances from another one are measured."""
 
 
 class CoalClearance:
@@ -61,7 +60,6 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
-        measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
         only: Collection[Pair] | None = None,
     ) -> Signals:
         """The same signals with `clearances` and `clearance_links` filled in.
@@ -71,7 +69,6 @@ class CoalClearance:
             objects: All objects of the run.
             attachments: All attachments of the run.
             cutoff: Larger distances are reported as the cutoff [m].
-            measured: What `measured_parts` found in a part of the run, or None.
             only: The pairs that are measured; by default all.
         """
         count = len(signals.times)
@@ -79,11 +76,12 @@ class CoalClearance:
             return replace(signals, clearance_cutoff=cutoff)
         motion = Motion.of(signals)
         samples = knots(motion.times, objects, attachments)
-        parts = [
-            measured(number) or self._measured(motion.at(part), objects, attachments, cutoff, only)
-            for number, part in reversed([*enumerate(parts_of_run(motion.times, samples))])
-        ]  # the last ones first: others may still be measured by another process
-        found = MeasuredClearance.joined(parts[::-1])
+        found = MeasuredClearance.joined(
+            [
+                self._measured(motion.at(part), objects, attachments, cutoff, only)
+                for part in parts_of_run(motion.times, samples)
+            ]
+        )
         if not found.distances:
             return replace(signals, clearance_cutoff=cutoff)
         near = np.union1d(
@@ -104,21 +102,6 @@ class CoalClearance:
         return replace(
             signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
-
-    def measured_parts(
-        self,
-        motion: Motion,
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-        numbers: range,
-    ) -> dict[int, MeasuredClearance]:
-        """Distances in complete parts of a run that goes on, by the numbers of the parts."""
-        parts = parts_of_run(motion.times, knots(motion.times, objects, attachments))
-        return {
-            number: self._measured(motion.at(parts[number]), objects, attachments, cutoff)
-            for number in numbers
-        }
 
     def _look_between(
         self,
@@ -168,26 +151,32 @@ class CoalClearance:
             record.name: object_track(record, attachments, motion, links) for record in objects
         }
         found = MeasuredClearance(len(motion.times), only=only)
-        self._robot_to_itself(found, links, motion, cutoff)
+        bodies = {
+            link: MovingBody(shapes, link_track(links, link))
+            for link, shapes in self._shapes.items()
+        }
+        self._robot_to_itself(found, bodies, motion, cutoff)
         for record in objects:
             there = tracks[record.name].present & ~_held(record.name, attachments, motion)
             if there.any():
                 track = tracks[record.name]
-                self._robot_to_object(found, links, record, track, there, motion, cutoff)
+                self._robot_to_object(found, bodies, record, track, there, motion, cutoff)
         for attachment in attachments:
             self._held_to_objects(found, links, attachment, objects, tracks, motion, cutoff)
         return found
 
     def _robot_to_itself(
-        self, found: MeasuredClearance, links: LinkPoses, motion: Motion, cutoff: float
+        self,
+        found: MeasuredClearance,
+        links: Mapping[str, MovingBody],
+        motion: Motion,
+        cutoff: float,
     ) -> None:
         def bodies() -> Iterator[Bodies]:
-            names = list(self._shapes)
+            names = list(links)
             for later, second in enumerate(names):
-                for first in names[:later]:
-                    if self._is_self_pair(first, second):
-                        seen = relative_track(link_track(links, first), link_track(links, second))
-                        yield self._shapes[first], self._shapes[second], seen
+                firsts = [name for name in names[:later] if self._is_self_pair(name, second)]
+                yield [links[name] for name in firsts], links[second]
 
         inputs = self.description.key, motion.joint_positions
         everywhere = np.ones(found.count, dtype=bool)
@@ -196,7 +185,7 @@ class CoalClearance:
     def _robot_to_object(
         self,
         found: MeasuredClearance,
-        links: LinkPoses,
+        links: Mapping[str, MovingBody],
         record: ObjectRecord,
         track: BodyTrack,
         there: BoolArray,
@@ -207,11 +196,8 @@ class CoalClearance:
 
         def bodies() -> Iterator[Bodies]:
             standing = self.description.static_links if record.is_static else frozenset()
-            shapes = tracked_shapes(record.name, record.shapes)
-            for link, link_shapes in self._shapes.items():
-                if link not in standing:
-                    seen = relative_track(link_track(links, link).part(there), track)
-                    yield link_shapes, shapes, seen
+            other = MovingBody(tracked_shapes(record.name, record.shapes), track)
+            yield [body.part(there) for link, body in links.items() if link not in standing], other
 
         inputs = (
             *(self.description.key, motion.joint_positions[there]),
@@ -260,8 +246,11 @@ class CoalClearance:
         """Distances of two objects, where both are there."""
 
         def bodies() -> Iterator[Bodies]:
-            first, second = (tracked_shapes(*each) for each in shapes)
-            yield first, second, relative_track(*tracks)
+            first, second = (
+                MovingBody(tracked_shapes(*each), track)
+                for each, track in zip(shapes, tracks, strict=True)
+            )
+            yield [first] if first.shapes else [], second
 
         inputs = shapes, [(track.rotations, track.translations) for track in tracks]
         (first, _), (second, _) = shapes
@@ -281,7 +270,7 @@ class CoalClearance:
             return
 
         def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
-            some = [each for each in bodies() if each[0] and each[1]]
+            some = [each for each in bodies() if each[0] and each[1].shapes]
             if not some:
                 return ()
             every = [pair for each in some for pair in pairs_between(*each, cutoff)]

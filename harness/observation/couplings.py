@@ -32,7 +32,7 @@ def coupling_findings(run: Run, description: RobotDescription) -> tuple[Finding,
         return ()
     joint = description.joint_by_name[worst[2]]
     assert joint.mimic is not None
-    unit = "m" if joint.kind == "prismatic" else "rad"
+    unit = joint.position_unit
     error = worst[0] * APART.get(joint.kind, TURNED_APART)
     message = (
         f"{joint.name} was {amount(error, unit)} from where it follows {joint.mimic.joint}: the "

@@ -160,7 +160,7 @@ class _Record:
         if commanded <= COMMANDED:
             return Effect(False, "it was not commanded to move", is_over_time=True)
         moved = float(np.ptp(self.signals.joint_positions[rows, joint]))
-        unit = "m" if self.robot.joints[joint].kind == "prismatic" else "rad"
+        unit = self.robot.joints[joint].position_unit
         return Effect(
             True, f"commanded to move by {commanded:.3g} {unit}, it moved by {moved:.2g} {unit}"
         )

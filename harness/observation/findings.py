@@ -11,7 +11,7 @@ from harness.core.errors import Problem
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere, bounding_radius
 from harness.core.world import WorldObject
 from harness.ports.scene import Touch
-from harness.recording.explanation import lowered_margins_of
+from harness.recording.explanation import LoweredMargins
 from harness.recording.run import Finding
 from harness.recording.step_record import StepRecord
 
@@ -115,7 +115,8 @@ def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
     """
     found: list[Finding] = []
     for step in steps:
-        for entry in lowered_margins_of(step.explanation):
+        lowered = step.explanation.find(LoweredMargins)
+        for entry in lowered.lowered_margins if lowered else ():
             first, second = entry.pair
             distance = entry.start_distance * 1e3
             stood = f"{-distance:.1f} mm deep" if distance < 0 else f"{distance:.1f} mm apart"

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.assertions.contacts import attached
+from harness.assertions.facts import remembered_facts
 from harness.assertions.support import carried_by_hand
 from harness.assertions.temporal import bridged, episodes
 from harness.core.pose_arrays import IDENTITY
@@ -15,6 +16,7 @@ from harness.recording.run import AttachmentRecord, Run
 from harness.recording.signals import Signals
 
 
+@remembered_facts()
 def with_held_distances(run: Run, observer: CoalClearance) -> Signals:
     """The signals of a run with distances of objects in the hand that are not attached."""
     holds = [] if "contact_forces" in run.unrecorded else _holds(run)

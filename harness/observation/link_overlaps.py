@@ -9,10 +9,10 @@ import numpy as np
 
 from harness.core.types import FloatArray, Pair
 from harness.observation.body_tracks import (
+    MovingBody,
     TrackedShape,
     link_track,
     links_with_shapes,
-    relative_track,
 )
 from harness.observation.nearest import ShapePair, pairs_between, smallest_distances
 from harness.observation.sampled_clearance import between, knots
@@ -49,7 +49,7 @@ def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signa
 def _pairs_apart_by_design(
     description: RobotDescription, moving: LinkPoses
 ) -> Iterator[tuple[Pair, list[ShapePair]]]:
-    """Excluded pairs of links, and their shapes along the run."""
+    """Excluded pairs of links, and those of their shapes that may overlap along the run."""
     robot = RobotModel(description)
     shapes = links_with_shapes({link.name: link.collisions for link in description.links})
     lower = np.array([joint.lower for joint in description.movable_joints])
@@ -62,14 +62,18 @@ def _pairs_apart_by_design(
         if {first, second} <= set(shapes) and not is_rigid and not {first, second} <= fingers:
             at_zero = _shape_pairs(shapes, still, first, second)
             if min(pair.distance(0) for pair in at_zero) > LEAST_DEPTH:
-                yield (first, second), _shape_pairs(shapes, moving, first, second)
+                yield (first, second), _shape_pairs(shapes, moving, first, second, cutoff=0.0)
 
 
 def _shape_pairs(
-    shapes: Mapping[str, tuple[TrackedShape, ...]], poses: LinkPoses, first: str, second: str
+    shapes: Mapping[str, tuple[TrackedShape, ...]],
+    poses: LinkPoses,
+    first: str,
+    second: str,
+    cutoff: float = np.inf,
 ) -> list[ShapePair]:
-    seen = relative_track(link_track(poses, first), link_track(poses, second))
-    return pairs_between(shapes[first], shapes[second], seen)
+    one, other = (MovingBody(shapes[name], link_track(poses, name)) for name in (first, second))
+    return pairs_between([one], other, cutoff)
 
 
 def link_overlap_findings(run: Run) -> tuple[Finding, ...]:

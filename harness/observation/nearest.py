@@ -10,16 +10,25 @@ from dataclasses import dataclass
 import coal
 import numpy as np
 
-from harness.core.types import FloatArray, IntArray
-from harness.observation.body_tracks import BodyTrack, TrackedShape, centers_of, travels
+from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.observation.body_tracks import (
+    LOOKS,
+    BodyTrack,
+    MovingBody,
+    TrackedShape,
+    centers_of,
+    relative_track,
+    travels,
+)
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
 
-LOOKS = 8
-"""Samples from one at which the gap of ball and box is computed to the next."""
+BLOCK = 64
+"""Samples for which the pairs that may be the nearest are chosen at once."""
 
-_FIRST_CHUNK, _LARGEST_CHUNK = 8, 512  # samples looked ahead at once
+MOST_RIVALS = 12
+"""Pairs that are followed at once; with more, they are chosen again earlier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,32 +62,62 @@ _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
 
 
 def pairs_between(
-    first: Sequence[TrackedShape],
-    second: Sequence[TrackedShape],
-    seen: BodyTrack,
-    cutoff: float = np.inf,
+    firsts: Sequence[MovingBody], second: MovingBody, cutoff: float = np.inf
 ) -> list[ShapePair]:
-    """Shapes of one body against shapes of another, in their order.
+    """Shapes of some bodies against shapes of another, in their order.
 
     Args:
-        first: The shapes of the moving body.
-        second: The shapes of the other.
-        seen: Track of the first body as seen from the second.
+        firsts: The bodies whose shapes come first in a pair; each has some, as the second does.
+        second: Another body, at the same samples.
         cutoff: Pairs that are never nearer than this [m], between samples neither, may be left out.
     """
-    if not first or not second:
-        return []
-    centers, radii = centers_of(seen, first), np.array([shape.radius for shape in first])
-    travelled = travels(seen, centers, radii)
+    gaps, is_near = _gaps_at_looks(firsts, second, cutoff)
+    found: list[ShapePair] = []
+    begin = 0
+    for first in firsts:
+        near = begin + np.flatnonzero(is_near[begin : begin + len(first.shapes)])
+        if len(near):
+            shapes = [first.shapes[index] for index in (near - begin).tolist()]
+            found += _pairs_of(MovingBody(shapes, first.track), second, gaps[:, :, near], cutoff)
+        begin += len(first.shapes)
+    return found
+
+
+def _gaps_at_looks(
+    firsts: Sequence[MovingBody], second: MovingBody, cutoff: float
+) -> tuple[FloatArray, BoolArray]:
+    """Gaps between balls and boxes, and which balls may come nearer to a box than the cutoff.
+
+    Returns:
+        The gaps between the boxes about the second body's shapes, and the centres of the balls
+        about all K shapes of the first bodies at every look [m], shape (shapes, looks, K); then
+        whether a ball may come that near before the last sample, shape (K,).
+    """
+    looks = second.track.part(slice(None, None, LOOKS))
+    centers = np.concatenate([body.centers_at_looks for body in firsts], axis=2)
+    turned = np.swapaxes(looks.rotations, 1, 2)
+    seen = turned @ (centers - looks.translations[:, :, None])
+    gaps = np.array([shape.gap(seen) for shape in second.shapes])
+    count = [len(body.shapes) for body in firsts]
+    reach = np.repeat([body.reach + second.reach for body in firsts], count, axis=0).T
+    radii = np.concatenate([body.radii for body in firsts])
+    return gaps, (gaps.min(axis=0) - reach - radii < cutoff).any(axis=0)
+
+
+def _pairs_of(
+    first: MovingBody, second: MovingBody, gaps: FloatArray, cutoff: float
+) -> list[ShapePair]:
+    """The pairs of two bodies that come nearer than the cutoff; gaps as of `_gaps_at_looks`."""
+    seen = relative_track(first.track, second.track)
+    travelled = travels(seen, centers_of(seen, first.shapes), first.radii)
     since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
     margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
-    found: list[tuple[int, ShapePair]] = []
-    for b in second:
-        gaps = np.repeat(b.gap(centers[::LOOKS]), LOOKS, axis=0)[: len(travelled)]
-        least = gaps - since - radii
-        near = np.flatnonzero(least.min(axis=0) - margin < cutoff).tolist()
-        found += [(i, ShapePair(first[i], b, seen, travelled[:, i], least[:, i])) for i in near]
-    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
+    least = np.repeat(gaps, LOOKS, axis=1)[:, : len(travelled)] - (since + first.radii)
+    is_near = least.min(axis=1) - margin < cutoff
+    return [
+        ShapePair(first.shapes[i], second.shapes[j], seen, travelled[:, i], least[j, :, i])
+        for i, j in np.argwhere(is_near.T).tolist()
+    ]
 
 
 def largest_travel(pairs: Sequence[ShapePair], cutoff: float, count: int) -> FloatArray:
@@ -114,69 +153,123 @@ def smallest_distances(
     """
     nearest = np.full(count, cutoff)
     which = np.full(count, -1, dtype=np.int64)
-    first = np.array([pair.distance(0) if pair.least.min() < cutoff else np.inf for pair in pairs])
+    first = np.array([pair.distance(0) for pair in pairs])
     total = np.array([pair.travel[-1] for pair in pairs])
     near = np.flatnonzero(first - total < cutoff)
     if not len(near):
         return nearest, which
-    kept = [pairs[index] for index in near.tolist()]
-    travelled = np.column_stack([pair.travel for pair in kept])  # (N, K)
-    known: list[float] = first[near].tolist()  # the distance last measured
-    at = [0] * len(kept)  # and the sample
-    key = first[near]  # known + travel then: the lower bound at j is key - travelled[j]
-    sample, best_pair = 0, -1
-
-    def measured(index: int) -> float:
-        if travelled[sample, index] - travelled[at[index], index] > STILL:
-            known[index] = distance = kept[index].distance(sample)
-            at[index] = sample
-            key[index] = distance + travelled[sample, index]
-        return known[index]
-
+    search = _Search([pairs[index] for index in near.tolist()], first[near], cutoff)
+    sample, best = 0, -1
     while sample < count:
-        previous, best, best_pair = best_pair, cutoff, -1
-        if previous >= 0 and measured(previous) < best:  # most likely the smallest again
-            best, best_pair = known[previous], previous
-        bound = key - travelled[sample]
-        rivals = np.flatnonzero(bound < best)
-        bounds = bound[rivals]
-        order = bounds.argsort(kind="stable")
-        for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):
-            if lowest >= best:
-                break
-            if measured(index) < best:
-                best, best_pair = known[index], index
-        until = _unchanged_until(sample, best_pair, best, key, travelled, at, cutoff)
-        nearest[sample:until] = best
-        which[sample:until] = near[best_pair] if best_pair >= 0 else -1
+        nearest[sample], best = search.smallest_at(sample, best)
+        which[sample] = near[best] if best >= 0 else -1
+        sample += 1
+        rivals, until = search.rivals_of(best, sample)
+        if rivals and until > sample:
+            distances, places = search.followed(rivals, sample, until)
+            nearest[sample:until] = distances
+            which[sample:until] = np.append(near, -1)[places]
+            best = places[-1]
         sample = until
     return nearest, which
 
 
-def _unchanged_until(
-    sample: int,
-    best_pair: int,
-    best: float,
-    key: FloatArray,
-    travelled: FloatArray,
-    at: Sequence[int],
-    cutoff: float,
-) -> int:
-    """The first sample after this one at which something has to be measured again."""
-    count, after, chunk = len(travelled), sample + 1, _FIRST_CHUNK
-    base = np.inf if best_pair < 0 else travelled[at[best_pair], best_pair] + STILL
-    if after < count and best_pair >= 0 and travelled[after, best_pair] > base:
-        return after
-    while after < count:
-        block = travelled[after : after + chunk]
-        lower = key - block
-        if best_pair >= 0:
-            lower[:, best_pair] = np.inf
-            stop = (lower.min(axis=1) < best) | (block[:, best_pair] > base)
-        else:
-            stop = lower.min(axis=1) < cutoff
-        if stop.any():
-            return after + int(np.argmax(stop))
-        after += len(block)
-        chunk = min(2 * chunk, _LARGEST_CHUNK)
-    return count
+class _Search:
+    """What is known of the distances of some pairs while the samples pass."""
+
+    def __init__(self, pairs: Sequence[ShapePair], first: FloatArray, cutoff: float) -> None:
+        self._pairs = pairs
+        self._cutoff = cutoff
+        self._travelled = np.column_stack([pair.travel for pair in pairs])  # (N, K)
+        self._known: list[float] = first.tolist()  # the distance last measured
+        self._since = [0.0] * len(pairs)  # and the travel then
+        self._key = first.copy()  # their sum: the lower bound at j is key - travelled[j]
+
+    def smallest_at(self, sample: int, previous: int) -> tuple[float, int]:
+        """The smallest distance at a sample, and its pair; -1 where none is below the cutoff.
+
+        Args:
+            sample: The sample to look at.
+            previous: The pair that was the smallest before, and most likely is again; -1 if none.
+        """
+        travelled = self._travelled[sample]
+        smallest, best = self._cutoff, -1
+        if previous >= 0 and self._measured(previous, sample) < smallest:
+            smallest, best = self._known[previous], previous
+        bound = self._key - travelled
+        rivals = (bound < smallest).nonzero()[0]
+        bounds = bound[rivals]
+        order = bounds.argsort(kind="stable")
+        for index, lowest in zip(rivals[order].tolist(), bounds[order].tolist(), strict=True):
+            if lowest >= smallest:
+                break
+            if self._measured(index, sample) < smallest:
+                smallest, best = self._known[index], index
+        return smallest, best
+
+    def _measured(self, index: int, sample: int) -> float:
+        moved = float(self._travelled[sample, index])
+        if moved - self._since[index] > STILL:
+            distance = self._pairs[index].distance(sample)
+            self._known[index], self._since[index] = distance, moved
+            self._key[index] = distance + moved
+        return self._known[index]
+
+    def rivals_of(self, best: int, sample: int) -> tuple[list[int], int]:
+        """The pairs of which one is the smallest from a sample on, and until when.
+
+        Args:
+            best: The pair that was the smallest before; -1 if none was.
+            sample: The first sample to look at.
+
+        Returns:
+            The pairs, no more than `MOST_RIVALS` and `best` first; then the first sample at which
+            there may be others.
+        """
+        block = self._travelled[sample : sample + BLOCK]
+        largest = np.full(len(block), self._cutoff)
+        if best >= 0:
+            of_best = block[:, best] + (self._known[best] - self._since[best])
+            np.minimum(largest, of_best, out=largest)
+        is_rival = self._key - block < largest[:, None]
+        if best >= 0:
+            is_rival[:, best] = False
+        if not len(block):
+            return [], sample
+        begins = np.where(is_rival.any(axis=0), is_rival.argmax(axis=0), len(block))
+        rivals = (begins < len(block)).nonzero()[0]
+        until = len(block)
+        if len(rivals) > MOST_RIVALS:
+            rivals = rivals[begins[rivals].argsort(kind="stable")]
+            until = int(begins[rivals[MOST_RIVALS]])
+            rivals = rivals[:MOST_RIVALS]
+        first = [best] if best >= 0 else []
+        return [*first, *rivals.tolist()], sample + until
+
+    def followed(
+        self, rivals: Sequence[int], sample: int, until: int
+    ) -> tuple[list[float], list[int]]:
+        """The smallest distances from a sample to before another, and their pairs, of rivals."""
+        known = [self._known[index] for index in rivals]
+        since = [self._since[index] for index in rivals]
+        distance = [self._pairs[index].distance for index in rivals]
+        found: list[float] = []
+        places: list[int] = []
+        best = 0
+        for at, moves in enumerate(self._travelled[sample:until, rivals].tolist(), sample):
+            smallest, nearest = self._cutoff, -1
+            for place in (best, *range(best), *range(best + 1, len(rivals))):
+                moved = moves[place] - since[place]
+                if known[place] - moved >= smallest:
+                    continue
+                if moved > STILL:
+                    known[place], since[place] = distance[place](at), moves[place]
+                if known[place] < smallest:
+                    smallest, nearest = known[place], place
+            best = max(nearest, 0)
+            found.append(smallest)
+            places.append(rivals[nearest] if nearest >= 0 else -1)
+        for index, value, moved in zip(rivals, known, since, strict=True):
+            self._known[index], self._since[index] = value, moved
+            self._key[index] = value + moved
+        return found, places

@@ -120,7 +120,7 @@ def _tracking(run: Run) -> tuple[Finding, ...]:
     row, column = (int(place) for place in np.unravel_index(int(np.argmax(errors)), errors.shape))
     worst = float(errors[row, column])
     joint = run.robot.joints[column]
-    unit = "m" if joint.kind == "prismatic" else "rad"
+    unit = joint.position_unit
     return (
         Finding(
             "tracking",

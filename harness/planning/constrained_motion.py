@@ -22,6 +22,7 @@ from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import FINAL_RESOLUTION, Defect
 from harness.ports.motion_planning import MotionPlan
 from harness.recording.motion_failures import SearchFailure
+from harness.recording.plan_statistics import SearchStatistics
 
 PLANNER_ID = "RRTConnect, projected"
 
@@ -65,7 +66,7 @@ def find_constrained_motion(
             trajectory = time_straight(names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
                 statistics = task.statistics("straight line", trajectory, [task.start, end])
-                return MotionPlan(trajectory, statistics, explanation)
+                return MotionPlan(trajectory, Details.of(statistics), explanation)
     defect: Defect | None = None
     for attempt in range(task.options.attempts):
         for level, resolution in enumerate(RESOLUTIONS):
@@ -78,7 +79,8 @@ def find_constrained_motion(
             timed = _timed(task, short)
             if isinstance(timed, JointTrajectory):
                 statistics = task.statistics(PLANNER_ID, timed, short, np.array(path))
-                return MotionPlan(timed, statistics | {"attempts": attempt + 1}, explanation)
+                details = Details.of(statistics, SearchStatistics(attempt + 1))
+                return MotionPlan(timed, details, explanation)
             defect = timed
     if defect is not None:
         raise PlanningFailed(

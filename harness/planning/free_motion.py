@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -33,6 +32,7 @@ from harness.ports.motion_planning import MotionPlan, PlanningOptions
 from harness.ports.path_planning import PathPlanner
 from harness.recording.goal_failures import IkStudy
 from harness.recording.motion_failures import BlockedWay, PipelineFailure, SearchFailure
+from harness.recording.plan_statistics import PlanStatistics, SearchStatistics
 
 BLEND_DEVIATIONS = (0.05, 0.01)
 """Largest deviations of the blends at the corners [rad]; after these, the motion stops there."""
@@ -47,12 +47,13 @@ at most the budget of a search."""
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """A verified motion, its end, its statistics, and its effort (weighted joint-space length)."""
+    """A verified motion, its end, its effort (weighted joint-space length), and its statistics."""
 
     trajectory: JointTrajectory
     end: FloatArray
-    statistics: dict[str, Any]
     effort: float
+    statistics: PlanStatistics
+    search: SearchStatistics | None = None
 
 
 def find_motion(
@@ -78,7 +79,8 @@ def find_motion(
         found = _cheapest(task, goals, found)
     except ValueError as problem:  # a pipeline, a planner or a parameter is unknown
         raise PlanningFailed("PLANNING_FAILED", str(problem)) from problem
-    statistics = {**found.statistics, "state_checks": task.checker.checks}
+    checked = replace(found.statistics, state_checks=task.checker.checks)
+    statistics = Details.of(checked, found.search)
     return MotionPlan(found.trajectory, statistics, _chosen(explanation, found.end))
 
 
@@ -91,7 +93,7 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
             if task.defect(trajectory, end) is None:
                 ends = [task.start, end]
                 statistics = task.statistics("straight line", trajectory, ends)
-                return _Motion(trajectory, end, statistics, space.effort(task.start, end))
+                return _Motion(trajectory, end, space.effort(task.start, end), statistics)
     return None
 
 
@@ -106,8 +108,8 @@ def _searched(task: PlanningTask, goals: Sequence[FloatArray], explanation: Deta
 
 def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -> _Motion:
     """The motion found, or a motion to another goal with less effort."""
-    budget = max(CHEAPER_CHECKS, found.statistics.get("search_checks", 0))
-    budget = min(budget, task.options.max_state_checks)
+    searched = (found.search and found.search.search_checks) or 0
+    budget = min(max(CHEAPER_CHECKS, searched), task.options.max_state_checks)
     untried = _other_goals(goals, found)
     while budget > 0:
         most = CHEAPER * found.effort
@@ -146,29 +148,26 @@ def _first_verified_motion(
             short = shorten(found.waypoints, task.checker, resolution, found.seed)
             timed = _timed(task, short)
             if isinstance(timed, JointTrajectory):
-                statistics = _statistics(task, found, effort, short, timed)
                 moved = sum(task.space.effort(*edge) for edge in pairwise(short))
-                return _Motion(timed, short[-1], statistics, moved)
+                planner_id = found.result.planner_id
+                statistics = task.statistics(planner_id, timed, short, found.waypoints)
+                search = _search_statistics(found, effort, short, timed)
+                return _Motion(timed, short[-1], moved, statistics, search)
             defect = timed
     return defect
 
 
-def _statistics(
-    task: PlanningTask,
-    found: FoundPath,
-    effort: Effort,
-    short: FloatArray,
-    timed: JointTrajectory,
-) -> dict[str, Any]:
+def _search_statistics(
+    found: FoundPath, effort: Effort, short: FloatArray, timed: JointTrajectory
+) -> SearchStatistics:
     away = distances_to_path(timed.positions, short)
-    return {
-        **task.statistics(found.result.planner_id, timed, short, found.waypoints),
-        "attempts": found.attempt + 1,
-        "search_checks": effort.checks,
-        "vertices": found.result.vertices,
-        "resolution": found.resolution,
-        "path_deviation": float(away.max()),
-    }
+    return SearchStatistics(
+        found.attempt + 1,
+        effort.checks,
+        found.result.vertices,
+        found.resolution,
+        float(away.max()),
+    )
 
 
 def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:

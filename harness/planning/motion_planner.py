@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -118,7 +119,7 @@ class VerifiedPlanner:
             trajectory = _timed_to_duration(task, end, motion.duration)
         task.accept(trajectory, end, "the straight joint motion")
         statistics = task.statistics("PTP", trajectory, [task.start, end])
-        return MotionPlan(trajectory, statistics, task.lowered_margins)
+        return MotionPlan(trajectory, Details.of(statistics), task.lowered_margins)
 
     def _goals(
         self, task: PlanningTask, request: MotionRequest, motion: FreeMotion

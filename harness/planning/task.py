@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from harness.ports.goals import PathConstraints
 from harness.ports.motion_planning import MotionPlan, PlanningOptions
 from harness.recording.explanation import LoweredMargins
 from harness.recording.goal_failures import StartLimitFailure
+from harness.recording.plan_statistics import PlanStatistics
 
 START_SLACK = 0.01
 """How far outside its limit a joint may start; a motion never extends that distance [rad or m]."""
@@ -78,7 +78,7 @@ class PlanningTask:
         still = np.zeros_like(ends)
         times = np.array([0.0, SAMPLE_PERIOD])
         trajectory = JointTrajectory(self.space.joint_names, times, ends, still, still)
-        return MotionPlan(trajectory, {}, explanation, result)
+        return MotionPlan(trajectory, Details(), explanation, result)
 
     def statistics(
         self,
@@ -86,22 +86,18 @@ class PlanningTask:
         trajectory: JointTrajectory,
         waypoints: Sequence[FloatArray] | FloatArray,
         raw: FloatArray | None = None,
-    ) -> dict[str, Any]:
-        """Numbers of a plan for the record: checks, lengths before and after shortening, time.
-
-        Of a path that was shortened, `raw_path` holds the waypoints before.
-        """
+    ) -> PlanStatistics:
+        """Numbers of a plan for the record; `raw` has the waypoints before shortening."""
         length = _length(np.asarray(waypoints))
-        before = {} if raw is None else {"raw_path": np.asarray(raw).tolist()}
-        return {
-            "planner_id": planner_id,
-            "state_checks": self.checker.checks,
-            "waypoints": len(waypoints),
-            "path_length": length,
-            "raw_path_length": length if raw is None else _length(raw),
-            "duration": trajectory.duration,
-            **before,
-        }
+        return PlanStatistics(
+            planner_id,
+            self.checker.checks,
+            len(waypoints),
+            length,
+            length if raw is None else _length(raw),
+            trajectory.duration,
+            None if raw is None else tuple(map(tuple, np.asarray(raw).tolist())),
+        )
 
 
 def make_task(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
@@ -59,13 +59,13 @@ class MotionPlan:
 
     Attributes:
         trajectory: The trajectory to be commanded.
-        statistics: The planner_id, state checks, attempts, lengths before and after shortening ...
+        statistics: Its numbers; `harness.recording.plan_statistics` has the parts.
         explanation: IK solutions and what became of each, pairs whose margin was lowered ...
         result: What the step reports of it: the fraction reached, a distance ...
     """
 
     trajectory: JointTrajectory
-    statistics: Mapping[str, Any]
+    statistics: Details
     explanation: Details
     result: Details = field(default_factory=Details)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from harness.core.details import Detail
 from harness.core.types import Pair
@@ -111,8 +111,3 @@ class LengthFailure(Detail):
     limit: float
     end: float | None = None
     bytes: int | None = None
-
-
-def not_held_object(explanation: Mapping[str, Any]) -> str | None:
-    """The object that a step should place and the gripper does not hold; None in other steps."""
-    return explanation.get("not_held")

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from harness.core.details import Detail
+from harness.core.details import Detail, Details
 from harness.core.types import Floats, Pair
 from harness.recording.goal_failures import TouchRecord
 from harness.recording.plain import PlainError, from_plain
@@ -150,14 +150,15 @@ class GoalRegion(Detail):
 
 @dataclass(frozen=True)
 class ApproachFailure(Detail):
-    """Which end of a straight approach cannot be reached."""
+    """Which end of a straight approach cannot be reached, and its direction in the world."""
 
     is_start_of_approach: bool
+    approach_direction: tuple[float, float, float] | None = None
 
 
-def recorded_explanation(explanation: Mapping[str, Any]) -> Explanation:
+def recorded_explanation(details: Details) -> Explanation:
     """The stages, the state and the advice in a step's record; what does not fit is left out."""
-    found: dict[str, Any] = {}
+    explanation, found = details.plain(), dict[str, Any]()
     for name, kind in _KINDS.items():
         try:
             if name in explanation:
@@ -173,9 +174,3 @@ _KINDS: Mapping[str, Any] = {
     "advice": str,
     "picture": str,
 }
-
-
-def lowered_margins_of(explanation: Mapping[str, Any]) -> tuple[LoweredMargin, ...]:
-    """The pairs whose margin was lowered during a step."""
-    entries = explanation.get("lowered_margins", [])
-    return from_plain(entries, tuple[LoweredMargin, ...], "lowered_margins")

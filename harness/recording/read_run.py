@@ -31,7 +31,7 @@ from harness.recording.plain import PlainError, from_plain
 from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Outcome, Run
 from harness.recording.signals import Signals
-from harness.recording.step_results import SavedResult
+from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import (
     CHECKSUM,
     RESOLVED,
@@ -118,7 +118,8 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
     with _damaged(path):
         document = in_present_words(document)
         steps = _mappings(document, "steps")
-        own: dict[str, Any] = {"trajectory": None, "result": {"parts": ()}}
+        empty = {"parts": ()}
+        own = {"trajectory": None, "planner": empty, "explanation": empty, "result": empty}
         bare = [{**step, "summary": step.get("step"), **own} for step in steps]
         plain = {**document, "steps": bare}
         known = {
@@ -129,16 +130,20 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
         for name in NEEDED:
             _needed(known, name)
         known["steps"] = tuple(
-            replace(record, result=_result(record.verb, step, f"steps[{index}]."))
+            replace(
+                record,
+                planner=SavedDetails(saved=_details(step, "planner", index)),
+                explanation=SavedDetails(saved=_details(step, "explanation", index)),
+                result=SavedResult(verb=record.verb, saved=_details(step, "result", index)),
+            )
             for index, (record, step) in enumerate(zip(known["steps"], steps, strict=True))
         )
         run = Run(**known, signals=NO_SIGNALS, meshes=_meshes(document))
     return run, [step.get("trajectory") for step in steps]
 
 
-def _result(verb: str, step: Mapping[str, Any], within: str) -> SavedResult:
-    saved = from_plain(step.get("result", {}), Mapping[str, Any], f"{within}result")
-    return SavedResult(verb=verb, saved=saved)
+def _details(step: Mapping[str, Any], name: str, index: int) -> Mapping[str, Any]:
+    return from_plain(step.get(name, {}), Mapping[str, Any], f"steps[{index}].{name}")
 
 
 def _mappings(document: Mapping[str, Any], name: str) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from harness.core.geometry import Rgba, Shape
 from harness.core.types import FloatArray, Floats, IntArray
@@ -22,6 +23,11 @@ class JointRecord:
     acceleration: float
     effort: float
     is_mimic: bool = False
+
+    @property
+    def position_unit(self) -> Literal["m", "rad"]:
+        """The unit of its position: `rad` or `m`."""
+        return "m" if self.kind == "prismatic" else "rad"
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
@@ -29,8 +28,9 @@ class StepRecord:
         start_index: First sample of the step.
         end_index: One past its last sample.
         trajectory: The commanded trajectory; None for steps without a motion.
-        planner: Statistics: planner_id, checks, attempts, path lengths ...
-        explanation: Plain data: IK solutions and what became of them, blocking pairs, nearest pose.
+        planner: The numbers of its plan; `harness.recording.plan_statistics` has the parts.
+        explanation: IK solutions and what became of them, blocking pairs, nearest pose;
+            `harness.recording.explanation` and the records of failures have the parts.
         result: What the step reports; `harness.recording.step_results` has the common parts.
     """
 
@@ -48,8 +48,8 @@ class StepRecord:
     expected_error: str = ""
     message: str = ""
     trajectory: JointTrajectory | None = None
-    planner: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    explanation: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    planner: Details = field(default_factory=Details)
+    explanation: Details = field(default_factory=Details)
     result: Details = field(default_factory=Details)
 
 

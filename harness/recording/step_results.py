@@ -7,7 +7,7 @@ are the fields of all parts.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any, TypeVar
 
 from harness.core.details import Detail, Details
@@ -99,15 +99,13 @@ CELL_RESULTS: tuple[type[Detail], ...] = (
 
 
 @dataclass(frozen=True)
-class SavedResult(Details):
-    """What a step of a saved run reported.
+class SavedDetails(Details):
+    """Details of a saved run as plain data; a part gets its type when it is requested."""
 
-    The step's class names the types of its parts. It is looked up when a part is requested; where
-    the package of the step is not installed, its own parts remain plain data.
-    """
-
-    verb: str = ""
     saved: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+    def __add__(self, more: Details) -> Details:
+        return replace(self, saved={**self.saved, **more.plain()})
 
     def find(self, kind: type[D]) -> D | None:
         """The part of a kind; None where there is none, or a value is not of its type."""
@@ -115,20 +113,34 @@ class SavedResult(Details):
         needed = {name for name, entry in known.items() if entry.default is MISSING}
         if not known.keys() & self.saved.keys() or not needed <= self.saved.keys():
             return None
-        if not any(issubclass(each, kind) for each in _parts_of(self.verb)):
-            return None
         try:
             return from_plain(self.saved, kind)
         except PlainError:
             return None
 
     def replaced(self, part: Detail) -> Details:
-        """The result with one part in place of those of its kind."""
-        return SavedResult(verb=self.verb, saved={**self.saved, **part.plain()})
+        """The details with one part in place of those of its kind."""
+        return self + Details.of(part)
 
     def plain(self) -> dict[str, Any]:
         """Every part as plain data in one mapping."""
         return dict(self.saved)
+
+
+@dataclass(frozen=True)
+class SavedResult(SavedDetails):
+    """What a step of a saved run reported.
+
+    The step's class names the types of its parts. It is looked up when a part is requested; where
+    the package of the step is not installed, its own parts remain plain data.
+    """
+
+    verb: str = ""
+
+    def find(self, kind: type[D]) -> D | None:
+        """The part of a kind that the step reports; None where there is none that fits."""
+        is_reported = any(issubclass(each, kind) for each in _parts_of(self.verb))
+        return super().find(kind) if is_reported else None
 
 
 def _parts_of(verb: str) -> tuple[type[Detail], ...]:

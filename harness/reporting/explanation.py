@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
+from harness.core.details import Details
 from harness.recording.explanation import recorded_explanation
 
 INDENT = "    "
 
 
-def explanation_lines(explanation: Mapping[str, Any], message: str = "") -> tuple[str, ...]:
+def explanation_lines(explanation: Details, message: str = "") -> tuple[str, ...]:
     """The stages in order, what to do, and where the picture is; what there is of them.
 
     Args:

@@ -121,3 +121,8 @@ class CaseResult:
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     shared: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, tuple[int, int]])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])
+
+    @property
+    def name(self) -> str:
+        """The title, and the case where the file has several."""
+        return f"{self.title} [{self.case}]" if self.case else self.title

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from harness.core.printable import counted
 from harness.recording.robot_record import JointRecord
 from harness.reporting.terminal import Style
 
@@ -131,8 +132,7 @@ def _groups(report: RobotReport, style: Style) -> Iterator[str]:
     for group in report.groups:
         span = f", {group.span}" if group.span else ""
         arm = " (the arm)" if group.name == report.arm_group else ""
-        count = f"{len(group.joints)} joint{'s' if len(group.joints) != 1 else ''}"
-        yield f"  {group.name}{arm}: {count}{span}"
+        yield f"  {group.name}{arm}: {counted(len(group.joints), 'joint')}{span}"
         yield f"      states: {', '.join(group.states) or 'none'}"
     yield f"  TCP: {report.tcp_link or 'none'}"
     yield f"  gripper: {report.gripper or 'none'}"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from harness.core.printable import counted
 from harness.core.quantity import split_quantity
 from harness.recording.run import Outcome
 from harness.reporting.terminal import PLAIN, Style
@@ -94,7 +95,7 @@ def rate_line(name: str, rate: SuccessRate, style: Style = PLAIN) -> str:
 
 def rate_text(name: str, rate: SuccessRate) -> str:
     """`pick: 187 of 200 samples passed, 93.5% (...): at least 90% is confirmed`."""
-    count = f"{rate.invalid} sample{'s' if rate.invalid != 1 else ''}"
+    count = counted(rate.invalid, "sample")
     if not rate.total:
         why = f"{count} invalid" if rate.invalid else "no sample ended"
         return f"{name}: no rate, {why}"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from harness.core.printable import ESC, printable, printable_lines
+from harness.core.printable import ESC, counted, printable, printable_lines
 from harness.recording.step_record import is_nested
 from harness.recording.verdict import Measure, Verdict
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
@@ -113,16 +113,15 @@ def _count(event: ProgressEvent) -> str:
 
 def case_line(result: CaseResult, style: Style = PLAIN) -> str:
     """One line of a finished case."""
-    name = f"{result.title} [{result.case}]" if result.case else result.title
     outcome = style.outcome(result.outcome, f"{result.outcome:<8}")
-    parts = [f"{outcome}{style.strong(name)}"]
+    parts = [f"{outcome}{style.strong(result.name)}"]
     if result.outcome in {"passed", "failed"}:
         held = sum(verdict.status == "passed" for verdict in result.verdicts)
         simulated = f"{result.sim_time:.1f} s simulated"
         if wall := sum(result.wall_times.values()):
             simulated += f" at {speed_text(result.sim_time / wall)}"
-        parts.append(f"{_plural(len(result.steps), 'step')}, {simulated}")
-        held_of = f"{held} of {_plural(len(result.verdicts), 'expectation')} hold"
+        parts.append(f"{counted(len(result.steps), 'step')}, {simulated}")
+        held_of = f"{held} of {counted(len(result.verdicts), 'expectation')} hold"
         parts.append(held_of if result.verdicts else "expects nothing")
         parts.append(style.quiet(f"digest {result.digest[:12]}"))
     return printable("  ".join(parts))
@@ -268,7 +267,7 @@ def summary(outcomes: Iterable[str], seconds: float, style: Style = PLAIN) -> st
         if counts[outcome]
     ]
     said = ", ".join(parts) or "nothing was run"
-    return f"{said} of {_plural(counts.total(), 'case')} in {seconds:.1f} s"
+    return f"{said} of {counted(counts.total(), 'case')} in {seconds:.1f} s"
 
 
 def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
@@ -284,7 +283,3 @@ def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:
 def _joined(lines: Iterable[str]) -> str:
     """Lines as one text; what would end a line within one of them is escaped."""
     return "\n".join(map(printable, lines))
-
-
-def _plural(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"

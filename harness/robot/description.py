@@ -101,6 +101,11 @@ class Joint:
         """Whether the joint has a position."""
         return self.kind != "fixed"
 
+    @property
+    def position_unit(self) -> Literal["m", "rad"]:
+        """The unit of its position: `rad` or `m`."""
+        return "m" if self.kind == "prismatic" else "rad"
+
 
 @dataclass(frozen=True)
 class PlanningGroup:

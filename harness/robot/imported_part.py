@@ -44,6 +44,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     Raises:
         RobotError: There is no arm, or an option refers to an unknown name.
     """
+    name = (urdf.name or path.stem)[:100]
     notes = [*urdf.notes, *srdf.notes]
     joints = with_reflected_friction(urdf.joints)
     described_in = "the URDF" if spec.mjcf is None else "the MJCF"
@@ -75,7 +76,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     else:
         tcp_link = tcp_without_gripper(urdf, srdf, arm, tip)
     facts = RobotYaml(
-        robot=path.stem[:100],
+        robot=name,
         kind="arm",
         urdf=path.name,
         srdf=source,
@@ -88,7 +89,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         start_state=StartState(joints=start),
         gripper=gripper,
     )
-    return RobotPart(path.stem, facts, urdf, srdf, source, tuple(notes), tuple(rejected))
+    return RobotPart(name, facts, urdf, srdf, source, tuple(notes), tuple(rejected))
 
 
 def names_integrated_gripper(name: str | None, srdf: Srdf) -> bool:

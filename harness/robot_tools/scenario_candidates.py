@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -34,11 +35,20 @@ CLEAR = 0.25
 """Distance of the box from the hand at the start, as a share of the reach."""
 
 HEADINGS = (0.0, 0.5 * math.pi)
+SHORTEST_APPROACH = 0.03  # [m]
+LEAST_LIFT = 0.6
+"""Shortest lift as a share of the longest; half of it is expected."""
 WIDEST_BOX, TALLEST_BOX = 0.05, 0.08  # [m]
 JAW_TURN = 0.35
 """Angle by which a single jaw is open at the width of the box; more, and it presses down [rad]."""
+HEAVIEST_BOX, LIGHTEST_BOX = 0.1, 0.01  # [kg]
+GRIP_SHARE = 0.1
+"""Weight of the box as a share of what the friction of both fingers carries; others creep down."""
 SLIDING = 0.3
 """Friction of a box that a single jaw pushes against the palm; with more it jams on the stand."""
+GRAVITY = 9.81  # [m/s^2]
+GAP_STEP = 1e-3
+"""Change of the gap between the pads over which the gripper's transmission is measured [m]."""
 MOTIONS = 10
 
 MARGIN = 0.02
@@ -55,6 +65,14 @@ PADDING = 0.002
 
 FLOOR_CLEARANCE = 0.05
 """Height of the lowest moving link above the floor at the start, at least [m]."""
+
+STAND = """\
+  - name: stand
+    static: true
+    pose: {{xyz: [{x:.4g}, {y:.4g}, {middle:.4g}]}}
+    box: {{size: [{side:.4g}, {side:.4g}, {top:.4g}]}}
+    color: [0.72, 0.53, 0.34, 1]
+"""
 
 
 class Candidates:
@@ -80,13 +98,15 @@ class Candidates:
         return f"\n  start_state: {{joints: {self._positions(names, self._start)}}}"
 
     def picks(self) -> Iterator[dict[str, str]]:
-        """A box on a stand, its size by the gripper's opening; none without an arm's gripper."""
+        """A box on a stand, then one on the floor; none without an arm's gripper."""
         description = self._description
         if description.gripper is None or not description.arm_group:
             return
         hand = self._kinematics.link_pose(self._start, description.tcp_link).translation
-        for heading in HEADINGS:
-            for distance, height in self._places(description.gripper)[:MOST_PLACES]:
+        floor = -self._base / self._reach
+        for heights in (HEIGHTS, (floor,)):
+            places = self._places(description.gripper, heights)[:MOST_PLACES]
+            for heading, (distance, height) in product(HEADINGS, places):
                 level = distance * self._reach
                 x, y = round(level * math.cos(heading), 2), round(level * math.sin(heading), 2)
                 place = (x, y, round(height * self._reach, 2))
@@ -94,25 +114,33 @@ class Candidates:
                     yield self._pick(place, description.gripper)
 
     def _pick(self, place: tuple[float, float, float], gripper: Gripper) -> dict[str, str]:
-        """What fills the template: a box on a stand, its size by the gripper's opening."""
+        """What fills the template: a box of a size and weight that the gripper can hold."""
         x, y, top = place[0], place[1], self._base + place[2]
         width, travel = self._box_width(gripper), _travel(self._reach)
-        height = min(TALLEST_BOX, 2.0 * width)
+        height, friction = min(TALLEST_BOX, 2.0 * width), SLIDING if gripper.has_single_jaw else 1.0
+        carried = 2.0 * friction * _grip_force(gripper, width) / GRAVITY
         numbers = {
             "base": self._base,
             "x": x,
             "y": y,
-            "stand": round(min(0.2, 0.25 * self._reach), 2),
-            "stand_height": top,
-            "stand_middle": top / 2,
             "box_middle": top + height / 2,
             "width": width,
             "height": height,
-            "friction": SLIDING if gripper.has_single_jaw else 1.0,
+            "mass": max(min(HEAVIEST_BOX, round(GRIP_SHARE * carried, 2)), LIGHTEST_BOX),
+            "friction": friction,
+            "least": min(SHORTEST_APPROACH, travel),
             "travel": travel,
+            "least_lift": LEAST_LIFT * travel,
             "above": travel / 2,
         }
-        return {key: f"{value + 0.0:.4g}" for key, value in numbers.items()}
+        side = round(min(0.2, 0.25 * self._reach), 2)
+        stand = STAND.format(x=x, y=y, middle=top / 2, side=side, top=top) if top > 0 else ""
+        words = {
+            "stand": stand,
+            "support": "a stand" if stand else "the floor",
+            "standing_on": "stand" if stand else "ground_plane",
+        }
+        return words | {key: f"{value + 0.0:.4g}" for key, value in numbers.items()}
 
     def _box_width(self, gripper: Gripper) -> float:
         """Width of a box that the gripper can hold, in whole millimetres [m]."""
@@ -128,8 +156,8 @@ class Candidates:
             width = min(width, gap(closed + math.copysign(JAW_TURN, opened - closed)))
         return math.floor(1e3 * width) / 1e3
 
-    def _places(self, gripper: Gripper) -> list[tuple[float, float]]:
-        """Distances and heights that most random configurations reach, the most first.
+    def _places(self, gripper: Gripper, heights: Sequence[float]) -> list[tuple[float, float]]:
+        """Distances, and some heights, that most random configurations reach, the most first.
 
         An arm of six joints takes a box from above, so the more its gripper points downward there,
         the more a configuration counts; likewise above the place, where the approach starts.
@@ -153,7 +181,7 @@ class Candidates:
             return float(weights[np.abs(reached - place).max(axis=1) < NEAR].sum())
 
         above = _travel(self._reach) / self._reach
-        grid = [(distance, height) for height in HEIGHTS for distance in DISTANCES]
+        grid = [(distance, height) for height in heights for distance in DISTANCES]
         counts = [min(weight(*place), weight(place[0], place[1] + above)) for place in grid]
         order = np.argsort(np.negative(counts), kind="stable")
         return [grid[number] for number in order if counts[number] > 0]
@@ -220,6 +248,14 @@ class Candidates:
             for pose in [self._kinematics.link_pose(self._start, link)]
         )
         return 0.0 if lowest > 0 else math.ceil(10 * (FLOOR_CLEARANCE - lowest)) / 10
+
+
+def _grip_force(gripper: Gripper, width: float) -> float:
+    """Force with which each finger presses on a width, by virtual work [N]."""
+    positions, gaps = gripper.widths.T
+    order = np.argsort(gaps)
+    at = np.interp([width, width + GAP_STEP], gaps[order], positions[order])
+    return gripper.grip_effort * abs(float(at[1] - at[0])) / GAP_STEP
 
 
 def _travel(reach: float) -> float:

@@ -60,7 +60,7 @@ class Graph(Protocol):
     """A node of a ROS 2 domain. Every callback is called inside `spin`, never from a thread.
 
     Messages are those of `harness.ros.interfaces`, services are named without `Request`, and
-    actions are made of services and topics by `harness.ros.action_server`.
+    actions are made of services and topics by `harness.ros.actions`.
     """
 
     def advertise(

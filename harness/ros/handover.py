@@ -1,24 +1,31 @@
-"""The time in which external programs command the robot: the same loop, live and in a replay."""
+"""The time in which external programs command the robot, live or from a recorded stream."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.cell.cell import Presence
+from harness.core.errors import HarnessError
 from harness.engine.execute import object_record
 from harness.language.expectation import ExpectationFields
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
+from harness.recording.read_run import read_run
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import RESOLVED
+from harness.reporting.result import CaseResult
 from harness.ros.control.cell import ExternalCell, controller_names
 from harness.session.prepare import Prepared
 from harness.session.record import robot_record
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
 from harness.simulation.mujoco_simulator import MujocoSimulator
 
 GRACE = 1.0
@@ -143,3 +150,49 @@ def _said(end: CommandRecord) -> str:
     code = end.content.get("code")
     how = "without an error" if code == 0 else f"with exit code {code}"
     return f"the launched program ended {how} at t={end.time:.2f} s"
+
+
+class ReplayControl(HandOver):
+    """Gives each command at the sample at which it took effect."""
+
+    def __init__(
+        self, prepared: Prepared, simulator: MujocoSimulator, commands: Sequence[CommandRecord]
+    ) -> None:
+        super().__init__(prepared, simulator)
+        self._left = list(commands)
+
+    def hand_over(self, request: ExternalRequest) -> ExternalResult:
+        """Let the recorded commands take effect until the request's end.
+
+        Raises:
+            HarnessError: A command belongs to a sample that this run does not stop at.
+        """
+        return self.drive(request, self._feed, self.cell.outcomes.clear)
+
+    def _feed(self) -> None:
+        now = self.simulator.sample_count - 1
+        while self._left and self._left[0].sample <= now:
+            command = self._left.pop(0)
+            if command.sample < now:
+                raise HarnessError(
+                    f"the command at t={command.time:.3f} s comes too late in this replay: the"
+                    " recorded commands belong to another run"
+                )
+            self.cell.receive(command.kind, command.controller, command.goal, command.content)
+
+
+def replay(folder: Path, report_dir: Path | None = None) -> CaseResult:
+    """Run a saved run again with its recorded command stream, without any network.
+
+    Args:
+        folder: The run's report folder.
+        report_dir: Where the replayed run is written; None writes nothing.
+
+    Raises:
+        HarnessError: There is no run, or its commands do not fit.
+    """
+    commands = read_run(folder).run.commands
+    return run_case(
+        RunRequest(folder / RESOLVED, report_dir=report_dir),
+        make_session=lambda prepared, simulator: ReplayControl(prepared, simulator, commands),
+    )

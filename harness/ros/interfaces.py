@@ -5,10 +5,9 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
-import numpy as np
-from rosbags.interfaces import Nodetype
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
+from rosbags.typesys import get_types_from_msg
+
+from harness.reporting.rosbag.messages import TYPESTORE, message, time_message
 
 FOLLOW = "control_msgs/action/FollowJointTrajectory"
 GRIPPER = "control_msgs/action/GripperCommand"
@@ -55,14 +54,14 @@ MESSAGES = {
 }
 
 
-def _typestore() -> Typestore:
-    store = get_typestore(Stores.ROS2_JAZZY)
+def _register() -> None:
+    """Let rosbags know the types."""
     for name, definition in MESSAGES.items():
-        store.register(get_types_from_msg(definition, name))
+        TYPESTORE.register(get_types_from_msg(definition, name))
     for action, parts in ACTIONS.items():
         goal, result, feedback = (f"{action}_{part}" for part in ("Goal", "Result", "Feedback"))
         for name, definition in zip((goal, result, feedback), parts, strict=True):
-            store.register(get_types_from_msg(definition, name))
+            TYPESTORE.register(get_types_from_msg(definition, name))
         for suffix, definition in {
             "SendGoal_Request": f"{UUID} goal_id\n{goal} goal",
             "SendGoal_Response": "bool accepted\nbuiltin_interfaces/msg/Time stamp",
@@ -70,43 +69,15 @@ def _typestore() -> Typestore:
             "GetResult_Response": f"int8 status\n{result} result",
             "FeedbackMessage": f"{UUID} goal_id\n{feedback} feedback",
         }.items():
-            store.register(get_types_from_msg(definition, f"{action}_{suffix}"))
-    return store
+            TYPESTORE.register(get_types_from_msg(definition, f"{action}_{suffix}"))
 
 
-_STORE = _typestore()
-
-
-def message(kind: str, /, **fields: Any) -> Any:
-    """A message of a type; fields that are left out are zero or empty."""
-    definitions = _STORE.fielddefs[kind][1]
-    values = {
-        name: fields.pop(name) if name in fields else _default(definition)
-        for name, definition in definitions
-    }
-    if fields:
-        raise TypeError(f"{kind} has no field {', '.join(fields)}")
-    return _STORE.types[kind](**values)
-
-
-def _default(kind: Any) -> Any:
-    node, detail = kind
-    if node == Nodetype.NAME:
-        return message(detail)
-    if node == Nodetype.BASE:
-        base = detail[0]
-        return (
-            "" if base == "string" else False if base == "bool" else 0.0 if "float" in base else 0
-        )
-    element, size = detail
-    if element[0] == Nodetype.BASE and element[1][0] != "string":
-        return np.zeros(size or 0, dtype=np.dtype(element[1][0].replace("octet", "uint8")))
-    return [_default(element) for _ in range(size or 0)]
+_register()
 
 
 def encoded(content: Any, kind: str) -> bytes:
     """A message as it is sent."""
-    return bytes(_STORE.serialize_cdr(content, kind))
+    return bytes(TYPESTORE.serialize_cdr(content, kind))
 
 
 def decoded(payload: bytes, kind: str) -> Any:
@@ -114,19 +85,19 @@ def decoded(payload: bytes, kind: str) -> Any:
 
     Bytes after the message do not count: rclpy's serialisation leaves some for each list element.
     """
-    definition = _STORE.get_msgdef(kind)
+    definition = TYPESTORE.get_msgdef(kind)
     readers = {
         b"\0\0": definition.deserialize_cdr_be,
         b"\0\1": definition.deserialize_cdr_le,
     }
     with suppress(Exception):  # no kind of error is certain
-        return readers[payload[:2]](payload[4:], 0, definition.cls, _STORE)[0]
+        return readers[payload[:2]](payload[4:], 0, definition.cls, TYPESTORE)[0]
     return None
 
 
 def prepare(kind: str) -> None:
     """Let rosbags write the code of a type now, which takes some milliseconds."""
-    _STORE.deserialize_cdr(_STORE.serialize_cdr(message(kind), kind), kind)
+    TYPESTORE.deserialize_cdr(TYPESTORE.serialize_cdr(message(kind), kind), kind)
 
 
 def stamp(seconds: float, kind: str = "Time") -> Any:
@@ -134,8 +105,7 @@ def stamp(seconds: float, kind: str = "Time") -> Any:
 
     The clock of the bridge begins at 0, as that of Gazebo.
     """
-    whole, rest = divmod(round(seconds * 1e9), 10**9)
-    return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
+    return time_message(round(seconds * 1e9), kind)
 
 
 def header(seconds: float, frame_id: str = "") -> Any:

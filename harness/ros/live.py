@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from harness.core.printable import counted
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.frames import camera_edges
@@ -116,8 +117,7 @@ class LiveControl(HandOver):
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """What is said of wall time, names and the launched program; nothing of it is judged."""
         count = sum(command.kind != "end" for command in self.cell.commands)
-        commands = f"{count} command{'' if count == 1 else 's'}"
-        said = [f"{commands}; {self._pace.text()}", *self.names]
+        said = [f"{counted(count, 'command')}; {self._pace.text()}", *self.names]
         if self._exit_code and has_passed:
             said.append(f"the launched program ended with exit code {self._exit_code}")
         if self._output and (self._exit_code or not has_passed):

@@ -17,12 +17,12 @@ from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import Signals
 from harness.reporting.result import CaseResult
-from harness.ros.action_client import ActionClient, ClientGoal
-from harness.ros.action_server import Status
+from harness.reporting.rosbag.messages import message
+from harness.ros.actions import ActionClient, ClientGoal, Status
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, message, stamp
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, stamp
 from harness.ros.joint_states import GRID, JointStates
 from harness.ros.names import actions
 from harness.session.prepare import Prepared, prepare
@@ -318,7 +318,7 @@ class RemoteArm:
                 continue
             worst = int(np.argmax(errors))
             name, error = str(feedback.joint_names[worst]), float(errors[worst])
-            unit = "m" if self.description.joint_by_name[name].kind == "prismatic" else "rad"
+            unit = self.description.joint_by_name[name].position_unit
             raise StepFailed(
                 "CONTROL_FAILED",
                 f"{name} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"

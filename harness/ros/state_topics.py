@@ -8,8 +8,9 @@ from harness.core.types import FloatArray
 from harness.recording.link_poses import placement_poses
 from harness.recording.robot_record import RobotRecord
 from harness.reporting.rosbag.frames import Edge, robot_edges
+from harness.reporting.rosbag.messages import message
 from harness.ros.graph import Graph
-from harness.ros.interfaces import message, stamp
+from harness.ros.interfaces import stamp
 
 TF = "tf2_msgs/msg/TFMessage"
 TF_EVERY = 2

@@ -10,11 +10,12 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.commands import CommandKind, CommandRecord
-from harness.ros.action_server import ActionServer
+from harness.reporting.rosbag.messages import message
+from harness.ros.actions import ActionServer
 from harness.ros.control.cell import ExternalCell
 from harness.ros.control.controller import Window
 from harness.ros.graph import Graph
-from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, message, seconds
+from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, seconds
 
 FEEDBACK_EVERY = 5
 """Ticks between two messages of feedback: 20 Hz, as controllers are set by default."""

@@ -15,7 +15,7 @@ from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
 from harness.ports.scene import Touch
-from harness.recording.execution_failures import not_held_object
+from harness.recording.execution_failures import NotHeldFailure
 from harness.reporting.explanation import explanation_lines
 from harness.session.prepare import prepare
 from harness.session.start import overlap_note, start_physics
@@ -68,7 +68,8 @@ def check_file(
         spec = specs.get(record.path)
         if isinstance(spec, Pick | Grasp):
             not_taken.add(spec.object)
-        if not_held_object(record.explanation) in not_taken:
+        missing = record.explanation.find(NotHeldFailure)
+        if missing is not None and missing.not_held in not_taken:
             continue  # it follows from the pick that is reported
         said = f"{record.error_code}: {record.message}"
         problem = prepared.loaded.lines.problem(_loc(program, record.path), said)

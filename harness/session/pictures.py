@@ -8,7 +8,8 @@ from functools import partial
 
 from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
-from harness.recording.explanation import recorded_explanation
+from harness.core.details import Details
+from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
 from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Finding, Run
@@ -179,4 +180,4 @@ def _with_picture_name(step: StepRecord, number: int) -> StepRecord:
     from harness.cameras.stills import step_slug
 
     name = f"{FOLDER}/{number:02d}-{step_slug(step.id)}-why.jpg"
-    return replace(step, explanation={**step.explanation, "picture": name})
+    return replace(step, explanation=step.explanation + Details.of(Explanation(picture=name)))

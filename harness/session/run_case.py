@@ -23,9 +23,8 @@ from harness.recording.write_run import write_run
 from harness.reporting.reporter import write_with
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
-from harness.session.distances_ahead import DistancesAhead
 from harness.session.external import ExternalSession, MakeSession, NoPrograms
-from harness.session.observe import observed_run, with_believed_poses
+from harness.session.observe import explained_run, observed_run, with_believed_poses
 from harness.session.pictures import Drawings, Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
@@ -60,14 +59,13 @@ def run_case(
     progress.compiled()
     try:
         with ExitStack() as stack:
-            ahead = stack.enter_context(closing(DistancesAhead(prepared)))
             session = make_session(prepared, begun.simulator)
-            executed = _executed(request, begun, clock, progress, session, ahead)
+            executed = _executed(request, begun, clock, progress, session)
             refusal = session.refusal()
             del begun, session  # the simulator is the largest object; the run holds its recording
             gc.collect()  # parts of the simulator refer to each other
             pictures = stack.enter_context(closing(Pictures(request, prepared, executed)))
-            judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
+            judged = _judged(request, executed, prepared, pictures, clock, progress)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
             result = _result(request, prepared, judged, overlaps, draw, refusal)
@@ -75,6 +73,8 @@ def run_case(
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
+            with clock.part("judge"):
+                judged = replace(judged, run=explained_run(prepared, judged.run))
             return _reported(request, request.report_dir, judged, result, pictures, clock, progress)
     except HarnessError as error:
         return _broken(request, prepared, clock, error)
@@ -86,7 +86,6 @@ def _executed(
     clock: Clock,
     progress: Progress,
     session: ExternalSession,
-    ahead: DistancesAhead,
 ) -> Run:
     """Plan and simulate the steps, and record what happens."""
     prepared, simulator, _ = start
@@ -94,7 +93,6 @@ def _executed(
 
     def on_step(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
         progress.step(simulator, kind, step, record)
-        ahead.look(program_execution, simulator)
 
     with clock.part("execute"):
         program_execution = ProgramExecution(
@@ -128,12 +126,11 @@ def _judged(
     pictures: Pictures,
     clock: Clock,
     progress: Progress,
-    ahead: DistancesAhead,
 ) -> StoredRun:
     """The observed run with its verdicts; a strict request fails with a warning."""
-    progress.activity("measuring distances and contacts")
+    progress.activity("measuring distances")
     with clock.part("judge"):
-        run = observed_run(prepared, executed, ahead.part)
+        run = observed_run(prepared, executed)
     with clock.part("render"):
         run = pictures.captured(run, progress.activity)
     progress.activity("judging")

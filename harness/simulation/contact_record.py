@@ -248,6 +248,7 @@ class ContactRecord:
         size = self._physics.model.nbody
         one, other = self._physics.model.geom_bodyid[self._geoms[begin:end].T]
         codes = np.minimum(one, other) * size + np.maximum(one, other)
+        codes = codes.astype(np.min_scalar_type(size * size))  # 16 bits are sorted in linear time
         order = np.argsort(codes, kind="stable")
         pairs, starts = np.unique(codes[order], return_index=True)
         parts = np.split(order + begin, starts[1:])

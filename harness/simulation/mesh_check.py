@@ -5,10 +5,14 @@
 from __future__ import annotations
 
 import mujoco
+import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
-from harness.simulation.geoms import add_mesh
+from harness.simulation.geoms import add_mesh, hull_points
+
+LEAST_SIZE = 1e-3
+"""The size below which a mesh is thought to have a wrong scale [m]."""
 
 
 def check_mesh(geometry: Mesh) -> None:
@@ -24,4 +28,7 @@ def check_mesh(geometry: Mesh) -> None:
         spec.compile()
     except ValueError as error:
         reason = str(error).splitlines()[0].removeprefix("Error: ")
+        size = float(np.ptp(hull_points(geometry), axis=0).max())
+        if size < LEAST_SIZE:
+            reason = f"it is {size * 1e3:.2g} mm large; state a larger `scale`"
         raise RobotError(f"{geometry.path.name} cannot be used: {reason}") from error

@@ -16,7 +16,6 @@ from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ContactForce, ControlFailure, UnrestFailure
-from harness.recording.motion import Motion
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.simulation.contact_record import BodyPair
@@ -242,14 +241,6 @@ class MujocoSimulator:
         """Release a welded object."""
         self._objects.unweld(name)
 
-    def motion(self) -> Motion:
-        """What has moved so far, as `finish` returns it."""
-        return Motion(
-            self._recording.times(),
-            self._recording.joint_positions(0),
-            self._objects.recorded_poses(),
-        )
-
     def finish(self) -> Signals:
         """All recorded signals, without clearances."""
         return self._recording.signals(self._objects.recorded_poses())
@@ -426,7 +417,7 @@ class MujocoSimulator:
         """
         worst = int(np.argmax(errors))
         joint = self.description.movable_joints[int(joints[worst])]
-        unit = "m" if joint.kind == "prismatic" else "rad"
+        unit = joint.position_unit
         contacts = self._recording.strongest_robot_contacts(row)
         time = row * self._timestep
         command = self._command.copy()

@@ -49,6 +49,10 @@ MAX_TURN = math.radians(15)
 """Heading off the direction to the object up to which an arm of few joints grasps it [rad]."""
 
 
+STRAIGHT = 89.5
+"""Angle with the horizontal from which an approach is straight down, or up [degrees]."""
+
+
 class Travel(SpecModel):
     """A straight move of a pick or place."""
 
@@ -81,7 +85,8 @@ class Pick(Step):
     other: half a turn of the gripper, a box's other side if it fits, eight turns about what is
     round; a mesh, or several shapes, are taken as the box around them. With a `grasp_pose` that has
     no rotation the same rotations are tried at its point. The first grasp that the arm can
-    approach, and lift from, is taken; the step reports which `grasp` of how many `grasps`.
+    reach, approach, and lift from, is taken, in the posture for which this was verified; the step
+    reports which `grasp` of how many `grasps`.
 
     An arm of fewer than six joints turns to the object by itself: it grasps the middle of the
     object, or its upper part, with the first pitch of the gripper that works, from level (0) to
@@ -193,13 +198,14 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
     try:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
-        raise with_advice(failure, pick_advice(step, failure, len(goals), cell)) from failure
-    cell.report(GraspChoice(len(goals), chosen.number + 1))
+        advice = pick_advice(step, failure, len(goals), cell)
+        raise with_advice(failure, advice, approach_words(failure)) from failure
+    cell.report(GraspChoice(len(goals), chosen.approach.number + 1))
+    reach = MoveTo(**chosen.reach_keys, group=step.group)
+    lin = Lin(**chosen.approach.at.keys, group=step.group)
     return [
-        cell.child(
-            "reach", MoveTo(**chosen.before.keys, group=step.group), f"move_to before {step.object}"
-        ),
-        cell.child("approach", Lin(**chosen.at.keys, group=step.group), f"lin to {step.object}"),
+        cell.child("reach", reach, f"move_to before {step.object}"),
+        cell.child("approach", lin, f"lin to {step.object}"),
     ]
 
 
@@ -292,10 +298,29 @@ def millimetres(metres: float) -> str:
     return f"{1000 * metres:.1f} mm"
 
 
-def with_advice(failure: PlanningFailed, advice: str) -> PlanningFailed:
-    """The failure with advice that can be followed in the step that it is reported for."""
+def with_advice(failure: PlanningFailed, advice: str, more: str = "") -> PlanningFailed:
+    """The failure with advice that can be followed in the step that it is reported for.
+
+    Args:
+        failure: The failure of the planner.
+        advice: What to do; empty where nothing is known.
+        more: What is added to the message.
+    """
     added = Details.of(Explanation(advice=advice) if advice else None)
-    return PlanningFailed(failure.code, failure.message, *failure.details, *added)
+    return PlanningFailed(failure.code, failure.message + more, *failure.details, *added)
+
+
+def approach_words(failure: PlanningFailed) -> str:
+    """`, approached 30° below the horizontal`; empty for a failure without an approach."""
+    approach = failure.details.find(ApproachFailure)
+    if approach is None or approach.approach_direction is None:
+        return ""
+    down = -math.degrees(math.asin(min(1.0, max(-1.0, approach.approach_direction[2]))))
+    if abs(down) > STRAIGHT:
+        return f", approached straight {'down' if down > 0 else 'up'}"
+    if abs(down) < 90 - STRAIGHT:
+        return ", approached horizontally"
+    return f", approached {abs(down):.0f}° {'below' if down > 0 else 'above'} the horizontal"
 
 
 def nearest_state(failure: PlanningFailed) -> NearestState | None:

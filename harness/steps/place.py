@@ -170,14 +170,12 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     least = max(refused, key=lambda touch: touch.distance, default=None)
     if least is not None and least.distance < -DEEPEST_OPENING:
         raise _no_room(name, least)
-    cell.report(TurnChoice(len(targets), chosen.number + 1))
+    cell.report(TurnChoice(len(targets), chosen.approach.number + 1))
+    reach = MoveTo(**chosen.reach_keys, group=step.group)
+    lower = Lin(**chosen.approach.at.keys, group=step.group)
     return [
-        cell.child(
-            "reach",
-            MoveTo(**chosen.before.keys, group=step.group),
-            f"move_to above the place of {name}",
-        ),
-        _touching(cell.child("lower", Lin(**chosen.at.keys, group=step.group), f"lin {name}")),
+        cell.child("reach", reach, f"move_to above the place of {name}"),
+        _touching(cell.child("lower", lower, f"lin {name}")),
     ]
 
 

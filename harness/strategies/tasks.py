@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.robot.chain import Chain
 
@@ -24,18 +24,13 @@ def natural_task(chain: Chain) -> Task:
     return fitting[0] if fitting else "position"
 
 
-def pose_pitch(pose: SE3) -> float:
-    """Angle of a frame's x axis below the horizontal [rad], -pi/2 to pi/2."""
-    x_axis = pose.rotation[:, 0]
-    return float(np.arctan2(-x_axis[2], np.hypot(x_axis[0], x_axis[1])))
-
-
 def miss(task: Task, target: SE3, reached: SE3) -> tuple[float, float]:
     """Position error [m] and pitch or orientation error [rad] of a pose, as the task has it."""
     shift, turn = target.distance_to(reached)
     if task == "pose":
         return shift, turn
-    return shift, abs(pose_pitch(target) - pose_pitch(reached)) if "pitch" in task else 0.0
+    pitch = abs(pitch_of(target.rotation) - pitch_of(reached.rotation))
+    return shift, pitch if "pitch" in task else 0.0
 
 
 def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
@@ -70,7 +65,7 @@ def task_error(task: Task, target: SE3, here: SE3, reach: float) -> FloatArray:
     if task == "position":
         return shift
     if task == "position and pitch":
-        return np.append(shift, pose_pitch(target) - pose_pitch(here))
+        return np.append(shift, pitch_of(target.rotation) - pitch_of(here.rotation))
     crossed = np.cross(here.rotation, target.rotation, axis=0)  # column by column
     return np.concatenate([shift, 0.5 * crossed.sum(axis=1)])
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.core.errors import HarnessError, SpecError
+from harness.core.files import replaced
 from harness.language.files.source import Located, walk
 from harness.language.reading.load import WORLD_SUFFIXES, LoadedScenario, load_world
 
@@ -131,11 +132,5 @@ class StudioFiles:
 
 
 def _write(path: Path, text: str) -> None:
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
-    except OSError:
-        with contextlib.suppress(OSError):
-            partial.unlink()
-        raise
+    with replaced(path) as file:
+        file.write(text.encode())

@@ -16,7 +16,7 @@ from harness.studio.previews import preview
 from harness.studio.reach import Reach, ReachStudy
 from harness.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost
 from harness.studio.session import Message, RefusedError
-from harness.studio.step_texts import MOTIONS, joint_keys, pose_keys, step_text
+from harness.studio.texts import MOTIONS, joint_keys, pose_keys, step_text
 
 SOLID, FAINT = 0.8, 0.2
 """Opacity of the way that continues the current posture, and of the others."""

@@ -16,9 +16,9 @@ from harness.ports.scene import Touch
 from harness.recording.step_record import StepRecord
 from harness.studio.document import Document, robot_alone
 from harness.studio.files import StudioFiles
+from harness.studio.judging import LiveVerdicts
 from harness.studio.live_camera import LiveCamera
 from harness.studio.live_cell import LiveCell
-from harness.studio.live_verdicts import LiveVerdicts
 from harness.studio.messages import cell_message, problem_message, robot_message
 from harness.studio.reach import Reach, ReachStudy
 from harness.studio.scene_view import SceneView
@@ -359,7 +359,7 @@ class LiveStudio:
         joint = description.joint_by_name[str(message["joint"])]
         value = float(message["value"])
         if not joint.lower <= value <= joint.upper:
-            unit = "m" if joint.kind == "prismatic" else "rad"
+            unit = joint.position_unit
             raise RefusedError(
                 f"{joint.name} goes from {joint.lower:.4g} to {joint.upper:.4g} {unit},"
                 f" not to {value:.4g}"

@@ -12,9 +12,8 @@ from harness.recording.step_record import StepRecord
 from harness.reporting.explanation import explanation_lines
 from harness.studio.language_help import GRIPPER_TARGET, Names
 from harness.studio.live_cell import LiveCell
-from harness.studio.object_texts import object_form
 from harness.studio.session import Message
-from harness.studio.step_texts import MOTIONS, gripper_steps
+from harness.studio.texts import MOTIONS, gripper_steps, object_form
 
 MOST_CONTACTS = 8
 """Contacts that are listed, strongest first."""

@@ -9,6 +9,7 @@ import numpy as np
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.ports.motion_planning import MotionPlan
+from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.step_record import StepRecord
 from harness.studio.live_cell import LiveCell
 
@@ -62,5 +63,6 @@ def preview(cell: LiveCell, text: str) -> Preview:
     positions = np.array([description.with_mimics(row) for row in rows])
     path = cell.prepared.kinematics.link_poses(positions, [description.tcp_link])[:, 0, :3]
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-    planner = str(plan.statistics.get("planner_id", ""))
+    statistics = plan.statistics.find(PlanStatistics)
+    planner = "" if statistics is None else statistics.planner_id
     return Preview(positions, path, trajectory.duration, length, planner)

@@ -13,7 +13,7 @@ from harness.studio.judging import judged
 from harness.studio.language_help import ITEM, named_at
 from harness.studio.live_cell import LiveCell
 from harness.studio.messages import names_of
-from harness.studio.step_texts import step_text
+from harness.studio.texts import step_text
 
 MOVED = 0.005
 """Largest distance from its start at which an object counts as not moved [m]."""

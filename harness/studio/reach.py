@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from harness.core.errors import PlanningFailed
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.wording import touches as touches_text
@@ -81,7 +79,7 @@ class ReachStudy:
         """The goal that the arm can choose: a pose, or a position and a pitch."""
         if self._space.dof >= WHOLE_POSE_JOINTS:
             return PoseGoal(self._tcp, pose)
-        return PositionGoal(self._tcp, pose.translation, pitch_of(pose))
+        return PositionGoal(self._tcp, pose.translation, pitch_of(pose.rotation))
 
     def answer(self, pose: SE3, near: FloatArray | None = None, *, explain: bool = True) -> Reach:
         """What a TCP pose needs.
@@ -130,11 +128,6 @@ def _short_refusal(answer: IkAnswer) -> str:
         by = abs(nearest.value - nearest.limit)
         return f"{nearest.joint} would be {by:.3f} beyond its limit"
     return "no joint positions reach the pose"
-
-
-def pitch_of(pose: SE3) -> float:
-    """The angle of a link's x axis below the horizontal [rad]."""
-    return float(np.arcsin(np.clip(-pose.rotation[2, 0], -1.0, 1.0)))
 
 
 def _padding(cell: LiveCell) -> float:

@@ -248,8 +248,7 @@ def guarded(action: Callable[[], Message]) -> Message:
     try:
         return action()
     except SpecError as error:
-        said = [": ".join(filter(None, (each.message, each.hint))) for each in error.problems]
-        return {"error": "; ".join(said)}
+        return {"error": "; ".join(each.sentence for each in error.problems)}
     except (HarnessError, ValueError, KeyError, TypeError) as error:
         text = str(error) if isinstance(error, HarnessError) else f"a bad request: {error!r}"
         return {"error": text}

@@ -17,18 +17,18 @@ from harness.studio.files import StudioFiles
 from harness.studio.goal_actions import GoalActions
 from harness.studio.language_help import complete, hover
 from harness.studio.messages import failure_message, names_of, robot_message
-from harness.studio.object_texts import (
+from harness.studio.proposals import proposals
+from harness.studio.scene_view import Handle, SceneView
+from harness.studio.session import Message, RefusedError, guarded
+from harness.studio.texts import (
     AXES,
     corner_of,
     object_form,
     object_spec,
     pose_keys_of,
     resized,
+    step_text,
 )
-from harness.studio.proposals import proposals
-from harness.studio.scene_view import Handle, SceneView
-from harness.studio.session import Message, RefusedError, guarded
-from harness.studio.step_texts import step_text
 
 
 class Studio(GoalActions):

@@ -14,10 +14,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
+from harness.core.files import replaced, writing
 from harness.reporting.json_text import compact_json
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase
-from harness.reporting.suite.write import History, replaced, write_suite, writing
+from harness.reporting.suite.write import History, write_suite
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of
 from harness.suite.plan import PlannedCase

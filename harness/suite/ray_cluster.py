@@ -196,13 +196,15 @@ def _initialize(ray: Any, options: dict[str, Any]) -> None:
 
     Source: ray-project/ray, issue 63202.
     """
-    for _ in range(2):
+    for further_tries in (2, 1, 0):
         try:
             ray.init(**options)
-            return
         except ConnectionAbortedError:
+            if not further_tries:
+                raise
             ray.shutdown()
-    ray.init(**options)
+        else:
+            return
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from harness import __version__
-from harness.core.errors import HarnessError
+from harness.core.files import replaced, writing
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader
@@ -175,13 +175,10 @@ def write_shard_record(record: ShardRecord) -> None:
     Raises:
         HarnessError: The file cannot be written.
     """
-    path = Path(record.root) / FILE
+    root = Path(record.root)
     text = json.dumps({"format": FORMAT, **to_plain(record)}, indent=1)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise HarnessError(f"'{path}' cannot be written: {error.strerror}") from error
+    with writing(root), replaced(root / FILE) as file:
+        file.write(f"{text}\n".encode())
 
 
 def read_shard_records(folders: Sequence[Path]) -> list[ShardRecord]:

@@ -33,6 +33,7 @@ RUN_MODULES = (
     "harness.observation.looks_differ",
     "harness.cameras.stills",
     "harness.reporting.html.write",
+    "jinja2",
     "numpy.ma",
     "numpy.random",
     "pinocchio",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -39,3 +40,16 @@ def facing(normal: FloatArray) -> FloatArray:
     if z < -1 + 1e-12:
         return rotation_from_rpy((math.pi, 0.0, 0.0))
     return rotation_from_quat_wxyz((1 + z, -y, x, 0.0))
+
+
+LEAST_NORMAL = 1e-9
+"""Length of the normal of a plane below which it has no direction."""
+THICK_PLANE = "a plane is solid below its surface; MoveIt's is thin"
+
+
+def plane_pose(coefficients: Sequence[float]) -> SE3:
+    """The frame of a x + b y + c z + d = 0, z along its normal."""
+    *normal, offset = coefficients
+    length = math.hypot(*normal)
+    unit = np.array(normal) / length
+    return SE3(facing(unit), -offset / length * unit)

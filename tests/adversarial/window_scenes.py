@@ -261,7 +261,7 @@ WINDOW_SCENES = (
         (),
         (
             "{never: {in_contact: {between: [robot, cube]}}, during: short}",
-            "{static: {object: cube, max_velocity: 10 m/s}, during: put}",
+            "{upright: cube, during: put}",
         ),
         warned=(
             "{never: {in_contact: {between: [robot, cube]}}, during: put}",

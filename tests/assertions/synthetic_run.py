@@ -19,7 +19,7 @@ from harness.recording.robot_record import GripperRecord, JointRecord, RobotReco
 from harness.recording.run import AttachmentRecord, ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
-from harness.recording.step_results import SavedResult
+from harness.recording.step_results import SavedDetails, SavedResult
 from tests.approved import SAID, verdict_text
 
 DT = 0.01
@@ -126,8 +126,11 @@ def make_run(n=200, *, objects=(TABLE, BOX), steps=(), attachments=(), robot=ROB
 
 
 def step(name, start, stop, verb="move_to", status="passed", **fields):
-    """A step over samples [start, stop); its `result` is plain data, as run.json has it."""
+    """A step over samples [start, stop); its details are plain data, as run.json has them."""
     result = SavedResult(verb=verb, saved=fields.pop("result", {}))
+    details = {
+        name: SavedDetails(saved=fields.pop(name, {})) for name in ("planner", "explanation")
+    }
     return StepRecord(
         id=name,
         path=fields.pop("path", f"steps[{start}]"),
@@ -140,6 +143,7 @@ def step(name, start, stop, verb="move_to", status="passed", **fields):
         start_index=start,
         end_index=stop,
         result=result,
+        **details,
         **fields,
     )
 

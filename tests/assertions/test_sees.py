@@ -15,6 +15,7 @@ from harness.expectations.never import Never
 from harness.expectations.sees import Sees
 from harness.expectations.until import Until
 from harness.expectations.within_limits import WithinLimits
+from harness.recording.run import ObjectRecord
 from tests.assertions.synthetic_run import step
 from tests.cameras.camera_runs import (
     GREEN,
@@ -30,6 +31,7 @@ from tests.cameras.recorded_runs import an_object
 
 AHEAD = (0.6, 0.0, 1.0)
 BALL = ball("ball", AHEAD, 0.05)
+HARDLY = "hardly observed"
 FACING_BACK = SE3.from_xyz_rpy(AHEAD, (np.pi / 2, 0, -np.pi / 2))
 """A card ahead of the camera, turned towards it, upright."""
 
@@ -195,3 +197,40 @@ def test_a_picture_of_earlier_says_nothing_of_the_end():
 def test_impossible_words_are_refused(words, message):
     with pytest.raises(ValidationError, match=message):
         Sees(camera="eye", **words)
+
+
+@pytest.mark.parametrize(
+    ("opacity", "status"), [(0.0, "failed"), (0.09, "failed"), (0.1, "passed")]
+)
+def test_what_hardly_differs_from_the_background_is_not_seen(opacity, status):
+    faint = ball("ball", AHEAD, 0.05, rgba=(1.0, 0.0, 0.0, opacity))
+    run, objects = run_with([eye()], [faint])
+    run = replace(run, objects=(ObjectRecord.of(faint, ((0.0, 1.0),), None),))
+    answer = verdict(run, objects, Sees(camera="eye", object="ball"))
+    assert answer.status == status
+    assert (f"opacity is {opacity:g}" in answer.reason) == (status == "failed")
+
+
+@pytest.mark.parametrize(
+    ("rate", "samples", "names"),
+    [
+        (0.4, 200, ["hardly observed"]),
+        (5.0, 200, []),
+        (0.4, 21, []),
+        (0.4, 22, ["hardly observed"]),
+    ],
+)
+def test_few_pictures_of_a_long_time_are_warned_of(rate, samples, names):
+    run, objects = run_with([eye(update_rate=rate)], [BALL], n=samples)
+    answer = verdict(run, objects, Always(predicate=Sees(camera="eye", object="ball")))
+    assert answer.status == "passed"
+    assert [warning.name for warning in answer.warnings] == names
+
+
+@pytest.mark.parametrize(("y", "names"), [(0.0, None), (0.42, ["partly seen"]), (0.6, [])])
+def test_never_warns_of_what_is_partly_in_the_picture(y, names):
+    thing = ball("ball", (0.6, y, 1.0), 0.15)
+    run, objects = run_with([eye()], [thing], n=10)
+    answer = verdict(run, objects, Never(predicate=Sees(camera="eye", object="ball")))
+    assert answer.status == ("failed" if names is None else "passed")
+    assert [warning.name for warning in answer.warnings] == (names or [])

@@ -18,6 +18,28 @@ STEPS = (
 )
 
 
+def test_what_a_step_puts_somewhere_shows_in_the_sample_after_it():
+    """The step begins with it, a step that it is part of ends with it, a later one begins there."""
+    put = {"result": {"moved": ["box"]}}
+    steps = (
+        step("wait", 0, 11, path="steps[0]"),
+        step("before", 10, 11, path="steps[1]"),
+        step("all", 10, 11, "sequence", path="steps[2]"),
+        step("put", 10, 11, "move_object", path="steps[2].steps[0]", **put),
+        step("after", 10, 11, path="steps[3]"),
+        step("move", 10, 21, path="steps[4]"),
+        step("last", 59, 60, "move_object", path="steps[5]", **put),
+    )
+    run = make_run(60, steps=steps)
+    windows = {name: window_of(run, name) for name in ("wait", "before", "all", "put", "after")}
+    assert {name: (window.start, window.stop) for name, window in windows.items()} == {
+        "wait": (0, 11), "before": (10, 11), "all": (10, 12), "put": (11, 12), "after": (11, 12)
+    }  # fmt: skip
+    assert (window_of(run, "move").start, window_of(run, "move").stop) == (11, 21)
+    with pytest.raises(NotReached, match="nothing was recorded"):
+        window_of(run, "last")
+
+
 def test_a_window_is_that_of_a_step_by_name_or_path_or_the_whole_run():
     run = make_run(60, steps=STEPS)
     for name in ("go", "steps[0]"):

@@ -11,7 +11,7 @@ import pytest
 
 from harness.ros.control.cell import ExternalCell
 from harness.ros.domain import free_domain
-from harness.ros.replay import replay
+from harness.ros.handover import replay
 from tests.ros.bridging import scenario
 from tests.ros.nodes import Node, follow, point
 

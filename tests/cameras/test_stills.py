@@ -10,8 +10,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from harness.cameras.camera_scene import scene_poses
 from harness.cameras.picture_model import build_picture_model
-from harness.cameras.recorded_scene import scene_poses
 from harness.cameras.renderer import make_renderer
 from harness.cameras.stills import draw_stills, overview
 from harness.cameras.viewpoint import fit_viewpoint

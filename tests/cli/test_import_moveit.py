@@ -3,10 +3,12 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
+from harness.robot.mesh_file import read_triangles
 from harness.session.check import check_file
 from harness.session.prepare import prepare
 from tests.robot.arm_files import write_arm
@@ -117,6 +119,22 @@ def test_a_scene_and_its_request_become_a_scenario_that_runs(folder, capsys, sce
     assert main(["run", "--no-report", "--in-process", str(file)]) == 0, capsys.readouterr().out
 
 
+def test_cones_and_planes_of_a_scene_are_imported(folder):
+    cone = LISTS.replace("type: cylinder", "type: 4")
+    floor = """
+    - id: floor
+      planes: [{coef: [0, 0, 2, 1]}]
+      plane_poses: [{position: [0, 0, 0.1], orientation: [0, 0, 0, 1]}]
+"""
+    assert convert("scene1.yaml", "request1.yaml", scene1=cone + floor, request1=REQUEST) == 0
+    program = prepare(folder / "scenarios/request1.scenario.yaml").program
+    shelf, ground = program.world.objects
+    corners = read_triangles(shelf.shapes[1].geometry).vertices
+    assert np.ptp(corners, axis=0) == pytest.approx([0.06, 0.06, 0.14])
+    assert (corners[:, 2] > 0.069).sum() == 1
+    assert ground.shapes[0].pose.translation == pytest.approx([0, 0, -0.4])
+
+
 def test_the_start_of_the_scene_is_taken_where_the_request_has_none(folder):
     text = REQUEST[: REQUEST.index("start_state")] + REQUEST[REQUEST.index("goal_") :]
     assert convert("s.yaml", "r.yaml", s=LISTS, r=text) == 0
@@ -169,7 +187,7 @@ def test_an_orientation_makes_a_pose_and_several_goals_are_alternatives(folder):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("reach], position: [0.4", "rich], position: [0.4", "'arm' has no joint 'rich'"),
+        ("reach], position: [0.4", "rich], position: [0.4", "'three' has no joint 'rich'"),
         ("position: 1.0", "position: fast", "expected a number, found 'fast'"),
         ("joint_constraints: []", "joint_constraints: [1]", "`path_constraints` is not imported"),
         ("  - joint_constraints:", "  - visibility_constraints:", "a goal is joint positions, or"),

@@ -1,5 +1,6 @@
 """`harness new --robot`: a scenario for whatever robot, which then passes."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -80,6 +81,25 @@ def test_a_gripper_without_an_srdf_gets_a_pick_that_passes(capsys, folder, urdf)
     assert code == 0, said
 
 
+def test_what_is_in_reach_on_the_floor_alone_is_picked_there(capsys, folder):
+    """The wrist bends by 66 degrees, so that the hand points down only near the floor."""
+    wrist = 'name="e_joint"(.*?)lower="-3" upper="3"'
+    bends = re.sub(wrist, r'name="e_joint"\1lower="-1.15" upper="1.15"', SIX, count=1)
+    assert bends != SIX
+    write_arm(folder, bends, SIX_SRDF)
+    scenario = new("arm.urdf", "--srdf", "arm.srdf")
+    assert (scenario.steps[0].verb, [each.name for each in scenario.objects]) == ("pick", ["box"])
+    assert "it was run once and passed" in capsys.readouterr().out
+
+
+def test_the_box_is_as_heavy_as_the_fingers_can_hold(capsys, folder):
+    weak = SIX.replace('effort="40"', 'effort="1.5"')
+    assert weak != SIX
+    write_arm(folder, weak, SIX_SRDF)
+    assert new("arm.urdf", "--srdf", "arm.srdf").objects[1].mass == 0.02
+    assert "it was run once and passed" in capsys.readouterr().out
+
+
 def test_a_hand_that_does_not_close_is_named(capsys, folder):
     still = JAW.replace("0 1 0", "0 0 1")
     assert still != JAW
@@ -88,7 +108,7 @@ def test_a_hand_that_does_not_close_is_named(capsys, folder):
     assert "no pick: 'gripper' is not used as a gripper: the gap" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("seconds", "tried"), [(0, "none of 1 picks"), (600, "none of 9 picks")])
+@pytest.mark.parametrize(("seconds", "tried"), [(0, "none of 1 picks"), (600, "none of 19 picks")])
 def test_no_pick_is_tried_after_its_time(tmp_path, capsys, monkeypatch, seconds, tried):
     def trouble(text, candidate):
         return ("out of reach", False) if "pick:" in text else _trouble(text, candidate)

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from harness.recording.explanation import recorded_explanation
 from tests.engine.front_door import UR, check, failures, problems, run
 
 OM = "open_manipulator_x"
@@ -23,7 +24,11 @@ def objects(*lines):
 
 
 def advice(record, path="steps[0]"):
-    return next(step for step in record.steps if step.path == path).explanation.get("advice", "")
+    return (
+        next(step for step in record.steps if step.path == path)
+        .explanation.plain()
+        .get("advice", "")
+    )
 
 
 @pytest.mark.parametrize(
@@ -124,6 +129,15 @@ def test_advice_for_a_pick_names_keys_that_it_has(tmp_path, step, words):
     assert words in advice(record)
     keys = re.findall(r"`(\w+)", advice(record))
     assert set(keys) <= {"grasp_pose", "pitch", "approach", "distance", "direction", "base"}
+
+
+@pytest.mark.parametrize(
+    ("pitch", "words"), [("10 deg", "10° below the horizontal"), ("90 deg", "straight down")]
+)
+def test_a_pick_out_of_reach_says_how_it_approaches(tmp_path, pitch, words):
+    step = f"- pick: {{object: far, pitch: {pitch}}}"
+    _, record = run(tmp_path, step, robot=OM, rest=objects(cube("far", 4, 0.6, 0.2)))
+    assert record.steps[0].message.endswith(f", approached {words}")
 
 
 @pytest.mark.parametrize("robot", [OM, UR5E])
@@ -241,7 +255,7 @@ def test_a_load_too_heavy_to_hold_still_is_reported_with_torques(tmp_path):
         r"cannot hold heavy \(30 kg\) still .* needs [0-9.]+ N m and has at most 150.0 N m",
         lift.message,
     )
-    assert "no slower motion helps" in lift.explanation["advice"]
+    assert "no slower motion helps" in recorded_explanation(lift.explanation).advice
 
 
 def test_nothing_is_put_down_where_the_gripper_cannot_open(tmp_path):

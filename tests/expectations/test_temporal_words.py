@@ -78,6 +78,34 @@ def test_a_deadline_counts_from_the_window_s_start():
     assert verdict(run, Lifted(object="box", above=0.05, within=0.5), "lift").status == "passed"
 
 
+@pytest.mark.parametrize(
+    ("touching", "words", "status"),
+    [
+        (slice(140, 200), {"for": 1.0}, "not reached"),  # 0.6 s so far
+        (slice(130, 190), {"for": 1.0}, "passed"),
+        (slice(199, 200), {"for": 0.1}, "not reached"),
+        (slice(90, 200), {"for": 1.0}, "failed"),
+        (slice(0, 0), {"within": 2.5}, "not reached"),
+        (slice(0, 0), {"within": 1.99}, "passed"),
+        (slice(150, 200), {"within": 1.0}, "passed"),
+        (slice(95, 200), {"within": 1.0, "for": 1.2}, "not reached"),
+        (slice(105, 200), {"within": 1.0, "for": 1.2}, "passed"),
+        (slice(100, 200), {}, "failed"),
+    ],
+)
+def test_never_is_decided_only_where_its_time_has_passed(touching, words, status):
+    """Its formula says the same of each of these runs."""
+    forces = np.zeros(200)
+    forces[touching] = 3.0
+    run = make_run(contact_forces={("arm_link", "box"): forces})
+    spec = Never(predicate=InContact(between=("robot", "box")), **words)
+    assert verdict(run, spec).status == status
+    within = f"[0, {words['within']}]" if "within" in words else ""
+    hold = f"always[0, {words['for']}] " if "for" in words else ""
+    formula = f"not eventually{within} {hold}force(robot, box) > 0.1"
+    assert verdict(run, Formula(formula=formula)).status == status
+
+
 def test_words_inside_and_outside_a_temporal_word_both_count():
     run = lift_run()  # at 50 mm from 1.25 s on: 0.74 s
     inner = Lifted(object="box", above=0.05, **{"for": 0.8})

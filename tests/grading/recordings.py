@@ -15,8 +15,14 @@ from mcap.writer import CompressionType
 from mcap_ros2.writer import Writer
 from rosbags.typesys import Stores, get_typestore
 
+from harness.core.resources import data_folder
+from harness.grading.bag.content import BagTopics
+
 STORE = get_typestore(Stores.ROS2_JAZZY)
 POSES = "/world/default/dynamic_pose/info"
+SCENARIO = data_folder("scenarios") / "grading/pick_and_place.scenario.yaml"
+GAZEBO = BagTopics(objects=(POSES,))
+NEEDS_CONTACTS = ("grasped",)
 GAZEBO_STARTED = 123.4
 """Simulated time at which the recording begins [s]."""
 WALL_CLOCK = 1_700_000_000.0
@@ -138,3 +144,12 @@ def students_recording(run, rate=50.0):
         ]
         recording.add(POSES, "tf2_msgs/msg/TFMessage", time, {"transforms": moved})
     return recording
+
+
+def statuses(grade):
+    return {row.verdict.expectation: row.verdict.status for row in grade.rows}
+
+
+def status_of(grade, word):
+    [status] = [value for key, value in statuses(grade).items() if word in key]
+    return status

@@ -1,7 +1,7 @@
 """A correct solver, and ways to break it."""
 
 from docs import ROOT
-from harness.iktest.find_function import find_function
+from harness.iktest.worker import find_function
 
 EXAMPLES = ROOT / "scenarios/ik_test"
 OM = "open_manipulator_x"

@@ -17,7 +17,7 @@ from harness.iktest.contract import (
     parameter_words,
     task_of_parameters,
 )
-from harness.iktest.find_function import find_function
+from harness.iktest.worker import find_function
 
 TARGET = SE3(rotation_from_rpy((0.3, -0.2, 1.1)), np.array([0.3, -0.1, 0.2]))
 

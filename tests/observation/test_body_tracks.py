@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from harness.core.geometry import Box, Cylinder, Shape, Sphere
+from harness.core.geometry import Box, Cylinder, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.observation.body_tracks import (
     BodyTrack,
+    MovingBody,
     carried_track,
     centers_of,
     links_with_shapes,
@@ -164,8 +165,13 @@ def pairs(seed, step, apart=0.5, cutoff=np.inf):
     poses = random_poses(seed, 120, step)
     poses[:, 0] += apart
     seen = track_of_poses(poses)
-    bodies = tracked_shapes("a", SHAPES), tracked_shapes("b", SHAPES[::-1])
-    return pairs_between(*bodies, seen, cutoff)
+    first = MovingBody(tracked_shapes("a", SHAPES), seen)
+    return pairs_between([first], standing(tracked_shapes("b", SHAPES[::-1]), 120), cutoff)
+
+
+def standing(shapes, count):
+    """A body at the origin."""
+    return MovingBody(shapes, BodyTrack(np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))))
 
 
 @pytest.mark.parametrize(("seed", "step"), [(1, 0.02), (2, 0.002), (3, 0.05), (4, 0.0)])
@@ -211,8 +217,26 @@ def test_the_largest_travel_is_that_of_the_pairs_that_may_come_near():
     ]
     expected = np.where(near, steps, 0.0).max(axis=0)
     assert largest_travel(found, 0.2, 120)[1:] == pytest.approx(expected)
-    still = BodyTrack(np.tile(np.eye(3), (2, 1, 1)), np.ones((2, 3)))
-    assert pairs_between((), tracked_shapes("b", SHAPES), still) == []
+
+
+def test_no_point_of_a_body_moves_further_than_its_bound():
+    body = MovingBody(tracked_shapes("body", SHAPES), track_of_poses(random_poses(7)))
+    for shape in body.shapes:
+        for side in np.vstack([np.eye(3), -np.eye(3)]) * shape.radius:
+            places = applied(body.track, shape.center + side)
+            path = np.linalg.norm(np.diff(places, axis=0), axis=1)
+            assert (np.diff(body.travelled) >= path - 1e-9).all()
+
+
+def test_nothing_is_too_far_from_a_half_space_to_be_measured():
+    floor = standing(tracked_shapes("floor", (Shape(Plane()),)), 40)
+    poses = random_poses(9, 40, 0.01)
+    poses[:, 2] += 0.3
+    ball = track_of_poses(poses)
+    [pair] = pairs_between([MovingBody(tracked_shapes("ball", SHAPES[1:2]), ball)], floor, 1.0)
+    distances, _ = smallest_distances([pair], 1.0, 40)
+    heights = applied(ball, pair.first.center)[:, 2]
+    assert distances == pytest.approx(heights - 0.05, abs=2e-6)
 
 
 @pytest.mark.parametrize("length", [40, 1200])
@@ -224,7 +248,8 @@ def test_a_body_that_comes_near_while_the_nearest_one_stands_still_is_found(leng
     still[:, 0], passing[:, 1] = 0.12, 0.07
     passing[:, 0] = np.linspace(-1.0, 1.0, length)
     found = [
-        pairs_between(ball, ball, track_of_poses(poses), np.inf)[0] for poses in (still, passing)
+        pairs_between([MovingBody(ball, track_of_poses(poses))], standing(ball, length))[0]
+        for poses in (still, passing)
     ]
     expected = np.minimum(0.1, np.linalg.norm(passing[:, :3], axis=1) - 0.02)
     for order in (found, found[::-1]):

@@ -5,15 +5,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from harness.core.spatial import SE3
 from harness.observation.couplings import coupling_findings
+from harness.robot.description import Joint, Mimic
 from tests.assertions.synthetic_run import changed, make_run
 
 N = 10
 
 
 def joint(name, kind, follows=None, multiplier=1.0, offset=0.0):
-    mimic = SimpleNamespace(joint=follows, multiplier=multiplier, offset=offset)
-    return SimpleNamespace(name=name, kind=kind, mimic=mimic if follows else None)
+    mimic = Mimic(follows, multiplier, offset) if follows else None
+    return Joint(name, kind, "hand", name, SE3.identity(), np.array([1.0, 0, 0]), mimic=mimic)
 
 
 JOINTS = (

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from harness.core.spatial import pitch_of
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.numeric import (
     MOST_RESTARTS,
     RESTARTS,
     LinkTask,
-    pitch_of,
     sample_group_positions,
 )
 from harness.planning.ik.numeric import solve_numeric as solve

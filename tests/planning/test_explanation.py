@@ -42,7 +42,7 @@ def explained(call, *args):
 
 
 def stage(error, name):
-    return {stage.stage: stage for stage in recorded_explanation(error.facts).stages}[name]
+    return {stage.stage: stage for stage in recorded_explanation(error.details).stages}[name]
 
 
 @pytest.mark.parametrize(
@@ -272,5 +272,5 @@ def test_a_motion_without_a_goal_of_its_own_is_explained_by_keywords():
             )
         )
     )
-    assert recorded_explanation(error.facts).stages[0].stage == "start state"
+    assert recorded_explanation(error.details).stages[0].stage == "start state"
     assert stage(error, "path").status == "failed"

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.core.spatial import pitch_of
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.numeric import pitch_of
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import load_robot
 from tests.planning.ik_success import ARMS, ATTEMPTS, KINDS, PAGE, POSES, measure

@@ -13,6 +13,7 @@ from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion, JointMotion
+from harness.recording.plan_statistics import PlanStatistics
 from tests.planning.lesson import (
     ARM,
     FIRST_BOXES,
@@ -78,7 +79,7 @@ def test_the_motions_of_the_lesson_are_planned_and_hold(model):
             )
         )
         end = check_motion(cell, plan, padding)
-        planners[name] = plan.statistics["planner_id"]
+        planners[name] = plan.statistics.find(PlanStatistics).planner_id
         if isinstance(goal, PoseGoal):
             shift, angle = goal.pose.distance_to(cell.kinematics.link_pose(end, TCP))
             assert max(shift, angle) < 1e-6
@@ -94,8 +95,11 @@ def test_without_the_boxes_the_way_is_another():
     free = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), options))
     cell.add(boxes(*FIRST_BOXES))
     around = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), options))
-    assert free.statistics["planner_id"] == "straight line"
-    assert around.statistics["path_length"] > free.statistics["path_length"]
+    assert free.statistics.find(PlanStatistics).planner_id == "straight line"
+    assert (
+        around.statistics.find(PlanStatistics).path_length
+        > free.statistics.find(PlanStatistics).path_length
+    )
 
 
 def test_the_same_plan_comes_out_whatever_was_planned_before():
@@ -130,10 +134,10 @@ def test_another_seed_gives_another_path():
                 ARM, cell.state, FreeMotion(JointGoal(cell.named("up"))), PlanningOptions(seed=seed)
             )
         )
-        lengths.add(plan.statistics["raw_path_length"])
-        raw = np.array(plan.statistics["raw_path"])
+        lengths.add(plan.statistics.find(PlanStatistics).raw_path_length)
+        raw = np.array(plan.statistics.find(PlanStatistics).raw_path)
         assert np.linalg.norm(np.diff(raw, axis=0), axis=1).sum() == pytest.approx(
-            plan.statistics["raw_path_length"]
+            plan.statistics.find(PlanStatistics).raw_path_length
         )
     assert len(lengths) > 1
 
@@ -388,8 +392,11 @@ def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
         for checks in (200_000, 1)
     )
     assert np.allclose(ample.trajectory.positions[-1], branches[0], atol=1e-9)
-    assert scarce.statistics["planner_id"] == "straight line"
-    assert scarce.statistics["state_checks"] < ample.statistics["state_checks"]
+    assert scarce.statistics.find(PlanStatistics).planner_id == "straight line"
+    assert (
+        scarce.statistics.find(PlanStatistics).state_checks
+        < ample.statistics.find(PlanStatistics).state_checks
+    )
 
 
 def test_a_planner_that_is_not_there_is_reported_where_a_straight_way_is_free_too():

@@ -17,6 +17,7 @@ from harness.ports.goals import (
 )
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion
+from harness.recording.plan_statistics import PlanStatistics
 from tests.planning.lesson import ARM, TCP, Cell, at, grasp_goal, thing, ur
 
 OPTIONS = PlanningOptions(seed=3)
@@ -97,7 +98,7 @@ def test_the_same_seed_gives_the_same_constrained_plan(cell):
         cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(beyond(cell), held), OPTIONS))
         for _ in range(2)
     )
-    assert first.statistics["planner_id"] == "RRTConnect, projected"
+    assert first.statistics.find(PlanStatistics).planner_id == "RRTConnect, projected"
     assert first.trajectory.positions.tobytes() == second.trajectory.positions.tobytes()
 
 
@@ -186,6 +187,9 @@ def test_free_about_an_axis_the_arm_turns_less(cell):
     )
     free = PoseGoal(TCP, goal, 1e-3, 4.0, tuple(tolerances))
     loose = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(free), OPTIONS))
-    assert loose.statistics["path_length"] < 0.5 * tight.statistics["path_length"]
+    assert (
+        loose.statistics.find(PlanStatistics).path_length
+        < 0.5 * tight.statistics.find(PlanStatistics).path_length
+    )
     end = cell.kinematics.link_pose(cell.with_arm(loose.trajectory.positions[-1]), TCP)
     assert tilt(pose, end, axis) < 0.01

@@ -20,6 +20,7 @@ from harness.ports.motions import (
     SequenceItem,
     WaypointMotion,
 )
+from harness.recording.plan_statistics import WayStatistics
 from tests.planning.lesson import ARM, TCP, Cell, grasp_goal, open_manipulator, ur
 
 HALF = PlanningOptions(velocity_scaling=0.5, acceleration_scaling=0.5)
@@ -259,7 +260,7 @@ def test_a_line_by_a_singularity_is_slowed_or_refused_without_a_spike(kind, seed
     joints = [cell.description.joint_by_name[name] for name in trajectory.joint_names]
     by_differences = np.diff(trajectory.positions, axis=0) / np.diff(trajectory.times)[:, None]
     assert np.all(np.abs(by_differences) <= [joint.velocity * 1.001 for joint in joints])
-    assert outcome.statistics["position_deviation"] < 1e-4
+    assert outcome.statistics.find(WayStatistics).position_deviation < 1e-4
 
 
 def attempt(cell, goal):

@@ -99,19 +99,22 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     assert verbs["remark"]["description"].startswith("Write a sentence")
     pause = schema["$defs"]["Remark"]["anyOf"][0]["properties"]["pause"]
     assert pause["description"] == "The step takes this long [s]. The unit is s (as text: s, ms)."
-    assert said("check", "remarks.scenario.yaml") == "remarks.scenario.yaml: ok\n"
     explained = said("explain", "remarks.scenario.yaml")
     assert re.search(r"5  remark the arm stands where it starts  \[seed \d+\]", explained)
     assert "jog joint1 by 0.174533 rad" in explained
-    wrong = folder / "wrong.scenario.yaml"
-    wrong.write_text(SCENARIO.replace("about: red_box", "abuot: red_box").replace("40 ms", "4 m"))
-    problems = said("check", "wrong.scenario.yaml", code=2)
-    assert "wrong.scenario.yaml:11:33: unknown key `abuot` in `remark`" in problems
+    wrong = {
+        "words": SCENARIO.replace("about: red_box", "abuot: red_box").replace("40 ms", "4 m"),
+        "names": SCENARIO.replace("red_box", "red_bax").replace("joint1", "joint9"),
+    }
+    for name, text in wrong.items():
+        (folder / f"{name}.scenario.yaml").write_text(text)
+    files = [f"{name}.scenario.yaml" for name in ("remarks", *wrong)]
+    problems = said("check", *files, code=2)
+    assert "remarks.scenario.yaml: ok\n" in problems
+    assert "words.scenario.yaml:11:33: unknown key `abuot` in `remark`" in problems
     assert "`4 m` is a length; a time is expected" in problems
-    wrong.write_text(SCENARIO.replace("red_box", "red_bax").replace("joint1", "joint9"))
-    problems = said("check", "wrong.scenario.yaml", code=2)
-    assert "11:40: there is no object 'red_bax'" in problems
-    assert "13:22: there is no joint 'joint9'" in problems
+    assert "names.scenario.yaml:11:40: there is no object 'red_bax'" in problems
+    assert "names.scenario.yaml:13:22: there is no joint 'joint9'" in problems
 
 
 def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):

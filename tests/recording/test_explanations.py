@@ -14,11 +14,12 @@ from harness.recording.explanation import (
     LoweredMargins,
     NearestState,
     Stage,
-    lowered_margins_of,
     recorded_explanation,
 )
 from harness.recording.goal_failures import CollisionFailure, IkFailure, TouchRecord
 from harness.recording.motion_failures import SearchFailure
+from harness.recording.plan_statistics import PlanStatistics
+from harness.recording.step_results import SavedDetails
 
 TOUCH = TouchRecord(("wrist_3_link", "Table"), -0.004)
 STAGES = (
@@ -32,6 +33,11 @@ NEAREST = NearestState(
     touches=(TOUCH,),
     nearest_free=FreeShift((0.0, 0.0, 0.05), {"elbow_joint": 0.4}),
 )
+
+
+def saved(detail):
+    """The details of a step whose run was saved."""
+    return SavedDetails(saved=json.loads(json.dumps(detail.plain())))
 
 
 def test_a_failure_finds_its_details_by_type_and_writes_them_as_one_mapping():
@@ -58,19 +64,24 @@ def test_later_details_replace_the_values_of_earlier_ones_and_leave_the_rest():
     "explanation", [Explanation(STAGES, NEAREST, "move it", "images/1.jpg"), Explanation()]
 )
 def test_an_explanation_is_read_back_from_its_json(explanation):
-    assert recorded_explanation(json.loads(json.dumps(explanation.plain()))) == explanation
+    assert recorded_explanation(saved(explanation)) == explanation
 
 
 def test_what_does_not_fit_is_left_out_of_an_explanation():
     plain = Explanation(STAGES, NEAREST, "move it").plain()
     plain["nearest"]["joint_positions"] = [1.0, 2.0]
-    assert recorded_explanation(plain) == replace(
+    assert recorded_explanation(SavedDetails(saved=plain)) == replace(
         Explanation(STAGES, NEAREST, "move it"), nearest=None
     )
 
 
 def test_lowered_margins_are_read_back_and_empty_where_no_motion_was_planned():
     margin = LoweredMargin(("cube", "Table"), 0.0, -0.0005)
-    plain = LoweredMargins((margin,)).plain()
-    assert lowered_margins_of(json.loads(json.dumps(plain))) == (margin,)
-    assert lowered_margins_of({}) == ()
+    assert saved(LoweredMargins((margin,))).find(LoweredMargins).lowered_margins == (margin,)
+    assert SavedDetails().find(LoweredMargins) is None
+
+
+def test_a_detail_is_added_to_those_of_a_saved_run():
+    drawn = saved(Explanation(STAGES, NEAREST)) + Details.of(Explanation(picture="images/1.jpg"))
+    assert drawn.find(Explanation) == Explanation(STAGES, NEAREST, None, "images/1.jpg")
+    assert drawn.find(PlanStatistics) is None

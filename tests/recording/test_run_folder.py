@@ -29,7 +29,7 @@ from harness.recording.read_run import read_run
 from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Finding
 from harness.recording.signals import CaptureRecord, VideoRecord
-from harness.recording.step_results import SavedResult
+from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import StoredRun
 from harness.recording.write_run import write_run
 from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
@@ -62,8 +62,10 @@ def full_run():
         trajectory=JointTrajectory(
             ("shoulder",), times, np.array([[0.1], [1 / 3]]), *np.zeros((2, 2, 1))
         ),
-        planner={"checks": 12, "length": float("inf"), "note": None},
-        explanation={"solutions": [{"positions": [0.1, float("nan")], "pair": ["a", "b"]}]},
+        planner=SavedDetails(saved={"checks": 12, "length": float("inf"), "note": None}),
+        explanation=SavedDetails(
+            saved={"solutions": [{"positions": [0.1, float("nan")], "pair": ["a", "b"]}]}
+        ),
         result=SavedResult(verb=first.verb, saved={"stalled": True}),
         expected_error="GOAL_IN_COLLISION",
     )

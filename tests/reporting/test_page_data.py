@@ -21,9 +21,9 @@ from harness.recording.verdict import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.groups import groups_of
 from harness.reporting.html.packing import Packer, thin
-from harness.reporting.html.page import page_html
 from harness.reporting.html.scene import pack_mesh
 from harness.reporting.html.story import last_line, ordered_steps
+from harness.reporting.html.write import page_html
 from tests.assertions.synthetic_run import at, lift_run, make_run, step, thing
 
 VALUES = st.one_of(st.just(float("nan")), st.floats(-1e6, 1e6))

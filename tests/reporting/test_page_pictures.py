@@ -12,7 +12,7 @@ from harness.core.geometry import Box, Shape
 from harness.recording.film import encoded_film
 from harness.recording.signals import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.stored_run import StoredRun
-from harness.reporting.html.page import page_html
+from harness.reporting.html.write import page_html
 from harness.reporting.terminal import failure_place
 from tests.assertions.synthetic_run import (
     BOX,

@@ -138,7 +138,7 @@ URDF_ROWS = (
         )
     ),
     ignored("`<visual>` with another mesh", "is not drawn, reported", SHAPE,
-             SHAPE + VISUAL.format(MESH.format("part.3ds")), "'part.3ds' is not drawn"),
+             SHAPE + VISUAL.format(MESH.format("part.3ds")), "'part.3ds' is not a"),
     refused("`<collision>` with another mesh", "", CYLINDER, MESH.format("part.3ds"),
              "not a STL, OBJ, DAE, PLY or GLB file"),
     refused("any other shape", "", CYLINDER, '<cone radius="1"/>', "unknown geometry <cone>"),

@@ -9,6 +9,7 @@ from functools import cache
 import coal
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial import ConvexHull
 
 from harness.core.errors import RobotError
@@ -103,6 +104,15 @@ def test_a_bin_is_its_floor_and_its_walls():
 def test_a_convex_mesh_is_one_part_without_error():
     found = decompose(box_triangles())
     assert (len(found.parts), found.excess, found.hull_excess) == (1, 0.0, 0.0)
+
+
+def test_corners_that_hardly_stand_out_of_a_fine_mesh_are_left_out():
+    ball = trimesh.creation.icosphere(subdivisions=5, radius=0.01)
+    [part] = decompose(np.asarray(ball.triangles)).parts
+    faces = ConvexHull(part).equations
+    heights = (np.asarray(ball.vertices) @ faces[:, :3].T + faces[:, 3]).max(axis=1)
+    assert len(part) < 0.3 * len(ball.vertices)
+    assert heights.max() <= 2e-5
 
 
 def test_another_process_finds_the_same_parts(tmp_path):
@@ -220,6 +230,9 @@ def test_a_missing_visual_mesh_is_a_note(tmp_path):
     for name in ("gone.stl", "package://gone/a.stl"):
         [note] = [each for each in arm_with(tmp_path, visual.format(name)).notes if name in each]
         assert note.startswith("link 'upper': the visual is not drawn: ")
+    several = "".join(visual.format(f"gone_{number}.stl") for number in range(13))
+    [note] = [each for each in arm_with(tmp_path, several).notes if "gone" in each]
+    assert note.startswith("13 visuals are not drawn, of upper; the first: 'gone_0.stl'")
 
 
 def test_a_robots_folder_says_how_its_links_collide_unless_the_scenario_does(tmp_path):

@@ -37,7 +37,7 @@ def fingers(parent, *, mimic=False):
 def test_urdf_and_srdf_make_a_robot(tmp_path):
     write_arm(tmp_path)
     arm = load_arm(tmp_path)
-    assert (arm.name, arm.arm_group, arm.tcp_link) == ("arm", "manipulator", "tool")
+    assert (arm.name, arm.arm_group, arm.tcp_link) == ("three", "manipulator", "tool")
     assert arm.groups["manipulator"].joint_names == ("turn", "bend", "reach")
     assert arm.start_state == {"turn": 0.1, "bend": 0.7, "reach": 0.05}
     assert [joint.kind for joint in arm.movable_joints] == ["continuous", "revolute", "prismatic"]

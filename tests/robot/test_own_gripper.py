@@ -18,6 +18,8 @@ from harness.robot.load import load_robot
 from harness.robot_tools.robot_check import check_robot
 from harness.robot_tools.robot_findings import states
 from tests.engine.front_door import check, run
+from tests.planning.seven_joints import SRDF as SEVEN_SRDF
+from tests.planning.seven_joints import seven_joint_urdf
 from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
 
 PALM = f"""  <link name="palm">{INERTIAL}</link>
@@ -450,6 +452,23 @@ def test_an_arm_of_five_joints_puts_down_what_its_jaw_took(tmp_path):
     result, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}", rest=rest)
     assert result.outcome == "passed", [step.message for step in result.steps]
     assert saved.signals.object_poses["block"][-1, :2] == pytest.approx([0, 0.3], abs=0.01)
+
+
+def test_the_posture_before_a_grasp_is_one_from_which_the_arm_can_approach(tmp_path):
+    """The nearest posture that reaches the pose ends at a joint limit half way down."""
+    srdf = SEVEN_SRDF.replace('"arm"', '"manipulator"').replace("</robot>", GROUP + "</robot>")
+    write_arm(tmp_path, seven_joint_urdf().replace("</robot>", HAND + "</robot>"), srdf)
+    rest = """
+        seed: 3
+        objects:
+          - name: cube
+            pose: {xyz: [0.3, -0.25, 0.03]}
+            box: {size: [0.03, 0.03, 0.06]}
+            mass: 0.05
+    """
+    pick = "- pick: {object: cube, lift: {distance: 5 cm}}"
+    result, _ = run(tmp_path, pick, robot="{urdf: arm.urdf, srdf: arm.srdf}", rest=rest)
+    assert result.outcome == "passed", [step.message for step in result.steps]
 
 
 def test_a_line_of_five_joints_keeps_the_gripper_upright(tmp_path):

@@ -4,9 +4,10 @@ import time
 
 import numpy as np
 
-from harness.ros.action_client import ActionClient
+from harness.reporting.rosbag.messages import message
+from harness.ros.actions import ActionClient
 from harness.ros.graph import spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, message
+from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.ros.rtps.graph import RtpsGraph
 
 ARM = ("joint1", "joint2", "joint3", "joint4")

@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from harness.ros.action_server import Status
+from harness.ros.actions import Status
 from harness.ros.control.goals import Code
+from harness.ros.handover import replay
 from harness.ros.interfaces import TRAJECTORY
-from harness.ros.replay import replay
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 

@@ -8,8 +8,7 @@ from harness.core.spatial import SE3
 from harness.robot.description import Joint
 from harness.ros.control.controller import Command, Window
 from harness.ros.control.goals import Code, Defaults, GoalRefused
-from harness.ros.control.spline import Spline
-from harness.ros.control.trajectory import start_trajectory
+from harness.ros.control.trajectory import Spline, start_trajectory
 
 JOINTS = [
     Joint(name, "revolute", "a", "b", SE3.identity(), np.array([0, 0, 1.0]), -2.0, 2.0)

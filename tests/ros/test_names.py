@@ -6,7 +6,7 @@ import pytest
 
 from harness.cli.main import main
 from harness.core.errors import SpecError
-from harness.ros.action_client import ActionClient
+from harness.ros.actions import ActionClient
 from harness.ros.bridge import BridgeRequest, run_bridge
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.ros.names import Use, unserved

@@ -12,9 +12,10 @@ import pytest
 
 import harness.ros.remote
 from harness.cli.main import main
-from harness.ros.action_server import ActionServer
+from harness.reporting.rosbag.messages import message
+from harness.ros.actions import ActionServer
 from harness.ros.domain import free_domain
-from harness.ros.interfaces import FOLLOW, message, stamp
+from harness.ros.interfaces import FOLLOW, stamp
 from harness.ros.rtps.graph import RtpsGraph
 from tests.ros.bridging import bridge, scenario
 

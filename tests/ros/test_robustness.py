@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import rosless
 
-from harness.ros.action_server import Status
+from harness.ros.actions import Status
 from harness.ros.interfaces import decoded, encoded
 from harness.ros.rtps import wire
 from harness.ros.rtps.discovery import Qos

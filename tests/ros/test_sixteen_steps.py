@@ -8,7 +8,7 @@ import pytest
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.recording.read_run import read_run
-from harness.ros.replay import replay
+from harness.ros.handover import replay
 from tests.ros.bridging import PYTHON, require_control_msgs
 from tests.running import run_case
 

@@ -4,9 +4,10 @@ import time
 
 import pytest
 
-from harness.ros.action_server import Status
+from harness.reporting.rosbag.messages import message
+from harness.ros.actions import Status
 from harness.ros.domain import free_domain
-from harness.ros.interfaces import CANCEL, message
+from harness.ros.interfaces import CANCEL
 from harness.ros.rtps.graph import RtpsGraph
 from tests.ros.bridging import bridge, scenario
 

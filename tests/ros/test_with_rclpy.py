@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.ros.replay import replay
+from harness.ros.handover import replay
 from tests.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
 
 pytestmark = pytest.mark.ros

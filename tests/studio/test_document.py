@@ -8,7 +8,7 @@ from harness.core.errors import SpecError
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from harness.studio.document import Document, flow, new_text
-from harness.studio.step_texts import gripper_steps
+from harness.studio.texts import gripper_steps
 
 TEXT = """\
 # a comment at the top

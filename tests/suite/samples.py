@@ -1,6 +1,6 @@
 """Outcomes of samples, counted."""
 
-from harness.suite.rates import Tally
+from harness.suite.sampling import Tally
 
 
 def rate_of(outcomes, at_least, confidence, *, stop_early, digests=None):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 from harness.reporting.sampled import SampledRate, missed, rate_line, rate_text
-from harness.suite.rates import Tally, decided, wilson_interval
+from harness.suite.sampling import Tally, decided, wilson_interval
 from tests.suite.samples import rate_of
 
 

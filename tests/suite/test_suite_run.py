@@ -130,6 +130,17 @@ def test_samples_that_vary_nothing_are_reported_and_their_rate_is_refused(varied
     assert "success rates not confirmed" in done.stdout
 
 
+def test_a_grid_that_varies_nothing_is_reported(tmp_path):
+    """A parameter that only a step's name reads, and one that a wait reads."""
+    text = "scenario: s\nrobot: open_manipulator_x\nparams: {x: 10 ms}\nsteps:\n  - {%s}\n"
+    text += "parametrize: {params.x: [10 ms, 20 ms]}\n"
+    (tmp_path / "same.scenario.yaml").write_text(text % 'wait: 10 ms, name: "waits ${x}"')
+    (tmp_path / "varied.scenario.yaml").write_text(text % 'wait: "${x}"')
+    said = harness("run", ".", "--no-report", cwd=tmp_path).stdout
+    assert "same.scenario.yaml: its 2 runs have equal digests" in said
+    assert "varied.scenario.yaml: its" not in said
+
+
 @pytest.mark.parametrize("line", ["parametrize: {seed: []}", "parametrize: {time: [], seed: [1]}"])
 def test_a_grid_without_values_is_an_error_of_its_file_in_a_suite(line, varied):
     path = varied()

@@ -155,10 +155,11 @@ def test_a_motion_that_is_refused_never_moves_the_arm(failed):
 def test_a_picture_shows_every_state_that_is_spoken_of(failed):
     _, run, folder = failed
     for step in run.steps:
-        if "nearest" in step.explanation:
-            joints = step.explanation["nearest"]["joint_positions"]
+        explanation = recorded_explanation(step.explanation)
+        if explanation.nearest is not None:
+            joints = explanation.nearest.joint_positions
             assert set(joints) == {joint.name for joint in run.robot.joints}
-            picture = cv2.imread(str(folder / step.explanation["picture"]))
+            picture = cv2.imread(str(folder / explanation.picture))
             assert picture.shape == (480, 640, 3)
             assert picture.std() > 10
 

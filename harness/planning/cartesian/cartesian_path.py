@@ -76,7 +76,7 @@ def plan_waypoints(
             result,
         )
     waypoints = np.concatenate([leg.positions for leg in legs])
-    statistics = task.statistics("cartesian_path", trajectory, waypoints)
+    statistics = Details.of(task.statistics("cartesian_path", trajectory, waypoints))
     return MotionPlan(trajectory, statistics, explanation, Details.of(result))
 
 

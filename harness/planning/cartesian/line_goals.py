@@ -7,10 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.numeric import pitch_of
 from harness.planning.ik.task import TILT_JOINTS
 from harness.planning.task import PlanningTask
 from harness.ports.goals import Goal, JointGoal, PoseGoal, PositionGoal

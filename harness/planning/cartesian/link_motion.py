@@ -32,6 +32,7 @@ from harness.ports.motions import ArcPoint
 from harness.recording.explanation import ArcResult, StraightResult
 from harness.recording.goal_failures import IkFailure
 from harness.recording.motion_failures import DeviationFailure, DistanceFailure, TraceFailure
+from harness.recording.plan_statistics import RateStatistics, WayStatistics
 from harness.recording.step_results import DistanceResult
 
 RELATIVE_STEP = 0.002
@@ -146,9 +147,11 @@ class LinkMotions:
         rates = LinkRates.of(task.options.cartesian_limits, task.options)
         trajectory = self.time(path, traced, rates)
         task.accept(trajectory, traced.positions[-1], f"the motion on the {path.name}")
-        statistics = task.statistics(kind, trajectory, traced.positions)
-        statistics |= self.check_path(path, trajectory)
-        statistics |= self.check_rates(path.link, trajectory, rates)
+        statistics = Details.of(
+            task.statistics(kind, trajectory, traced.positions),
+            self.check_path(path, trajectory),
+            self.check_rates(path.link, trajectory, rates),
+        )
         return MotionPlan(trajectory, statistics, explanation, result)
 
     def time(self, path: LinkPath, traced: Trace, rates: LinkRates) -> JointTrajectory:
@@ -165,7 +168,7 @@ class LinkMotions:
         except TimingError as problem:
             raise PlanningFailed("INVALID_MOTION_PLAN", str(problem), *problem.details) from problem
 
-    def check_path(self, path: LinkPath, trajectory: JointTrajectory) -> dict[str, float]:
+    def check_path(self, path: LinkPath, trajectory: JointTrajectory) -> WayStatistics:
         """How far a trajectory's link leaves its way.
 
         Raises:
@@ -184,11 +187,11 @@ class LinkMotions:
                 f"{turn:.5f} rad",
                 DeviationFailure(shift, turn),
             )
-        return {"position_deviation": shift, "orientation_deviation": turn}
+        return WayStatistics(shift, turn)
 
     def check_rates(
         self, link: str, trajectory: JointTrajectory, rates: LinkRates
-    ) -> dict[str, float]:
+    ) -> RateStatistics:
         """The link's largest speeds and acceleration on a trajectory.
 
         Raises:
@@ -202,11 +205,7 @@ class LinkMotions:
                 f"with {motion.acceleration:.4f} m/s^2 (at most {rates.acceleration:.4f}), turning "
                 f"at {motion.turning:.4f} rad/s (at most {rates.turning:.4f})",
             )
-        return {
-            "link_velocity": motion.velocity,
-            "link_acceleration": motion.acceleration,
-            "link_turning": motion.turning,
-        }
+        return RateStatistics(motion.velocity, motion.acceleration, motion.turning)
 
 
 def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> CircularPath:

@@ -56,7 +56,10 @@ def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPla
     task.accept(trajectory, end, "the sequence")
     waypoints = np.concatenate([leg.positions for leg in legs])
     return MotionPlan(
-        trajectory, task.statistics("sequence", trajectory, waypoints), explanation, result
+        trajectory,
+        Details.of(task.statistics("sequence", trajectory, waypoints)),
+        explanation,
+        result,
     )
 
 

@@ -11,13 +11,13 @@ from typing import Protocol
 import numpy as np
 
 from harness.core.errors import ErrorCode
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
-from harness.planning.ik.numeric import LinkGoal, LinkTask, TiltGoal, pitch_of
+from harness.planning.ik.numeric import LinkGoal, LinkTask, TiltGoal
 from harness.planning.ik.task import TILT_JOINTS, WHOLE_POSE_JOINTS
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motions import JumpThreshold

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
-from harness.planning.ik.numeric import LinkGoal, LinkTask, pitch_of, sample_group_positions
+from harness.planning.ik.numeric import LinkGoal, LinkTask, sample_group_positions
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 

@@ -10,7 +10,7 @@ import eigenpy
 import numpy as np
 import pinocchio as pin
 
-from harness.core.spatial import SE3
+from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
@@ -50,12 +50,6 @@ class TiltGoal:
     def of(cls, link: str, pose: SE3) -> TiltGoal:
         """What an arm of five joints can choose of a pose T_world_link."""
         return cls(link, pose.translation, pose.rotation[2])
-
-
-def pitch_of(rotation: FloatArray) -> float:
-    """Angle of the frame's x axis below the horizontal [rad], -pi/2 to pi/2."""
-    x_axis = rotation[:, 0]
-    return float(np.arctan2(-x_axis[2], np.hypot(x_axis[0], x_axis[1])))
 
 
 class LinkTask:

@@ -7,9 +7,13 @@ import hashlib
 import re
 from functools import cache
 from pathlib import Path
-from string import Template
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 FOLDER = Path(__file__).with_name("page")
+TEMPLATE = FOLDER / "page.html"
 ENTRY = "main.js"
 IMPORT = re.compile(r'^import \{([^}]*)\} from "\./([\w-]+\.js)";$', re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async )?(?:function|const|class) (\w+))", re.MULTILINE)
@@ -39,12 +43,6 @@ def theme() -> str:
     return _read("theme.css")
 
 
-@cache
-def skeleton() -> str:
-    """The page's elements that scripts fill."""
-    return _read("page.html")
-
-
 def _collect(name: str, modules: dict[str, str], importing: tuple[str, ...]) -> None:
     if name in modules:
         return
@@ -71,6 +69,40 @@ _SCRIPTS = re.compile(r"<script>(.*?)</script>", re.DOTALL)
 _STYLES = re.compile(r"<style>(.*?)</style>", re.DOTALL)
 
 
+def rendered(file: Path, *, script: str, style: str, **content: object) -> str:
+    """A self-contained page of a template, in which every text of a run stays text.
+
+    Args:
+        file: The template; its folder has what it includes.
+        script: What stands for `{{ script }}`.
+        style: What stands for `{{ style }}`.
+        **content: What the template shows.
+    """
+    from markupsafe import Markup
+
+    policy = content_policy(file.read_text(encoding="utf-8"), script=script, style=style)
+    return (
+        _templates(file.parent)
+        .get_template(file.name)
+        .render(policy=policy, script=Markup(script), style=Markup(style), **content)
+    )
+
+
+@cache
+def _templates(folder: Path) -> Environment:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # not before it is needed
+
+    environment = Environment(
+        loader=FileSystemLoader(folder),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
+    return environment
+
+
 def content_policy(skeleton: str, *, script: str, style: str) -> str:
     """The Content-Security-Policy of a page [1].
 
@@ -79,13 +111,13 @@ def content_policy(skeleton: str, *, script: str, style: str) -> str:
 
     Args:
         skeleton: The page's template, which no data of a run is in yet.
-        script: What is put in for `$script`.
-        style: What is put in for `$style`.
+        script: What is put in for `{{ script }}`.
+        style: What is put in for `{{ style }}`.
 
     References:
         [1] W3C, "Content Security Policy Level 3".
     """
-    page = Template(skeleton).safe_substitute(script=script, style=style)
+    page = skeleton.replace("{{ script }}", script).replace("{{ style }}", style)
     scripts, styles = (_hashes(found.findall(page)) for found in (_SCRIPTS, _STYLES))
     return (
         f"default-src 'none'; script-src {scripts}; style-src {styles};"

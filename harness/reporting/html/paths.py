@@ -9,6 +9,7 @@ import numpy as np
 from harness.core.types import FloatArray, Floats
 from harness.recording.explanation import recorded_explanation
 from harness.recording.link_poses import planned_tcp_poses, replayed_link_poses
+from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.html.packing import Packer
@@ -50,13 +51,13 @@ def _planned_poses(run: Run, step: StepRecord) -> FloatArray | None:
 
 def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
     """Along the path as the search found it, in straight lines between its waypoints."""
-    raw = step.planner.get("raw_path")
-    if raw is None or step.trajectory is None:
+    plan = step.planner.find(PlanStatistics)
+    if plan is None or not plan.raw_path or step.trajectory is None:
         return None
     names = step.trajectory.joint_names
-    waypoints = np.asarray(raw, dtype=float)
-    if waypoints.ndim != 2 or len(waypoints) < 2 or waypoints.shape[1] != len(names):
+    if len(plan.raw_path) < 2 or any(len(row) != len(names) for row in plan.raw_path):
         return None
+    waypoints = np.array(plan.raw_path)
     places = np.linspace(0, len(waypoints) - 1, PLAN_POINTS)
     before = np.minimum(places.astype(int), len(waypoints) - 2)
     share = (places - before)[:, None]

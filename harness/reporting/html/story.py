@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.recording.plain import to_plain
+from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.robot_record import JointRecord
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord, is_nested
@@ -73,7 +74,7 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
         "depth": depth_of(step, run),
         "hasChildren": any(is_nested(other.path, step.path) for other in run.steps),
         "planner": finite(
-            {key: value for key, value in step.planner.items() if key not in {"raw_path", "path"}}
+            {key: value for key, value in step.planner.plain().items() if key != "raw_path"}
         ),
         "explanation": finite(step.explanation),
     }
@@ -183,8 +184,8 @@ def environment(stored: StoredRun) -> list[tuple[str, str]]:
 
 
 def _planners(run: Run) -> list[str]:
-    ids = (str(step.planner.get("planner_id", "")) for step in run.steps)
-    return list(dict.fromkeys(planner for planner in ids if planner))
+    plans = (step.planner.find(PlanStatistics) for step in run.steps)
+    return list(dict.fromkeys(plan.planner_id for plan in plans if plan is not None))
 
 
 def last_line(source: str, line: int) -> int:

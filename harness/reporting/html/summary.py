@@ -1,16 +1,15 @@
-"""The run in plain HTML: read where scripts are blocked, and printed."""
+"""The run in plain HTML: what `page/summary.html` shows where scripts are blocked, and in print."""
 
 from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from html import escape
 
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
-from harness.recording.verdict import Measure, Verdict
+from harness.recording.verdict import Measure
 from harness.reporting.html.story import depth_of, environment, ordered_steps
 from harness.reporting.margins import allowance_used
 from harness.reporting.terminal import verdict_line
@@ -21,6 +20,7 @@ STATUS = {
     "failed": "failed",
     "not reached": "not reached",
 }
+TONES = {"failed": "bad", "not reached": "open"}
 
 
 @dataclass(frozen=True)
@@ -34,31 +34,35 @@ class SummaryPicture:
     caption: str
     data: bytes
 
-
-def summary_html(stored: StoredRun, pictures: Sequence[SummaryPicture]) -> str:
-    """Verdict, facts, pictures, expectations, steps, findings; no script, nothing fetched."""
-    run = stored.run
-    return "\n".join(
-        [
-            '<section id="summary" aria-label="Summary">',
-            f"<h1>{outcome_pill(stored)} {escape(run.scenario)}</h1>",
-            _facts(stored),
-            _early_end(stored),
-            _pictures(pictures),
-            '<div id="paper-plots"></div>',
-            _verdicts(stored),
-            _steps(stored),
-            _findings(stored),
-            _environment(stored),
-            "</section>",
-        ]
-    )
+    @property
+    def encoded(self) -> str:
+        """The bytes in base64."""
+        return base64.b64encode(self.data).decode()
 
 
-def outcome_pill(stored: StoredRun) -> str:
-    """The outcome as a coloured word."""
-    tone = "good" if stored.outcome == "passed" else "bad"
-    return f'<span class="pill {tone}">{escape(stored.outcome.upper())}</span>'
+@dataclass(frozen=True)
+class Row:
+    """A row of a table.
+
+    Attributes:
+        tone: Whether it looks good, bad or open.
+        source: The line of the file that does not hold, below the cells; empty for none.
+        warnings: Further lines below the cells.
+    """
+
+    tone: str
+    cells: tuple[str, ...]
+    source: str = ""
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of texts."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: Sequence[Row]
 
 
 def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
@@ -75,50 +79,37 @@ def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
     ]
 
 
-def _facts(stored: StoredRun) -> str:
+def summary_facts(stored: StoredRun) -> list[tuple[str, str]]:
+    """What stands below the title of the summary."""
     held = sum(verdict.status == "passed" for verdict in stored.verdicts)
     said = f"{held} of {len(stored.verdicts)}" if stored.verdicts else "none is stated"
-    facts = [*header_facts(stored), ("expectations that hold", said)]
-    cells = "".join(
-        f"<span>{escape(name)} <b>{escape(value)}</b></span> " for name, value in facts if value
-    )
-    return f'<p class="facts">{cells}</p>'
+    return [*header_facts(stored), ("expectations that hold", said)]
 
 
-def _early_end(stored: StoredRun) -> str:
-    if not stored.run.ended_early:
-        return ""
-    return f'<p class="why">The run ended early: {escape(stored.run.ended_early)}</p>'
-
-
-def _pictures(pictures: Sequence[SummaryPicture]) -> str:
-    figures = [
-        f'<figure><img alt="" src="data:image/webp;base64,{base64.b64encode(each.data).decode()}">'
-        f"<figcaption>{escape(each.caption)}</figcaption></figure>"
-        for each in pictures
+def summary_tables(stored: StoredRun) -> list[Table]:
+    """Expectations, steps, findings and environment; without tables that would be empty."""
+    expectations = ("", "expectation", "verdict", "used", "line")
+    steps = ("", "step", "status", "took", "line", "")
+    tables = [
+        Table("Expectations", expectations, list(_verdicts(stored))),
+        Table("Steps", steps, list(_steps(stored))),
+        Table("Findings", ("", "", "time"), list(_findings(stored))),
+        Table("Environment", ("", ""), [Row("", row) for row in environment(stored)]),
     ]
-    return f'<div class="pictures">{"".join(figures)}</div>' if figures else ""
+    return [table for table in tables if table.rows or table.title == "Steps"]
 
 
-def _verdicts(stored: StoredRun) -> str:
+def _verdicts(stored: StoredRun) -> Iterator[Row]:
     source = stored.run.source.splitlines()
-
-    def said(verdict: Verdict) -> str:
-        """The line of the file that does not hold."""
-        is_known = verdict.status != "passed" and 0 < verdict.line <= len(source)
-        line = f"<code>{escape(source[verdict.line - 1].strip())}</code>" if is_known else ""
-        return line + "".join(f"<p>warning: {escape(str(each))}</p>" for each in verdict.warnings)
-
-    rows = [
-        _row(
-            "good" if verdict.status == "passed" else "bad",
-            str(number), verdict.expectation, verdict_line(verdict), _used(verdict.measures[:1]),
-            str(verdict.line or ""), below=said(verdict),
-        )
-        for number, verdict in enumerate(stored.verdicts, start=1)
-    ]  # fmt: skip
-    head = ("", "expectation", "verdict", "used", "line")
-    return _table("Expectations", head, rows) if rows else ""
+    for number, verdict in enumerate(stored.verdicts, start=1):
+        holds, line = verdict.status == "passed", verdict.line
+        yield Row(
+            "good" if holds else "bad",
+            (str(number), verdict.expectation, verdict_line(verdict), _used(verdict.measures[:1]),
+             str(line or "")),
+            source="" if holds or not 0 < line <= len(source) else source[line - 1].strip(),
+            warnings=tuple(map(str, verdict.warnings)),
+        )  # fmt: skip
 
 
 def _used(measures: Iterable[Measure]) -> str:
@@ -126,23 +117,16 @@ def _used(measures: Iterable[Measure]) -> str:
     return "".join(f"{100 * share:.0f} %" for share in shares if share is not None and share < 100)
 
 
-def _steps(stored: StoredRun) -> str:
+def _steps(stored: StoredRun) -> Iterator[Row]:
     run = stored.run
-
-    def step_text(step: StepRecord) -> str:
+    for number, step in enumerate(ordered_steps(run), start=1):
         why = "" if step.status == "passed" else step.message
         code = "" if why.startswith(step.error_code) else step.error_code
-        return ": ".join(part for part in (code, why) if part)
-
-    rows = [
-        _row(
-            {"failed": "bad", "not reached": "open"}.get(step.status, "good"),
-            str(number), "\u2003" * depth_of(step, run) + step.summary, STATUS[step.status],
-            _duration(step), str(step.line or ""), step_text(step),
-        )
-        for number, step in enumerate(ordered_steps(run), start=1)
-    ]  # fmt: skip
-    return _table("Steps", ("", "step", "status", "took", "line", ""), rows)
+        yield Row(
+            TONES.get(step.status, "good"),
+            (str(number), "\u2003" * depth_of(step, run) + step.summary, STATUS[step.status],
+             _duration(step), str(step.line or ""), ": ".join(filter(None, (code, why)))),
+        )  # fmt: skip
 
 
 def _duration(step: StepRecord) -> str:
@@ -150,30 +134,7 @@ def _duration(step: StepRecord) -> str:
     return f"{took:.2f} s" if step.status != "not reached" and math.isfinite(took) else ""
 
 
-def _findings(stored: StoredRun) -> str:
-    rows = [
-        _row("open", finding.kind.replace("_", " "), finding.message,
-             f"{finding.time:.2f} s" if math.isfinite(finding.time) else "")
-        for finding in stored.run.findings
-    ]  # fmt: skip
-    return _table("Findings", ("", "", "time"), rows) if rows else ""
-
-
-def _environment(stored: StoredRun) -> str:
-    rows = [_row("", name, value) for name, value in environment(stored)]
-    return _table("Environment", ("", ""), rows)
-
-
-def _table(title: str, head: Sequence[str], rows: Sequence[str]) -> str:
-    cells = "".join(f'<th scope="col">{escape(name)}</th>' for name in head)
-    return (
-        f'<table class="summary-{title.lower()}"><caption>{title}</caption>'
-        f"<thead><tr>{cells}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
-    )
-
-
-def _row(tone: str, *cells: str, below: str = "") -> str:
-    """A row of texts, and perhaps one of markup below it."""
-    row = f'<tr class="{tone}">{"".join(f"<td>{escape(cell)}</td>" for cell in cells)}</tr>'
-    more = f'<tr class="{tone}"><td></td><td colspan="{len(cells) - 1}">{below}</td></tr>'
-    return f"{row}{more}" if below else row
+def _findings(stored: StoredRun) -> Iterator[Row]:
+    for finding in stored.run.findings:
+        time = f"{finding.time:.2f} s" if math.isfinite(finding.time) else ""
+        yield Row("open", (finding.kind.replace("_", " "), finding.message, time))

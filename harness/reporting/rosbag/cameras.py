@@ -14,13 +14,7 @@ from harness.recording.film import decoded_film
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.reporting.rosbag.frames import optical_frames
-from harness.reporting.rosbag.messages import (
-    CameraInfo,
-    CompressedImage,
-    Image,
-    RegionOfInterest,
-    header,
-)
+from harness.reporting.rosbag.messages import header, message
 from harness.reporting.rosbag.samples import Message
 from harness.reporting.rosbag.topics import camera_topics
 
@@ -80,7 +74,7 @@ def compressed_image(content: bytes, camera: Camera, header: Any) -> Any:
     source, stored = ("mono8", "mono8") if camera.is_grey else ("rgb8", "bgr8")
     data = np.frombuffer(content, np.uint8)
     said = f"{source}; {kind} compressed {stored}"
-    return CompressedImage(header=header, format=said, data=data)
+    return message("sensor_msgs/msg/CompressedImage", header=header, format=said, data=data)
 
 
 def _raw(content: bytes, camera: Camera, header: Any) -> Any:
@@ -101,18 +95,17 @@ def image(picture: np.ndarray[Any, Any], header: Any) -> Any:
     encoding = "32FC1" if picture.dtype == np.float32 else "rgb8" if picture.ndim == 3 else "mono8"
     data = np.ascontiguousarray(picture).view(np.uint8).reshape(-1)
     height, width = picture.shape[:2]
-    return Image(
-        header=header, height=height, width=width, encoding=encoding,
-        is_bigendian=0, step=data.size // height, data=data,
+    return message(
+        "sensor_msgs/msg/Image", header=header, height=height, width=width, encoding=encoding,
+        step=data.size // height, data=data,
     )  # fmt: skip
 
 
 def camera_info(camera: Camera, header: Any) -> Any:
     """The CameraInfo of a pinhole without distortion."""
     projection = np.hstack([camera.matrix, np.zeros((3, 1))])
-    return CameraInfo(
-        header=header, height=camera.height, width=camera.width,
+    return message(
+        "sensor_msgs/msg/CameraInfo", header=header, height=camera.height, width=camera.width,
         distortion_model="plumb_bob", d=np.zeros(5), k=camera.matrix.reshape(-1),
-        r=np.eye(3).reshape(-1), p=projection.reshape(-1), binning_x=0, binning_y=0,
-        roi=RegionOfInterest(x_offset=0, y_offset=0, height=0, width=0, do_rectify=False),
+        r=np.eye(3).reshape(-1), p=projection.reshape(-1),
     )  # fmt: skip

@@ -14,11 +14,13 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
-from harness.reporting.rosbag.messages import Log, String, stamp
+from harness.reporting.rosbag.messages import TYPES, message, stamp
 from harness.reporting.rosbag.samples import Message
 from harness.reporting.rosbag.topics import EVENTS, ROSOUT
 
 NODE = "armharness"
+LOG = "rcl_interfaces/msg/Log"
+Log: Any = TYPES[LOG]
 
 
 @dataclass(frozen=True)
@@ -40,13 +42,13 @@ def event_messages(stored: StoredRun) -> Iterator[Message]:
     file = PurePath(stored.run.file).name  # where it was is no part of what happened
     for event in events(stored):
         text = json.dumps(event.content, ensure_ascii=False, allow_nan=False)
-        yield Message(event.time, EVENTS, String(data=text))
+        yield Message(event.time, EVENTS, message(EVENTS.msgtype, data=text))
         yield Message(
             event.time,
             ROSOUT,
-            Log(
-                stamp=stamp(event.time), level=event.level, name=NODE, msg=event.said,
-                file=file, function="", line=int(event.content.get("line", 0)),
+            message(
+                LOG, stamp=stamp(event.time), level=event.level, name=NODE, msg=event.said,
+                file=file, line=int(event.content.get("line", 0)),
             ),
         )  # fmt: skip
 

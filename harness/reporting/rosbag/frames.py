@@ -14,7 +14,7 @@ from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.link_poses import placement_poses
 from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Run
-from harness.reporting.rosbag.messages import TFMessage, TransformStamped, header, transform
+from harness.reporting.rosbag.messages import header, message, transform
 from harness.reporting.rosbag.samples import Message, blocks
 from harness.reporting.rosbag.topics import TF, TF_STATIC
 
@@ -93,7 +93,7 @@ def static_tf(run: Run) -> Message:
     """All that never moves, once."""
     start = float(run.signals.times[0])
     transforms = [edge.stamped(start) for edge in static_edges(run)]
-    return Message(start, TF_STATIC, TFMessage(transforms=transforms))
+    return Message(start, TF_STATIC, message(TF.msgtype, transforms=transforms))
 
 
 def moving_tf(run: Run, indices: IntArray) -> Iterator[Message]:
@@ -117,7 +117,7 @@ def moving_tf(run: Run, indices: IntArray) -> Iterator[Message]:
                 for place, (parent, child) in enumerate(edges)
                 if there[number, place]
             ]
-            yield Message(time, TF, TFMessage(transforms=transforms))
+            yield Message(time, TF, message(TF.msgtype, transforms=transforms))
 
 
 def _stays(poses: FloatArray) -> bool:
@@ -125,6 +125,9 @@ def _stays(poses: FloatArray) -> bool:
 
 
 def _stamped(time: float, parent: str, child: str, pose: list[float]) -> Any:
-    return TransformStamped(
-        header=header(time, parent), child_frame_id=child, transform=transform(pose)
+    return message(
+        "geometry_msgs/msg/TransformStamped",
+        header=header(time, parent),
+        child_frame_id=child,
+        transform=transform(pose),
     )

@@ -25,20 +25,18 @@ from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD, moving_objects
 from harness.reporting.rosbag.messages import (
-    ColorRGBA,
-    CompressedImage,
-    Marker,
-    MarkerArray,
-    MeshFile,
-    Point,
-    Vector3,
-    duration,
+    TYPES,
     header,
+    message,
+    point,
     pose_message,
+    vector,
 )
 from harness.reporting.rosbag.samples import Message
 from harness.reporting.rosbag.topics import SCENE_MARKERS
 
+MARKER = "visualization_msgs/msg/Marker"
+Marker: Any = TYPES[MARKER]
 PLANE_SIZE = 4.0
 """Of the square that stands for an endless plane [m]."""
 PLANNED = "planned_tcp"
@@ -70,11 +68,11 @@ def _array(run: Run, time: float, lines: Sequence[tuple[float, FloatArray]]) -> 
     for number, (begin, points) in enumerate(lines):
         if begin <= time:
             line = _marker(time, WORLD, PLANNED, number, kind=Marker.LINE_STRIP)
-            line.scale = Vector3(x=LINE_WIDTH, y=0.0, z=0.0)
+            line.scale = vector((LINE_WIDTH, 0.0, 0.0))
             line.color = _colour(PLANNED_COLOUR)
             line.points = _points(points)
             markers.append(line)
-    return MarkerArray(markers=markers)
+    return message(SCENE_MARKERS.msgtype, markers=markers)
 
 
 def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> list[Any]:
@@ -88,13 +86,13 @@ def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> 
         for kind, scale, offset in _solids(shape):
             marker = _marker(time, frame, obj.name, len(markers), kind=kind)
             marker.pose = pose_message((base @ shape.pose @ offset).as_vector().tolist())
-            marker.scale = Vector3(x=scale[0], y=scale[1], z=scale[2])
+            marker.scale = vector(scale)
             marker.color = _colour(shape.rgba)
             markers.append(marker)
         for mesh in _meshes(run, shape):
             marker = _marker(time, frame, obj.name, len(markers), kind=Marker.TRIANGLE_LIST)
             marker.pose = pose_message((base @ shape.pose).as_vector().tolist())
-            marker.scale = Vector3(x=1.0, y=1.0, z=1.0)
+            marker.scale = vector((1.0, 1.0, 1.0))
             marker.color = _colour(mesh.rgba or shape.rgba)
             marker.points = _points(mesh.vertices[mesh.faces].reshape(-1, 3))
             markers.append(marker)
@@ -147,23 +145,18 @@ def _planned(run: Run, step: StepRecord) -> FloatArray | None:
 def _marker(
     time: float, frame: str, ns: str, number: int, *, kind: int = 0, action: int = 0
 ) -> Any:
-    return Marker(
-        header=header(time, frame), ns=ns, id=number, type=kind, action=action,
+    head, picture = header(time, frame), "sensor_msgs/msg/CompressedImage"
+    return message(
+        MARKER, header=head, ns=ns, id=number, type=kind, action=action, frame_locked=True,
         pose=pose_message([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
-        scale=Vector3(x=0.0, y=0.0, z=0.0), color=_colour((0.0, 0.0, 0.0, 0.0)),
-        lifetime=duration(0.0), frame_locked=True, points=[], colors=[],
-        texture_resource="",
-        texture=CompressedImage(header=header(time), format="", data=np.zeros(0, np.uint8)),
-        uv_coordinates=[], text="", mesh_resource="",
-        mesh_file=MeshFile(filename="", data=np.zeros(0, np.uint8)),
-        mesh_use_embedded_materials=False,
+        texture=message(picture, header=header(time)),
     )  # fmt: skip
 
 
 def _colour(rgba: Rgba) -> Any:
     r, g, b, a = map(float, rgba)
-    return ColorRGBA(r=r, g=g, b=b, a=a)
+    return message("std_msgs/msg/ColorRGBA", r=r, g=g, b=b, a=a)
 
 
 def _points(points: FloatArray) -> list[Any]:
-    return [Point(x=x, y=y, z=z) for x, y, z in points.tolist()]
+    return [point(each) for each in points.tolist()]

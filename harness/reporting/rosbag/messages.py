@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
@@ -59,41 +60,36 @@ def _typestore() -> Typestore:
 
 
 TYPESTORE = _typestore()
-_TYPES: Any = TYPESTORE.types
+TYPES: Any = TYPESTORE.types
 
-Time: Any = _TYPES["builtin_interfaces/msg/Time"]
-Duration: Any = _TYPES["builtin_interfaces/msg/Duration"]
-Header: Any = _TYPES["std_msgs/msg/Header"]
-String: Any = _TYPES["std_msgs/msg/String"]
-ColorRGBA: Any = _TYPES["std_msgs/msg/ColorRGBA"]
-Point: Any = _TYPES["geometry_msgs/msg/Point"]
-Vector3: Any = _TYPES["geometry_msgs/msg/Vector3"]
-Quaternion: Any = _TYPES["geometry_msgs/msg/Quaternion"]
-Pose: Any = _TYPES["geometry_msgs/msg/Pose"]
-PoseStamped: Any = _TYPES["geometry_msgs/msg/PoseStamped"]
-Transform: Any = _TYPES["geometry_msgs/msg/Transform"]
-TransformStamped: Any = _TYPES["geometry_msgs/msg/TransformStamped"]
-TFMessage: Any = _TYPES["tf2_msgs/msg/TFMessage"]
-JointState: Any = _TYPES["sensor_msgs/msg/JointState"]
-MultiDOFJointState: Any = _TYPES["sensor_msgs/msg/MultiDOFJointState"]
-CompressedImage: Any = _TYPES["sensor_msgs/msg/CompressedImage"]
-Image: Any = _TYPES["sensor_msgs/msg/Image"]
-CameraInfo: Any = _TYPES["sensor_msgs/msg/CameraInfo"]
-RegionOfInterest: Any = _TYPES["sensor_msgs/msg/RegionOfInterest"]
-Clock: Any = _TYPES["rosgraph_msgs/msg/Clock"]
-Log: Any = _TYPES["rcl_interfaces/msg/Log"]
-Path: Any = _TYPES["nav_msgs/msg/Path"]
-JointTrajectory: Any = _TYPES["trajectory_msgs/msg/JointTrajectory"]
-JointTrajectoryPoint: Any = _TYPES["trajectory_msgs/msg/JointTrajectoryPoint"]
-MultiDOFJointTrajectory: Any = _TYPES["trajectory_msgs/msg/MultiDOFJointTrajectory"]
-Marker: Any = _TYPES["visualization_msgs/msg/Marker"]
-MarkerArray: Any = _TYPES["visualization_msgs/msg/MarkerArray"]
-MeshFile: Any = _TYPES["visualization_msgs/msg/MeshFile"]
-RobotState: Any = _TYPES["moveit_msgs/msg/RobotState"]
-RobotTrajectory: Any = _TYPES["moveit_msgs/msg/RobotTrajectory"]
-DisplayTrajectory: Any = _TYPES["moveit_msgs/msg/DisplayTrajectory"]
 
-NOTHING = np.zeros(0)
+def message(kind: str, /, **fields: Any) -> Any:
+    """A message of a type; fields that are left out are zero or empty."""
+    for name, definition in TYPESTORE.fielddefs[kind][1]:
+        if name not in fields:
+            fields[name] = _default(definition)
+    return TYPES[kind](**fields)
+
+
+def _default(kind: Any) -> Any:
+    node, detail = kind
+    if node == Nodetype.NAME:
+        return message(detail)
+    if node == Nodetype.BASE:
+        base = detail[0]
+        return (
+            "" if base == "string" else False if base == "bool" else 0.0 if "float" in base else 0
+        )
+    element, size = detail
+    if element[0] == Nodetype.BASE and element[1][0] != "string":
+        return np.zeros(size or 0, dtype=np.dtype(element[1][0].replace("octet", "uint8")))
+    return [_default(element) for _ in range(size or 0)]
+
+
+def time_message(nanoseconds: int, kind: str = "Time") -> Any:
+    """A moment as a Time, or a span as a Duration."""
+    whole, rest = divmod(nanoseconds, 10**9)
+    return message(f"builtin_interfaces/msg/{kind}", sec=whole, nanosec=rest)
 
 
 def nanoseconds(seconds: float) -> int:
@@ -103,43 +99,47 @@ def nanoseconds(seconds: float) -> int:
 
 def stamp(seconds: float) -> Any:
     """A simulation time as a stamp."""
-    whole, rest = divmod(nanoseconds(seconds), 10**9)
-    return Time(sec=whole, nanosec=rest)
+    return time_message(nanoseconds(seconds))
 
 
 def duration(seconds: float) -> Any:
     """A length of time."""
-    whole, rest = divmod(round(seconds * 1e9), 10**9)
-    return Duration(sec=whole, nanosec=rest)
+    return time_message(round(seconds * 1e9), "Duration")
 
 
 def header(seconds: float, frame_id: str = "") -> Any:
     """A stamp and the frame that the content is in."""
-    return Header(stamp=stamp(seconds), frame_id=frame_id)
+    return message("std_msgs/msg/Header", stamp=stamp(seconds), frame_id=frame_id)
 
 
 def transform(pose: Sequence[float]) -> Any:
     """A pose xyz, quaternion wxyz as a Transform, whose quaternion is xyzw."""
-    x, y, z, qw, qx, qy, qz = pose
-    return Transform(
-        translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw)
-    )
+    rotation = message("geometry_msgs/msg/Quaternion", **_turn(pose))
+    return message("geometry_msgs/msg/Transform", translation=vector(pose), rotation=rotation)
 
 
 def pose_message(pose: Sequence[float]) -> Any:
     """A pose xyz, quaternion wxyz as a Pose, whose quaternion is xyzw."""
-    x, y, z, qw, qx, qy, qz = pose
-    return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+    orientation = message("geometry_msgs/msg/Quaternion", **_turn(pose))
+    return message("geometry_msgs/msg/Pose", position=point(pose), orientation=orientation)
 
 
-def joint_state(
-    time: float,
-    names: list[str],
-    positions: FloatArray,
-    velocities: FloatArray = NOTHING,
-    efforts: FloatArray = NOTHING,
-) -> Any:
-    """Joints by name; what is not given stays empty."""
-    return JointState(
-        header=header(time), name=names, position=positions, velocity=velocities, effort=efforts
+def point(xyz: Sequence[float]) -> Any:
+    """The first three numbers as a Point."""
+    return message("geometry_msgs/msg/Point", x=xyz[0], y=xyz[1], z=xyz[2])
+
+
+def vector(xyz: Sequence[float]) -> Any:
+    """The first three numbers as a Vector3."""
+    return message("geometry_msgs/msg/Vector3", x=xyz[0], y=xyz[1], z=xyz[2])
+
+
+def _turn(pose: Sequence[float]) -> dict[str, float]:
+    return dict(zip("wxyz", pose[3:], strict=True))
+
+
+def joint_state(time: float, names: list[str], positions: FloatArray, **others: FloatArray) -> Any:
+    """Joints by name; `velocity` and `effort` stay empty where they are not given."""
+    return message(
+        "sensor_msgs/msg/JointState", header=header(time), name=names, position=positions, **others
     )

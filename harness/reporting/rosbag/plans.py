@@ -13,21 +13,12 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD
 from harness.reporting.rosbag.messages import (
-    NOTHING,
-    DisplayTrajectory,
-    JointTrajectoryPoint,
-    MultiDOFJointState,
-    MultiDOFJointTrajectory,
-    Path,
-    PoseStamped,
-    RobotState,
-    RobotTrajectory,
     duration,
     header,
     joint_state,
+    message,
     pose_message,
 )
-from harness.reporting.rosbag.messages import JointTrajectory as TrajectoryMessage
 from harness.reporting.rosbag.samples import Message, samples_at
 from harness.reporting.rosbag.topics import DISPLAY_PLANNED_PATH, PLANNED_TRAJECTORY, TCP_PATH
 
@@ -66,27 +57,31 @@ def tcp_path(run: Run) -> Iterator[Message]:
         if last is None or np.linalg.norm(pose[:3] - last[:3]) >= PATH_SPACING:
             last = pose
             content = pose_message(pose.tolist())
-            kept.append(PoseStamped(header=header(time, WORLD), pose=content))
+            head = header(time, WORLD)
+            kept.append(message("geometry_msgs/msg/PoseStamped", header=head, pose=content))
         waits = 1 + len(kept) // LONGEST_PUBLISHED
         if number - published >= waits or number in (0, len(indices) - 1):
             published = number
-            yield Message(time, TCP_PATH, Path(header=header(time, WORLD), poses=list(kept)))
+            path = message(TCP_PATH.msgtype, header=header(time, WORLD), poses=list(kept))
+            yield Message(time, TCP_PATH, path)
 
 
 def _trajectory(start: float, plan: JointTrajectory) -> Any:
     rows = zip(plan.times, plan.positions, plan.velocities, plan.accelerations, strict=True)
     points = [
-        JointTrajectoryPoint(
+        message(
+            "trajectory_msgs/msg/JointTrajectoryPoint",
             positions=positions,
             velocities=velocities,
             accelerations=accelerations,
-            effort=NOTHING,
             time_from_start=duration(float(time - plan.times[0])),
         )
         for time, positions, velocities, accelerations in rows
     ]
     names = list(plan.joint_names)
-    return TrajectoryMessage(header=header(start), joint_names=names, points=points)
+    return message(
+        PLANNED_TRAJECTORY.msgtype, header=header(start), joint_names=names, points=points
+    )
 
 
 def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:
@@ -94,16 +89,23 @@ def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:
     time = step.start_time
     index = min(step.start_index, len(run.signals.times) - 1)
     names = [joint.name for joint in run.robot.joints]
-    multi = MultiDOFJointTrajectory(header=header(time), joint_names=[], points=[])
-    return DisplayTrajectory(
+    many, state = (
+        "trajectory_msgs/msg/MultiDOFJointTrajectory",
+        "sensor_msgs/msg/MultiDOFJointState",
+    )
+    shown = message(
+        "moveit_msgs/msg/RobotTrajectory",
+        joint_trajectory=trajectory,
+        multi_dof_joint_trajectory=message(many, header=header(time)),
+    )
+    start = message(
+        "moveit_msgs/msg/RobotState",
+        joint_state=joint_state(time, names, run.signals.joint_positions[index]),
+        multi_dof_joint_state=message(state, header=header(time)),
+    )
+    return message(
+        DISPLAY_PLANNED_PATH.msgtype,
         model_id=run.robot.name,
-        trajectory=[RobotTrajectory(joint_trajectory=trajectory, multi_dof_joint_trajectory=multi)],
-        trajectory_start=RobotState(
-            joint_state=joint_state(time, names, run.signals.joint_positions[index]),
-            multi_dof_joint_state=MultiDOFJointState(
-                header=header(time), joint_names=[], transforms=[], twist=[], wrench=[]
-            ),
-            attached_collision_objects=[],
-            is_diff=False,
-        ),
+        trajectory=[shown],
+        trajectory_start=start,
     )

@@ -9,23 +9,30 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
 from harness.core.errors import HarnessError
+from harness.core.types import IntArray
 from harness.recording.files import disk_advice
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
-from harness.reporting.rosbag import cameras, joints
+from harness.reporting.rosbag import cameras
 from harness.reporting.rosbag.events import event_messages
-from harness.reporting.rosbag.foxglove import foxglove_layout
 from harness.reporting.rosbag.frames import moving_tf, static_tf
+from harness.reporting.rosbag.layouts import foxglove_layout, rviz_configuration
 from harness.reporting.rosbag.markers import scene_markers
-from harness.reporting.rosbag.messages import TYPESTORE, String, nanoseconds
+from harness.reporting.rosbag.messages import TYPESTORE, joint_state, message, nanoseconds, stamp
 from harness.reporting.rosbag.plans import planned, tcp_path
-from harness.reporting.rosbag.rviz import rviz_configuration
 from harness.reporting.rosbag.samples import Message, samples_at
-from harness.reporting.rosbag.topics import ROBOT_DESCRIPTION, Topic
+from harness.reporting.rosbag.topics import (
+    CLOCK,
+    JOINT_COMMANDS,
+    JOINT_STATES,
+    ROBOT_DESCRIPTION,
+    Topic,
+)
 from harness.reporting.rosbag.urdf import MeshAddresses, urdf_of
 
 VERSION = 8
@@ -94,12 +101,12 @@ def _write_messages(folder: Path, stored: StoredRun, options: BagOptions) -> Non
         writer.set_custom_data(key, value)
     connections: dict[str, Connection] = {}
     with writer:
-        for message in _messages(stored, options):
-            topic = message.topic
+        for each in _messages(stored, options):
+            topic = each.topic
             if topic.name not in connections:
                 connections[topic.name] = _connection(writer, topic)
-            content = TYPESTORE.serialize_cdr(message.content, topic.msgtype)
-            writer.write(connections[topic.name], nanoseconds(message.time), content)
+            content = TYPESTORE.serialize_cdr(each.content, topic.msgtype)
+            writer.write(connections[topic.name], nanoseconds(each.time), content)
 
 
 def _connection(writer: Writer, topic: Topic) -> Connection:
@@ -122,9 +129,9 @@ def _messages(stored: StoredRun, options: BagOptions) -> Iterator[Message]:
     indices = samples_at(run.signals.times, options.rate)
     streams = [
         iter([_description(run, options), static_tf(run)]),
-        joints.clock(run, indices),
-        joints.measured_states(run, indices),
-        joints.commanded(run, indices),
+        _clock(run, indices),
+        _measured_states(run, indices),
+        _commanded(run, indices),
         moving_tf(run, indices),
         _in_order(planned(run)),
         scene_markers(run),
@@ -141,9 +148,47 @@ def _in_order(messages: Iterator[Message]) -> Iterator[Message]:
 
 
 def _description(run: Run, options: BagOptions) -> Message:
-    content = String(data=urdf_of(run, options.meshes))
+    content = message("std_msgs/msg/String", data=urdf_of(run, options.meshes))
     return Message(float(run.signals.times[0]), ROBOT_DESCRIPTION, content)
 
 
 def _text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8", newline="")
+
+
+def _clock(run: Run, indices: IntArray) -> Iterator[Message]:
+    """Simulation time, for nodes with `use_sim_time`."""
+    for time in run.signals.times[indices].tolist():
+        yield Message(time, CLOCK, message("rosgraph_msgs/msg/Clock", clock=stamp(time)))
+
+
+def _measured_states(run: Run, indices: IntArray) -> Iterator[Message]:
+    """Positions, velocities and efforts of every movable joint."""
+    signals = run.signals
+    names = [joint.name for joint in run.robot.joints]
+    for index in indices:
+        time = float(signals.times[index])
+        yield Message(
+            time,
+            JOINT_STATES,
+            joint_state(
+                time,
+                names,
+                signals.joint_positions[index],
+                velocity=signals.joint_velocities[index],
+                effort=signals.joint_efforts[index],
+            ),
+        )
+
+
+def _commanded(run: Run, indices: IntArray) -> Iterator[Message]:
+    """Positions and velocities of every joint that had a command."""
+    signals = run.signals
+    names = np.array([joint.name for joint in run.robot.joints])
+    for index in indices:
+        time, positions = float(signals.times[index]), signals.joint_commands[index]
+        given = ~np.isnan(positions)
+        if given.any():
+            velocities = signals.joint_command_velocities[index][given]
+            state = joint_state(time, names[given].tolist(), positions[given], velocity=velocities)
+            yield Message(time, JOINT_COMMANDS, state)

@@ -35,8 +35,8 @@ def cause_of(result: CaseResult) -> Cause | None:
         return Cause(f"error: {_short(last)}", last)
     if result.outcome == "invalid":
         for problem in result.problems:
-            said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
-            return Cause(f"invalid: {_short(problem.message)}", said, problem.line, problem.column)
+            group = f"invalid: {_short(problem.message)}"
+            return Cause(group, problem.sentence, problem.line, problem.column)
         return Cause("invalid", result.message)
     for step in root_failures(result.steps):
         said = ": ".join(filter(None, (step.summary, step.error_code, step.message)))
@@ -65,8 +65,7 @@ def short_lines(results: Iterable[CaseResult]) -> Iterator[str]:
 def short_problem(problem: Problem) -> str:
     """A mistake in a file in one line."""
     place = f"{problem.path}:{problem.line}:{problem.column}" if problem.line else problem.path
-    said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
-    return f"{place}: {' '.join(said.split())}"
+    return f"{place}: {' '.join(problem.sentence.split())}"
 
 
 def _short(text: str) -> str:

@@ -6,7 +6,7 @@ import heapq
 import math
 from array import array
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -115,6 +115,7 @@ class Columns:
         self.file_numbers = array("l")
         self.without_margin = Counter[str]()
         self._files: dict[str, int] = {}
+        self._digests: dict[str, str] = {}  # of each file, empty where its runs differ
         self._columns: dict[str, _Column] = {}
         self._most_listed = most_listed
         self._urgent: list[tuple[bool, float, int]] = []  # a heap: the least urgent is first
@@ -151,12 +152,24 @@ class Columns:
         self.numbers.append(index)
         self.shares.append(case.share)
         self.groups.append(group)
-        self.file_numbers.append(self._files.setdefault(case.result.file, len(self._files)))
+        file, digest = case.result.file, case.result.digest
+        self.file_numbers.append(self._files.setdefault(file, len(self._files)))
+        self._digests[file] = digest if self._digests.get(file, digest) == digest else ""
 
     @property
     def files(self) -> list[str]:
         """The files of the runs that vary, in their order."""
         return list(self._files)
+
+    @property
+    def one_run(self) -> Iterator[tuple[str, int]]:
+        """Files of which several runs that vary are one and the same, and the number of these."""
+        counts = np.bincount(
+            np.array(self.file_numbers, dtype=np.int64), minlength=len(self._files)
+        )
+        for file, count in zip(self._files, counts.tolist(), strict=True):
+            if count > 1 and self._digests[file]:
+                yield file, count
 
     @property
     def listed(self) -> list[int]:

@@ -29,8 +29,7 @@ def error_annotations(results: Iterable[CaseResult]) -> Iterator[str]:
         if result.outcome == "invalid" and result.problems:
             yield from map(problem_annotation, result.problems)
         elif cause is not None:
-            name = f"{result.title} [{result.case}]" if result.case else result.title
-            yield _command(result.file, cause.line, cause.column, name, cause.said)
+            yield _command(result.file, cause.line, cause.column, result.name, cause.said)
 
 
 def append_summary(record: SuiteRecord) -> None:
@@ -56,8 +55,7 @@ def annotations_for_action(results: Iterable[CaseResult]) -> Iterator[str]:
 
 def problem_annotation(problem: Problem) -> str:
     """A mistake in a file, at its place."""
-    said = f"{problem.message}: {problem.hint}" if problem.hint else problem.message
-    return _command(problem.path, problem.line, problem.column, "harness", said)
+    return _command(problem.path, problem.line, problem.column, "harness", problem.sentence)
 
 
 def _command(file: str, line: int, column: int, title: str, said: str) -> str:
@@ -91,11 +89,10 @@ def job_summary(record: SuiteRecord) -> str:
 
 def _row(case: SuiteCase) -> str:
     result, nearest, cause = case.result, case.nearest, case.cause
-    name = f"{result.title} [{result.case}]" if result.case else result.title
     margin = ""
     if nearest is not None:
         margin = f"{nearest.expectation}: {nearest.margin:.4g} {nearest.unit}".removesuffix(" 1")
-    cells = [SIGNS[result.outcome], name, margin, cause.said if cause else ""]
+    cells = [SIGNS[result.outcome], result.name, margin, cause.said if cause else ""]
     return f"| {' | '.join(map(_cell, cells))} |"
 
 

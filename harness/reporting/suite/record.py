@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from harness.recording.run import Outcome
 from harness.recording.verdict import Verdict
@@ -46,6 +49,13 @@ class SuiteCase:
     def cause(self) -> Cause | None:
         """Why it did not pass; None when it passed."""
         return cause_of(self.result)
+
+    def link(self, folder: Path) -> str:
+        """The case's page, or its folder, from a page in another folder; empty without one."""
+        target = self.result.page or self.result.report_dir
+        if not target:
+            return ""
+        return quote(Path(os.path.relpath(Path(target).resolve(), folder.resolve())).as_posix())
 
     @property
     def urgency(self) -> tuple[bool, float]:

@@ -34,6 +34,8 @@ def table_lines(columns: Columns, style: Style = PLAIN) -> Iterator[str]:
             yield f"  {mark} {label:<{width}}  {passed:>4} of {total:<4} {passed / total:7.1%}"
         if len(rows) > MOST_ROWS:
             yield f"  ... {len(rows) - MOST_ROWS} more"
+    for file, count in columns.one_run:
+        yield f"{file}: its {count} runs have equal digests: nothing that varies matters in them"
 
 
 def _rows(

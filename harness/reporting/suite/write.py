@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO
 
-from harness.core.errors import HarnessError
+from harness.core.files import replaced, writing
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.history import Key
 from harness.reporting.suite.junit import JunitWriter
@@ -18,8 +15,6 @@ from harness.reporting.suite.record import SuiteCase, SuiteRecord, results_json
 PAGE = "index.html"
 JUNIT = "junit.xml"
 RESULTS = "results.json"
-BUFFER = 2**20
-"""Bytes of a file that are written at once."""
 
 History = Mapping[Key, Sequence[float | None]]
 
@@ -87,29 +82,3 @@ def write_suite_page(
     with writing(folder), replaced(folder / PAGE) as file:
         file.write(suite_html(record, columns, folder, history).encode())
     return folder / PAGE
-
-
-@contextmanager
-def writing(folder: Path) -> Generator[None]:
-    """Make a folder, and report that files in it cannot be written.
-
-    Raises:
-        HarnessError: A file cannot be written.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        yield
-    except OSError as error:
-        raise HarnessError(f"'{folder}' cannot be written: {error.strerror}") from error
-
-
-@contextmanager
-def replaced(file: Path) -> Generator[IO[bytes]]:
-    """A new file, which gets its name when everything is written."""
-    part = file.with_name(f".{file.name}.{os.getpid()}")
-    try:
-        with part.open("wb", buffering=BUFFER) as stream:
-            yield stream
-        part.replace(file)
-    finally:
-        part.unlink(missing_ok=True)

@@ -51,6 +51,12 @@ POSITIONS = np.linspace(0.1, 0.9, 9)
 SAME_VOLUME = 1e-6
 """Share of the hull's volume by which that of a convex mesh may differ."""
 
+CORNER_TOLERANCE = 1e-4
+"""Height above the faces of a hull up to which its corners are left out [m]."""
+
+NEARLY = 0.3
+"""Height as a share of the largest from which a corner is kept at once with the highest."""
+
 NO_TRIANGLES = np.zeros((0, 3, 3))
 FLUSH = 1e-9
 """Distance from a cut below which a corner is on it [m]."""
@@ -104,11 +110,11 @@ def decompose(triangles: FloatArray) -> Decomposition:
         triangles: Corners [m], shape (M, 3, 3); they need not be connected or closed.
     """
     hull = ConvexHull(triangles.reshape(-1, 3))
-    corners = hull.points[hull.vertices]
-    if abs(_volume(triangles) - hull.volume) < SAME_VOLUME * hull.volume:
-        return Decomposition(corners, (corners,), 0.0, 0.0, True)
     longest = float(np.ptp(hull.points, axis=0).max())
     share = min(longest / SMALL, 1.0)
+    corners = _few_corners(hull.points[hull.vertices], CORNER_TOLERANCE * share)
+    if abs(_volume(triangles) - hull.volume) < SAME_VOLUME * hull.volume:
+        return Decomposition(corners, (corners,), 0.0, 0.0, True)
     tolerance = TOLERANCE * share
     grid = solid_grid(triangles, tolerance * FINENESS)
     search = _Search(grid, max(tolerance - DIAGONAL * grid.edge, 0.5 * tolerance, grid.edge))
@@ -116,7 +122,10 @@ def decompose(triangles: FloatArray) -> Decomposition:
     if hull_excess <= HULL_TOLERANCE * share:
         return Decomposition(corners, (corners,), hull_excess, hull_excess, grid.is_closed)
     pieces = _merged(search, _cut(search, search.piece(triangles)))
-    parts = tuple(_thickened(_corners(piece.triangles.reshape(-1, 3))) for piece in pieces)
+    parts = tuple(
+        _thickened(_few_corners(_corners(piece.triangles.reshape(-1, 3)), CORNER_TOLERANCE * share))
+        for piece in pieces
+    )
     excess = max(_excess(grid, part) for part in parts)
     return Decomposition(corners, parts, excess, hull_excess, grid.is_closed)
 
@@ -332,6 +341,26 @@ def _corners(points: FloatArray) -> FloatArray:
     """The corners of the convex hull of points; all of them where they are flat."""
     hull = _hull(points)
     return np.unique(points, axis=0) if hull is None else points[hull.vertices]
+
+
+def _few_corners(corners: FloatArray, tolerance: float) -> FloatArray:
+    """Corners of a convex hull without those that hardly stand out of it, which fillets have.
+
+    Args:
+        corners: Corners [m], shape (N, 3).
+        tolerance: Largest height above the faces of the hull of the others [m].
+    """
+    hull, left = _hull(_extreme(corners, FEW_DIRECTIONS)), corners
+    while hull is not None:
+        normals, offsets = hull.equations[:, :3], hull.equations[:, 3]
+        highest = np.array([left[(left @ normal).argmax()] for normal in normals])
+        heights = np.einsum("ij,ij->i", highest, normals) + offsets
+        if heights.max() <= tolerance:
+            return hull.points[hull.vertices]
+        added = np.unique(highest[heights > max(tolerance, NEARLY * heights.max())], axis=0)
+        left = left[~_inside(hull, left, tolerance)]
+        hull = _hull(np.concatenate([hull.points[hull.vertices], added]))
+    return corners
 
 
 def _thinned(points: FloatArray, most: int) -> FloatArray:

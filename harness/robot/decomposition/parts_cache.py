@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.core.user_cache import cached, store
 from harness.robot.decomposition.convex_parts import Decomposition
 
-METHOD = 3
+METHOD = 4
 """Version of the decomposition; parts of another version are computed again."""
 
 

@@ -27,6 +27,9 @@ from harness.robot.urdf.urdf import Urdf
 ROOT = "robot_world"
 """The link to which the bodies of MJCF's world body are fixed."""
 
+UNNAMED = "MuJoCo Model"
+"""MuJoCo's name of a model without a name."""
+
 
 @dataclass(frozen=True, eq=False)
 class Mjcf:
@@ -70,7 +73,9 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     reader = _Reader(model, spec, path.parent, elements)
     links, joints = reader.tree()
     ordered = in_tree_order(links, joints, str(path), elements)
-    urdf = Urdf(model.names.split(b"\0")[0].decode(), *ordered, tuple(reader.notes), elements)
+    name = model.names.split(b"\0")[0].decode()
+    name = "" if name == UNNAMED else name
+    urdf = Urdf(name, *ordered, tuple(reader.notes), elements)
     return Mjcf(urdf, reader.states(), reader.excluded())
 
 

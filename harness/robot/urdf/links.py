@@ -56,12 +56,24 @@ class LinkReader:
         packages: Search path for other mesh file names.
         materials: Colours of the file's named materials.
         notes: Collects notes on corrected elements.
+        undrawn: Collects the links of visuals that cannot be drawn, with the reason.
     """
 
     folder: Path
     packages: PackagePath
     materials: Mapping[str, Rgba]
     notes: list[str] = field(default_factory=list[str])
+    undrawn: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+
+    def undrawn_note(self) -> list[str]:
+        """One note on all visuals that are not drawn; empty where all are."""
+        if not self.undrawn:
+            return []
+        link, reason = self.undrawn[0]
+        if len(self.undrawn) == 1:
+            return [f"link '{link}': the visual is not drawn: {reason}"]
+        links = ", ".join(dict.fromkeys(each for each, _ in self.undrawn))
+        return [f"{len(self.undrawn)} visuals are not drawn, of {links}; the first: {reason}"]
 
     def link(self, element: XmlElement) -> Link:
         """A link.
@@ -160,16 +172,14 @@ class LinkReader:
             item.refuse(f"link '{link}': a mesh's scale is not zero", at="scale")
         if Path(name).suffix.lower() not in SUFFIXES:
             if is_visual:
-                self.notes.append(
-                    f"link '{link}': the visual '{name}' is not drawn (not a {KINDS} file)"
-                )
+                self.undrawn.append((link, f"'{name}' is not a {KINDS} file"))
                 return None
             item.refuse(f"link '{link}': '{name}' is not a {KINDS} file", at="filename")
         try:
             path = self.packages.file(name, self.folder)
         except NotFoundError as error:
             if is_visual and not isinstance(error, OutsideError):
-                self.notes.append(f"link '{link}': the visual is not drawn: {error}")
+                self.undrawn.append((link, str(error)))
                 return None
             item.refuse(f"link '{link}': mesh {error}", at="filename")
         mesh = Mesh(path, scale)

@@ -86,6 +86,7 @@ def parse_urdf(
     elements = _by_name(root)
     links = collected(reader.link, root.findall("link"))
     joints = collected(read_joint, root.findall("joint"))
+    notes += reader.undrawn_note()
     notes += zero_limits(root.findall("joint"))
     notes += ranges_of_continuous(root.findall("joint"))
     if not links and any(root.find(tag) is not None for tag in OF_SRDF):

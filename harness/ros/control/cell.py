@@ -13,10 +13,9 @@ from harness.core.types import FloatArray
 from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import RobotDescription
-from harness.ros.control.controller import Command, Controller, Outcome, Window
+from harness.ros.control.controller import Command, Controller, Outcome, Rows, Window
 from harness.ros.control.goals import Code, Defaults, GoalRefused
 from harness.ros.control.gripper import GripperMotion
-from harness.ros.control.spline import Rows
 from harness.ros.control.trajectory import follow_result, start_trajectory
 
 if TYPE_CHECKING:

@@ -9,7 +9,9 @@ from typing import Any, Protocol
 from harness.core.types import FloatArray, IntArray
 from harness.robot.description import Joint
 from harness.ros.control.goals import Code
-from harness.ros.control.spline import Rows
+
+Rows = FloatArray
+"""Positions, velocities and accelerations, shape (3, N, dof)."""
 
 
 @dataclass(frozen=True, eq=False)

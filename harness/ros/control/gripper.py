@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.reporting.rosbag.messages import message
 from harness.robot.description import RobotDescription
-from harness.ros.control.controller import Command, Outcome, Window
+from harness.ros.control.controller import Command, Outcome, Rows, Window
 from harness.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
-from harness.ros.control.spline import Rows
-from harness.ros.interfaces import GRIPPER, message
+from harness.ros.interfaces import GRIPPER
 from harness.simulation.gripper_drive import GOAL_TOLERANCE, STALL_SPEED, STALL_TIME, joint_speed
 from harness.simulation.set_points import ramp
 

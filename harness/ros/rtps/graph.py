@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from harness.reporting.rosbag.messages import message
 from harness.ros.graph import OnMessage, Publisher, Reply
-from harness.ros.interfaces import CANCEL, decoded, encoded, message, prepare
+from harness.ros.interfaces import CANCEL, decoded, encoded, prepare
 from harness.ros.names import Use
 from harness.ros.rtps import wire
 from harness.ros.rtps.discovery import Endpoint, Qos

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,14 +25,14 @@ from harness.world.moveit_messages.values import (
     text,
 )
 from harness.world.notes import Note, Notes
-from harness.world.plain_values import pose_spec
-from harness.world.stl import Triangles
+from harness.world.plain_values import LEAST_NORMAL, THICK_PLANE, plane_pose, pose_spec
+from harness.world.stl import Triangles, add_mesh, cone
 
 KEYS = ("world", "robot_model_name")
 PRIMITIVES = {"1": "box", "2": "sphere", "3": "cylinder", "4": "cone"}
 """Numbers of SolidPrimitive's types."""
 
-SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
+SIZES = {"box": 3, "sphere": 1, "cylinder": 2, "cone": 2}
 IGNORED = ("object_colors", "link_padding", "link_scale", "fixed_frame_transforms")
 
 
@@ -113,6 +114,11 @@ class _Reader:
         self._folder = folder
         self.notes = Notes()
         self.meshes: dict[str, Triangles] = {}
+        self._kinds = (
+            ("primitive", self._primitive),
+            ("mesh", self._mesh),
+            ("plane", self._plane),
+        )
 
     def object(self, item: Located) -> ObjectSpec:
         """A collision object; it stands still."""
@@ -127,12 +133,10 @@ class _Reader:
                 f"'{name}' is in the frame '{frame}', which is not the robot's root",
                 f"known are {', '.join(sorted(filter(None, self._frames)))}",
             )
-        for planes in children(item, "planes"):
-            refuse(planes, f"'{name}' has a plane, which is not imported")
         at = message_pose(child(item, "pose"))
         shapes = [
             self._shape(at @ pose, **words)
-            for kind, read in (("primitive", self._primitive), ("mesh", self._mesh))
+            for kind, read in self._kinds
             for words, pose in zip(
                 [read(shape, name) for shape in children(item, _plural(kind))],
                 [message_pose(pose) for pose in children(item, f"{kind}_poses")],
@@ -143,8 +147,9 @@ class _Reader:
             refuse(item, f"'{name}' has no shape")
         return ObjectSpec(name=name, static=True, shapes=tuple(shapes))
 
-    def _shape(self, pose: SE3, **words: Any) -> ShapeSpec:
-        return ShapeSpec(pose=pose_spec(pose), **words)
+    def _shape(self, pose: SE3, at: SE3 | None = None, **words: Any) -> ShapeSpec:
+        """A shape, at a pose in the frame that is its own."""
+        return ShapeSpec(pose=pose_spec(pose if at is None else pose @ at), **words)
 
     def _primitive(self, item: Located, name: str) -> dict[str, Any]:
         word = text(item, "type").lower()
@@ -157,7 +162,16 @@ class _Reader:
             return {"box": {"size": sizes}}
         if kind == "sphere":
             return {"sphere": {"radius": sizes[0]}}
+        if kind == "cone":
+            return {"mesh": {"file": add_mesh(self.meshes, name, cone(sizes[1], sizes[0]))}}
         return {"cylinder": {"length": sizes[0], "radius": sizes[1]}}
+
+    def _plane(self, item: Located, name: str) -> dict[str, Any]:
+        coefficients = [number(value) for value in children(item, "coef")]
+        if len(coefficients) != 4 or math.hypot(*coefficients[:3]) < LEAST_NORMAL:
+            refuse(item, f"'{name}': a plane has a `coef` of 4 numbers, the normal not 0 0 0")
+        self.notes.add(item.place, THICK_PLANE)
+        return {"plane": {}, "at": plane_pose(coefficients)}
 
     def _mesh(self, item: Located, name: str) -> dict[str, Any]:
         resource = text(item, "resource")
@@ -175,10 +189,8 @@ class _Reader:
         ]
         if not faces or max(map(max, faces)) >= len(corners) or min(map(min, faces)) < 0:
             refuse(item, f"'{name}': a mesh has triangles of its vertices, or a `resource`")
-        safe = "".join(letter if letter.isalnum() else "_" for letter in name)[:60]
-        file = f"{safe}_{len(self.meshes)}.stl"
-        self.meshes[file] = np.array(corners, dtype=float)[np.array(faces)]
-        return {"mesh": {"file": file}}
+        triangles = np.array(corners, dtype=float)[np.array(faces)]
+        return {"mesh": {"file": add_mesh(self.meshes, name, triangles)}}
 
 
 def _plural(kind: str) -> str:

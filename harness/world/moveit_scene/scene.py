@@ -18,15 +18,13 @@ from harness.language.world import MeshSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.world.imported import ImportedWorld
 from harness.world.moveit_scene.tokens import TokenReader
 from harness.world.notes import Notes
-from harness.world.plain_values import facing, pose_spec
-from harness.world.stl import Triangles
+from harness.world.plain_values import LEAST_NORMAL, THICK_PLANE, plane_pose, pose_spec
+from harness.world.stl import Triangles, add_mesh, cone
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 LARGEST_FILE = 8_000_000  # [bytes]
 MOST_OBJECTS = 1000
 MOST_SHAPES = 10_000
-CONE_SIDES = 32
-"""Sides of the pyramid that stands for a cone."""
 MOST_CORNERS = 200_000
 """Most vertices of one mesh, and most triangles: the limit of the physics."""
 
@@ -141,7 +139,7 @@ class _Reader:
                 radius, length = self._sizes(2, place)
                 words["cylinder"] = {"radius": radius, "length": length}
             case "cone":
-                words["mesh"] = self._cone(name, *self._sizes(2, place))
+                words["mesh"] = self._written(name, cone(*self._sizes(2, place)))
             case "plane":
                 words["plane"] = {}
                 turn = self._plane(place)
@@ -155,13 +153,11 @@ class _Reader:
 
     def _plane(self, place: Place) -> SE3:
         """The frame of a x + b y + c z + d = 0, z along its normal."""
-        *normal, offset = self._numbers(4)
-        length = math.hypot(*normal)
-        if length < 1e-9:
+        coefficients = self._numbers(4)
+        if math.hypot(*coefficients[:3]) < LEAST_NORMAL:
             raise SpecError([place.problem("a plane's normal must not be 0 0 0")])
-        self._notes.add(place, "a plane is solid below its surface; MoveIt's is thin")
-        unit = np.array(normal) / length
-        return SE3(facing(unit), -offset / length * unit)
+        self._notes.add(place, THICK_PLANE)
+        return plane_pose(coefficients)
 
     def _mesh(self, name: str) -> MeshSpec:
         vertices = self._count("vertices", MOST_CORNERS)
@@ -172,24 +168,9 @@ class _Reader:
             faces.append([self._count("vertices", vertices - 1) for _ in range(3)])
         return self._written(name, corners[np.array(faces, dtype=np.int64).reshape(-1, 3)])
 
-    def _cone(self, name: str, radius: float, length: float) -> MeshSpec:
-        """A cone about z, its tip up, the origin halfway between tip and base."""
-        angles = np.linspace(0.0, 2 * math.pi, CONE_SIDES, endpoint=False)
-        low = np.full(CONE_SIDES, -length / 2)
-        rim = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), low])
-        following = np.roll(rim, -1, axis=0)
-        tip, middle = (np.broadcast_to([0, 0, z], rim.shape) for z in (length / 2, -length / 2))
-        sides = np.stack([rim, following, tip], axis=1)
-        return self._written(
-            name, np.concatenate([sides, np.stack([following, rim, middle], axis=1)])
-        )
-
     def _written(self, name: str, triangles: Triangles) -> MeshSpec:
         """A mesh file of triangles, named after the object."""
-        safe = "".join(c if c.isalnum() else "_" for c in name)[:60]
-        file = f"{safe}_{len(self._meshes)}.stl"
-        self._meshes[file] = triangles
-        return MeshSpec(file=file)
+        return MeshSpec(file=add_mesh(self._meshes, name, triangles))
 
     def _color(self) -> Rgba | None:
         """A colour; None for four zeros."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import ClassVar, cast
 
-from harness.planning.ik.numeric import TiltGoal, pitch_of, solve_numeric
+from harness.core.spatial import pitch_of
+from harness.planning.ik.numeric import TiltGoal, solve_numeric
 from harness.planning.ik.task import PITCH_JOINTS, TILT_JOINTS, WHOLE_POSE_JOINTS
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal

@@ -1,7 +1,8 @@
-"""An action server from services and topics, as rcl_action makes them."""
+"""Action servers and clients from services and topics, as rcl_action makes them."""
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -9,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from harness.reporting.rosbag.messages import message
 from harness.ros.graph import Graph, Reply
-from harness.ros.interfaces import CANCEL, UUID, message, seconds, stamp
+from harness.ros.interfaces import CANCEL, UUID, seconds, stamp
 
 INFO = "action_msgs/msg/GoalInfo"
 MOST_ENDED = 100
@@ -177,3 +179,79 @@ def uuid_of(goal: str) -> Any:
 def hex_of(uuid: Any) -> str:
     """The identifier in a message."""
     return bytes(uuid.uuid).hex()
+
+
+@dataclass
+class ClientGoal:
+    """A goal that was sent, and what the server said of it.
+
+    Attributes:
+        identifier: The goal's UUID in hex.
+        is_accepted: None before the server answered.
+        status: How it ended; UNKNOWN before.
+        result: The result; None before the end.
+        feedback: What arrived, in order.
+        cancel_code: The return code of the request to cancel it; None before the answer.
+    """
+
+    identifier: str
+    is_accepted: bool | None = None
+    status: Status = Status.UNKNOWN
+    result: Any = None
+    feedback: list[Any] = field(default_factory=list[Any])
+    cancel_code: int | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it was rejected, or its result is there."""
+        return self.is_accepted is False or self.result is not None
+
+
+class ActionClient:
+    """Sends goals to one action server."""
+
+    def __init__(self, graph: Graph, name: str, kind: str) -> None:
+        self.name, self.kind = name, kind
+        self._goals: dict[str, ClientGoal] = {}
+        self._send = graph.client(f"{name}/_action/send_goal", f"{kind}_SendGoal")
+        self._cancel = graph.client(f"{name}/_action/cancel_goal", CANCEL)
+        self._result = graph.client(f"{name}/_action/get_result", f"{kind}_GetResult")
+        graph.subscribe(f"{name}/_action/feedback", f"{kind}_FeedbackMessage", self._take_feedback)
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether the server's three services are there."""
+        return self._send.is_ready and self._cancel.is_ready and self._result.is_ready
+
+    def send(self, goal: Any) -> ClientGoal:
+        """Send a goal and request its result; that of a rejected goal may give the reason."""
+        sent = ClientGoal(uuid.uuid4().hex)
+        self._goals[sent.identifier] = sent
+
+        def answered(response: Any) -> None:
+            sent.is_accepted = bool(response.accepted)
+            request = message(f"{self.kind}_GetResult_Request", goal_id=uuid_of(sent.identifier))
+            self._result.call(request, ended)
+
+        def ended(response: Any) -> None:
+            sent.status, sent.result = Status(response.status), response.result
+
+        request = message(
+            f"{self.kind}_SendGoal_Request", goal_id=uuid_of(sent.identifier), goal=goal
+        )
+        self._send.call(request, answered)
+        return sent
+
+    def cancel(self, goal: ClientGoal) -> None:
+        """Request that a goal is canceled."""
+        info = message("action_msgs/msg/GoalInfo", goal_id=uuid_of(goal.identifier))
+
+        def answered(response: Any) -> None:
+            goal.cancel_code = response.return_code
+
+        self._cancel.call(message(f"{CANCEL}_Request", goal_info=info), answered)
+
+    def _take_feedback(self, content: Any) -> None:
+        goal = self._goals.get(hex_of(content.goal_id))
+        if goal is not None:
+            goal.feedback.append(content.feedback)

@@ -1,0 +1,40 @@
+"""Files that are written whole, or stay as they were."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from harness.core.errors import HarnessError
+
+BUFFER = 2**20
+"""Bytes of a file that are written at once."""
+
+
+@contextmanager
+def replaced(file: Path) -> Generator[IO[bytes]]:
+    """A new file, which gets its name when everything is written."""
+    part = file.with_name(f".{file.name}.{os.getpid()}")
+    try:
+        with part.open("wb", buffering=BUFFER) as stream:
+            yield stream
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def writing(folder: Path) -> Generator[None]:
+    """Make a folder, and report that files in it cannot be written.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise HarnessError(f"'{folder}' cannot be written: {error.strerror}") from error

@@ -1,0 +1,31 @@
+"""A run of the graded scenario, and recordings that a student might make of it."""
+
+import pytest
+
+from harness.recording.read_run import read_run
+from tests.grading.recordings import SCENARIO, students_recording
+from tests.running import run_case
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory):
+    """The scenario's own run."""
+    folder = tmp_path_factory.mktemp("graded") / "run"
+    result = run_case(SCENARIO, report_dir=folder, stills=False, page=False)
+    assert result.outcome == "passed", result.message
+    return folder
+
+
+@pytest.fixture(scope="session")
+def stored(folder):
+    return read_run(folder)
+
+
+@pytest.fixture
+def recording(stored):
+    return students_recording(stored.run)
+
+
+@pytest.fixture(scope="session")
+def whole(stored, tmp_path_factory):
+    return students_recording(stored.run).write(tmp_path_factory.mktemp("whole") / "whole.mcap")
