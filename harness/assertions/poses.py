@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from harness.assertions.temporal import TIME_RESOLUTION, episodes, trailing_max
 from harness.assertions.window import NotObservable, object_record
-from harness.core.pose_arrays import IDENTITY
+from harness.core.geometry import bounding_radius
+from harness.core.pose_arrays import IDENTITY, rotate
+from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.step import step_class
 from harness.recording.run import Run
@@ -148,6 +152,24 @@ def speeds(
         appeared &= ~np.append(False, here[:-1])
     linear[appeared] = angular[appeared] = 0.0
     linear[missing] = angular[missing] = np.nan
+    return linear, angular
+
+
+def body_speeds(
+    run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Linear speed of an object's fastest point [m/s] and its angular speed [rad/s], (N,) each.
+
+    A point of a shape moves at most as fast as the shape's middle, and its distance from there
+    times the angular speed. Of a mesh the origin counts.
+    """
+    linear, angular = speeds(run, poses, here)
+    for shape in object_record(run, name).shapes:
+        radius = bounding_radius(replace(shape, pose=SE3.identity()))
+        if np.isfinite(radius):
+            middle = poses.copy()
+            middle[:, :3] += rotate(poses[:, 3:], shape.pose.translation)
+            linear = np.maximum(linear, speeds(run, middle, here)[0] + angular * radius)
     return linear, angular
 
 

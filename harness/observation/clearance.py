@@ -60,6 +60,7 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
+        only: Collection[Pair] | None = None,
     ) -> Signals:
         """The same signals with `clearances` and `clearance_links` filled in.
 
@@ -68,6 +69,7 @@ class CoalClearance:
             objects: All objects of the run.
             attachments: All attachments of the run.
             cutoff: Larger distances are reported as the cutoff [m].
+            only: The pairs that are measured; by default all.
         """
         count = len(signals.times)
         if not count:
@@ -76,7 +78,7 @@ class CoalClearance:
         samples = knots(motion.times, objects, attachments)
         found = MeasuredClearance.joined(
             [
-                self._measured(motion.at(part), objects, attachments, cutoff)
+                self._measured(motion.at(part), objects, attachments, cutoff, only)
                 for part in parts_of_run(motion.times, samples)
             ]
         )
@@ -87,7 +89,7 @@ class CoalClearance:
             inside_of(samples, largest_dip(found.dips()) > LARGEST_ERROR),
         )
         if len(near):
-            finer = self._measured(motion.at(near), objects, attachments, cutoff)
+            finer = self._measured(motion.at(near), objects, attachments, cutoff, only)
             samples = found.refined(finer, samples, near)
         distances = {
             key: between(samples, values, count) for key, values in found.distances.items()
@@ -117,7 +119,9 @@ class CoalClearance:
         if not len(fast):
             return
         owners, shares = parts_of(samples[fast], dips[fast])
-        finer = self._measured(motion.between(owners, shares), objects, attachments, cutoff)
+        finer = self._measured(
+            motion.between(owners, shares), objects, attachments, cutoff, distances.keys()
+        )
         for key, values in finer.distances.items():
             absent = np.isnan(distances[key][owners])
             np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))

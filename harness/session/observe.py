@@ -28,6 +28,7 @@ def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Sign
 def observed_run(prepared: Prepared, executed: Run) -> Run:
     """The run with distances, as verdicts and the digest need them."""
     from harness.observation.clearance import CoalClearance
+    from harness.observation.held_clearance import with_held_distances
     from harness.observation.link_overlaps import with_link_overlaps
 
     description, needed = prepared.program.description, prepared.observations
@@ -35,6 +36,7 @@ def observed_run(prepared: Prepared, executed: Run) -> Run:
     observer = CoalClearance(description)
     signals = observer.observe(executed.signals, *bodies, cutoff)
     run = replace(executed, signals=with_link_overlaps(signals, description))
+    run = replace(run, signals=with_held_distances(run, observer))
     if not needed.planned_clearances:
         return run
     planned = observer.observe(as_commanded(run, prepared.kinematics), *bodies, cutoff)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
+from tests.adversarial.carried_scenes import CARRIED_SCENES
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
@@ -28,6 +29,7 @@ ALL_SCENES = (
     *WINDOW_SCENES,
     *TRICK_SCENES,
     *FIXTURE_SCENES,
+    *CARRIED_SCENES,
 )
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
