@@ -21,9 +21,9 @@ def test_distances_of_what_is_carried_are_those_of_its_shapes_while_the_hand_car
     measured = carried.signals.clearances["cup", "beam"]
     known = np.isfinite(measured)
     x, z = carried.signals.object_poses["cup"][:, [0, 2]].T
-    beside = known & (z > 0.2) & (measured < carried.signals.clearance_cutoff)
-    assert beside.sum() > 100
-    assert measured[beside] == pytest.approx(0.25 - 0.02 - x[beside], abs=2e-4)
+    next_to_beam = known & (z > 0.2) & (measured < carried.signals.clearance_cutoff)
+    assert next_to_beam.sum() > 100
+    assert measured[next_to_beam] == pytest.approx(0.25 - 0.02 - x[next_to_beam], abs=2e-4)
     assert not known[:1000].any(), "the hand is open"
 
 
