@@ -66,6 +66,9 @@ three pictures of more than 0.2 s |
 | contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
 between two samples by more than its least width and the other's together: the physics looks for \
 contacts at the samples |
+| held object is nearer | `clearance` of the robot and an object, to which something that the hand \
+holds, or carries on what it holds, comes nearer than the links may; not of what is taken from it \
+or put on it |
 | no collision shapes | `collision`, `in_contact` or `clearance` of a robot with moving links \
 that have no collision shapes: they pass through everything |
 

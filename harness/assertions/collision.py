@@ -7,9 +7,10 @@ A contact of two bodies is no collision where
 - the fingers of the gripper meet, closing on nothing;
 - fingers or palm grip an object: see `_gripping`;
 - two objects touch, none of them in the hand (a box that stands on a table);
-- an object in the hand, held by the fingers or welded to it, still touches what it touched when it
-  was gripped, until it leaves that, or is being put down: the contact, with something under it,
-  outlasts the hold.
+- an object in the hand, held by the fingers or welded to it, or carried by such an object, still
+  touches what it touched when it was gripped, until it leaves that, or is being put down: the
+  contact, with something under it, outlasts the hold;
+- what the hand carries in this way touches another such object.
 The last two excuses of a hand and what it holds end where they press harder than `excused_force`
 explains, or where the object is dragged along. Gaps under `BRIDGE` seconds end neither a contact
 between objects nor a hold.
@@ -30,6 +31,7 @@ from harness.assertions.contacts import (
     debounced,
     finger_links,
     force_between,
+    hand_links,
     side_forces,
 )
 from harness.assertions.excused_force import (
@@ -40,8 +42,8 @@ from harness.assertions.excused_force import (
     leaving_limit,
     mean_force,
 )
-from harness.assertions.hold import held_by_fingers, welded
-from harness.assertions.support import is_below
+from harness.assertions.hold import gripped, held_by_fingers
+from harness.assertions.support import carried_by_hand, is_below
 from harness.assertions.temporal import bridged, episodes
 from harness.assertions.text import amount, amounts
 from harness.core.types import BoolArray, FloatArray
@@ -148,7 +150,7 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     along after letting go, or that opens against a wall.
     """
     gripper = run.robot.gripper
-    hand = frozenset[str]() if gripper is None else finger_links(gripper) | {gripper.palm_link}
+    hand = frozenset[str]() if gripper is None else hand_links(gripper)
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)
@@ -165,16 +167,17 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
 
 
 def held_by(run: Run, name: str) -> bool:
-    """Whether the hand ever holds an object."""
-    return run.robot.gripper is not None and bool(_holds(run, name).any())
+    """Whether the hand ever holds an object, or what it holds carries it."""
+    return name in carried_by_hand(run)
 
 
-def _holds(run: Run, name: str) -> BoolArray:
-    """Samples at which the hand holds an object, welds and short gaps included, shape (N,)."""
-    mask = held_by_fingers(run, name) | welded(run, name)
-    for start, stop in bridged(run.signals.times, episodes(mask)):
-        mask[start:stop] = True
-    return mask
+def _holds(run: Run, name: str, other: str) -> list[tuple[int, int]]:
+    """When the hand holds an object, or carries it and not the other; short gaps included."""
+    by_hand = carried_by_hand(run)
+    mask = gripped(run, name)
+    if name in by_hand:
+        mask |= by_hand[name] & ~by_hand.get(other, np.zeros_like(mask))
+    return bridged(run.signals.times, episodes(mask))
 
 
 def _limit_of(run: Run, held: str, contact: _Contact, force: FloatArray) -> FloatArray:
@@ -233,7 +236,7 @@ def _contacts_in_hand(run: Run, held: str, other: str) -> list[_Contact]:
     """
     if run.robot.gripper is None:
         return []
-    holds = episodes(_holds(run, held))
+    holds = _holds(run, held, other)
     contacts = bridged(run.signals.times, episodes(force_between(run, {held}, {other}) > 0))
     found: list[_Contact] = []
     for start, stop in contacts:

@@ -1,7 +1,7 @@
 """Who touched whom: forces between sets of bodies, debounced.
 
-A contact between stiff bodies flickers from sample to sample. Two bodies count as touching while
-there was any force above `TOUCH_FORCE` in the last `DEBOUNCE` seconds.
+A contact between stiff bodies flickers from sample to sample. Gaps of up to `DEBOUNCE` seconds
+between two contacts do not end it, and the robot touches for that much longer.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.assertions.facts import fact
 from harness.assertions.poses import present
-from harness.assertions.temporal import trailing_max
+from harness.assertions.temporal import trailing_max, without_gaps
 from harness.assertions.window import NotObservable
 from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
@@ -43,6 +43,11 @@ def finger_links(gripper: GripperRecord) -> frozenset[str]:
     return frozenset(link for links in gripper.sides.values() for link in links)
 
 
+def hand_links(gripper: GripperRecord) -> frozenset[str]:
+    """Links of all finger sides, and the palm."""
+    return finger_links(gripper) | ({gripper.palm_link} - {""})
+
+
 def force_between(run: Run, firsts: Collection[str], seconds: Collection[str]) -> FloatArray:
     """Sum of the normal forces between two sets of bodies at each sample [N], shape (N,)."""
     total = np.zeros(len(run.signals.times))
@@ -58,26 +63,26 @@ def debounced(run: Run, force: FloatArray) -> FloatArray:
     return trailing_max(force, run.signals.times, DEBOUNCE)
 
 
-def bodies_touching(
-    run: Run,
-    name: str,
-    *,
-    among: Collection[str] | None = None,
-    but: Collection[str] = (),
-) -> dict[str, FloatArray]:
-    """Debounced force of every body that ever touched an object, sorted by name [N].
+def touched(run: Run, name: str, but: Collection[str] = ()) -> list[str]:
+    """Bodies that ever touched another one, without some, sorted."""
+    bodies = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
+    return sorted(bodies.difference(but))
+
+
+def bodies_touching(run: Run, name: str, but: Collection[str] = ()) -> dict[str, FloatArray]:
+    """Force of every body that ever touched an object [N], shape (N,) each.
+
+    Gaps of up to `DEBOUNCE` between two contacts are closed; nothing outlasts its last contact.
 
     Args:
         run: The run with its recorded signals.
         name: The name of the object.
-        among: Only these bodies; default any.
         but: Bodies that are left out.
     """
-    touching = {b if a == name else a for a, b in run.signals.contact_forces if name in (a, b)}
-    others = sorted(
-        body for body in touching if (among is None or body in among) and body not in but
-    )
-    return {other: debounced(run, force_between(run, {name}, {other})) for other in others}
+    return {
+        other: without_gaps(force_between(run, {name}, {other}), run.signals.times, DEBOUNCE)
+        for other in touched(run, name, but)
+    }
 
 
 @fact
@@ -119,8 +124,9 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """Debounced force of all links on an object [N], and 1 where it is attached, (N,) each."""
     links = set(run.robot.link_names)
     force = np.zeros(len(run.signals.times))
-    for touching in bodies_touching(run, name, among=links).values():
-        force = force + touching
+    for link in touched(run, name):
+        if link in links:
+            force = force + debounced(run, force_between(run, {link}, {name}))
     return force, attached(run, name).astype(float)
 
 
@@ -143,7 +149,7 @@ def bodies(run: Run, word: str) -> frozenset[str]:
         case "robot":
             return links
         case "gripper" if robot.gripper is not None:
-            return finger_links(robot.gripper) | ({robot.gripper.palm_link} - {""})
+            return hand_links(robot.gripper)
         case "any":
             return links | objects | {name for pair in run.signals.contact_forces for name in pair}
         case _ if word in links or word in objects:

@@ -7,6 +7,7 @@ import numpy as np
 from harness.assertions.contacts import attached
 from harness.assertions.hold import in_hand
 from harness.assertions.poses import present
+from harness.assertions.support import carried_by_hand
 from harness.assertions.window import NotObservable, NotReached, object_record
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
@@ -24,8 +25,11 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
     clearances = run.signals.clearances
     if second == "any":
         names = _names_of(run, first)
+        carried = {} if first == "robot" else carried_by_hand(run)
         rows = {
-            key: np.where(in_hand(run, key[1]), np.nan, clearances[key])
+            key: np.where(
+                in_hand(run, key[1]) | carried.get(key[1], False), np.nan, clearances[key]
+            )
             for key in sorted(clearances)
             if key[0] in names and key[1] not in ("robot", key[0])
         }

@@ -23,7 +23,7 @@ import numpy as np
 from harness.assertions.contacts import force_between, gripper_of
 from harness.assertions.hold import recent_mean, weight_of
 from harness.assertions.poses import object_poses
-from harness.assertions.support import rides_on
+from harness.assertions.support import riders
 from harness.assertions.window import NotObservable
 from harness.core.pose_arrays import relative
 from harness.core.types import BoolArray, FloatArray
@@ -50,10 +50,8 @@ def mean_force(run: Run, first: str, second: str) -> FloatArray:
 def load_of(run: Run, name: str) -> FloatArray:
     """Weight of an object and of what rests on it at each sample [N], shape (N,)."""
     load = np.full(len(run.signals.times), weight_of(run, name))
-    for record in run.objects:
-        touches = any({record.name, name} == set(pair) for pair in run.signals.contact_forces)
-        if touches and not record.is_static:
-            load = load + np.where(rides_on(run, record.name, name), weight_of(run, record.name), 0)
+    for rider, rides in riders(run, name).items():
+        load = load + np.where(rides, weight_of(run, rider), 0)
     return load
 
 

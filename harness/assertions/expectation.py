@@ -18,7 +18,7 @@ from harness.assertions.observations import (
 )
 from harness.assertions.poses import present
 from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, NotReached, Window, window_of
+from harness.assertions.window import NotObservable, NotReached, Window, lasting, window_of
 from harness.assertions.words import ALREADY_TRUE, Terms, decide, terms_of
 from harness.cell.scope import At
 from harness.core.errors import HarnessError
@@ -146,7 +146,11 @@ class Predicate(Expectation, PredicateFields):
     def verdict(self, run: Run, step: str) -> Verdict:
         terms = self.terms(step)
         window = window_of(run, terms.step)
-        answer = decide(terms, window, self.margins(window))
+        margins = self.margins(window)
+        here = margins.present
+        if terms.word == "at_end" and here is not None and here.any() and not here[-1]:
+            raise NotReached("what it is about was not there any more at the end")
+        answer = decide(terms, window, margins)
         if answer.status == "passed" and terms.word == "at_end" and (why := self.unchanged(window)):
             return replace(answer, warnings=(VerdictWarning(ALREADY_TRUE, why),))
         return answer
@@ -197,9 +201,15 @@ class ObjectPredicate(Predicate):
 
     def margins(self, window: Window) -> MarginSignal:
         found = super().margins(window)
-        if found.present is not None or not _is_recorded(window.run, self.object):
+        if not _is_recorded(window.run, self.object):
             return found
-        return replace(found, present=window.cut(present(window.run, self.object)))
+        here = lasting(window.cut(present(window.run, self.object)))
+        return replace(
+            found,
+            values=np.where(here, found.values, np.nan),
+            present=here,
+            applies=here if found.applies is None else found.applies & here,
+        )
 
 
 def _is_recorded(run: Run, name: str) -> bool:

@@ -41,6 +41,7 @@ from harness.language.formula.formula import (
     Node,
     Signal,
     Temporal,
+    comparisons_of,
     implications_of,
     signals_of,
     text_of,
@@ -93,6 +94,9 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         if near.low[0] > 0 or near.high[0] < 0:
             cutoff = amount(window.run.signals.clearance_cutoff, "m")
             raise NotObservable(f"distances were recorded up to {cutoff} only")
+        undefined = evaluation.first_undefined(root)
+        if undefined:
+            raise NotObservable(undefined)
         raise NotReached("the time it is judged over ended before it was decided")
     holds = low > 0
     is_open = bool(window.cut_short) and not holds
@@ -313,6 +317,16 @@ class Evaluation:
             if unknown.any():
                 time = self.window.time(int(np.argmax(unknown)))
                 return f"{node} is not known, or not there, at t={time:.3f} s"
+        return ""
+
+    def first_undefined(self, root: Node) -> str:
+        """The first sample at which a comparison of known signals has no value; empty if none."""
+        for node in comparisons_of(root):
+            bounds = self.bounds(node)
+            undefined = np.isinf(bounds.low) & np.isinf(bounds.high)
+            if undefined.any():
+                time = self.window.time(int(np.argmax(undefined)))
+                return f"{node.text} has no value at t={time:.3f} s, where it divides by zero"
         return ""
 
 

@@ -8,8 +8,8 @@ from harness.assertions.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
     attached,
-    finger_links,
     gripper_of,
+    hand_links,
     side_forces,
 )
 from harness.assertions.facts import fact
@@ -24,8 +24,15 @@ from harness.core.antipodal import (
     is_opposite,
     least_thickness,
 )
-from harness.core.pose_arrays import compose, conjugate, quat_product, relative, rotation_angle
-from harness.core.types import BoolArray, FloatArray
+from harness.core.pose_arrays import (
+    compose,
+    conjugate,
+    quat_product,
+    relative,
+    rotate,
+    rotation_angle,
+)
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.run import Run
 from harness.recording.step_results import GraspMode
 
@@ -133,7 +140,7 @@ def weight_of(run: Run, name: str) -> float:
 def _upward(run: Run, name: str, which: str) -> FloatArray:
     """Upward part of the hand's recorded forces on an object, mean of `HOLD_TIME` [N], (N,)."""
     gripper = gripper_of(run)
-    hand = finger_links(gripper) | {gripper.palm_link}
+    hand = hand_links(gripper)
     total = np.zeros((len(run.signals.times), 3))
     for key, rows in getattr(run.signals, which).items():
         if key[0] in hand and key[1] == name:
@@ -191,11 +198,31 @@ def held_for(run: Run, held: BoolArray) -> FloatArray:
 
 def moves_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """How far an object moved [m] and turned [rad] in the hand within `HOLD_TIME`, (N,) each."""
-    in_tcp = relative(run.signals.tcp_pose, object_poses(run, name))
     times = run.signals.times
-    before = in_tcp[np.searchsorted(times, times - HOLD_TIME - TIME_RESOLUTION)]
-    moved = np.linalg.norm(in_tcp[:, :3] - before[:, :3], axis=1)
-    return moved, rotation_angle(quat_product(conjugate(before[:, 3:]), in_tcp[:, 3:]))
+    return moved_since(run, name, np.searchsorted(times, times - HOLD_TIME - TIME_RESOLUTION))
+
+
+def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, FloatArray]:
+    """How far an object moved [m] and turned [rad] in the hand since earlier samples, (N,) each.
+
+    It moves as its point that was between the fingers; its origin may be far from them. The origin
+    counts where the fingers did not press it, or no direction was recorded.
+
+    Args:
+        run: The run with its recorded signals.
+        name: The name of the object.
+        before: The earlier sample of each sample, shape (N,).
+    """
+    poses, point = object_poses(run, name), np.zeros(3)
+    if sides := _side_presses(run, name):
+        pressed = np.all([side[:, 3:].any(axis=1) for side in sides], axis=0)
+        offset = np.mean([side[:, :3] for side in sides], axis=0) - poses[:, :3]
+        point = np.where(pressed[:, None], rotate(conjugate(poses[:, 3:]), offset), 0.0)[before]
+    now = relative(run.signals.tcp_pose, poses)
+    then = now[before]
+    way = now[:, :3] + rotate(now[:, 3:], point) - then[:, :3] - rotate(then[:, 3:], point)
+    turned = rotation_angle(quat_product(conjugate(then[:, 3:]), now[:, 3:]))
+    return np.linalg.norm(way, axis=1), turned
 
 
 def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
@@ -228,6 +255,12 @@ def welded(run: Run, name: str) -> BoolArray:
 def weld_note(run: Run, name: str) -> str:
     """What a verdict says of an object that a grasp with `mode: weld` fixed in the physics too."""
     return "; welded to the hand by `mode: weld`" if welded(run, name).any() else ""
+
+
+def gripped(run: Run, name: str) -> BoolArray:
+    """Samples at which the hand holds an object in the physics, by fingers or weld, shape (N,)."""
+    mask = welded(run, name)
+    return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)
 
 
 def in_hand(run: Run, name: str) -> BoolArray:

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.step_results import SceneChange
@@ -70,6 +70,15 @@ class Window:
             return ""
         root = failed[-1]  # steps nested in others are recorded after them
         return f"step '{root.id}' failed before then: {root.error_code}"
+
+
+def lasting(mask: BoolArray) -> BoolArray:
+    """A mask over a window without a first sample that is true alone, shape (n,).
+
+    A window begins with the last sample of the step before: what that step removed is still there.
+    """
+    is_alone = len(mask) > 1 and mask[0] and not mask[1]
+    return mask & (np.arange(len(mask)) > 0) if is_alone else mask
 
 
 def window_of(run: Run, step_id: str) -> Window:

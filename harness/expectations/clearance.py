@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field, model_validator
 
+from harness.assertions.collision import colliding
 from harness.assertions.contacts import shapeless
 from harness.assertions.distances import (
     MEASURED_WORDS,
@@ -19,13 +20,16 @@ from harness.assertions.distances import (
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import CLEARANCE_ROOM, Observations
+from harness.assertions.poses import present
+from harness.assertions.support import carried_by_hand
 from harness.assertions.text import amount, amounts
-from harness.assertions.window import NotObservable, NotReached, Window
+from harness.assertions.window import NotObservable, NotReached, Window, lasting
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
 from harness.language.base import Name, NonNegativeLength, PositiveLength
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
+from harness.recording.verdict import VerdictWarning
 
 DISTANCE = Quantity("clearance", "m", "at least `at_least`", "clearance")
 LOSS = Quantity("clearance below plan", "m", "at most `max_below_plan`", "clearance")
@@ -33,6 +37,10 @@ LOSS = Quantity("clearance below plan", "m", "at most `max_below_plan`", "cleara
 
 class Clearance(Predicate):
     """The distance between two bodies is at least a limit, or little less than planned.
+
+    `robot` is the robot's links. What its fingers hold, or carry on what they hold, is named on its
+    own, whether or not a step has attached it; where it comes nearer to an object than the links
+    may, a verdict that passes has a warning, unless it is taken from the object or put on it.
 
     Distances are measured every 5 ms, at every sample around the smallest, and wherever two bodies
     could come nearer by more than 2 mm in between, by the bound of their motion; where they could
@@ -91,6 +99,8 @@ class Clearance(Predicate):
         distance = _smallest(window, rows)
         unknown = np.any([window.cut(unknown_distances(window.run, key)) for key in rows], axis=0)
         there = np.isfinite(distance.values) | unknown
+        for name in {record.name for record in window.run.objects} & set(self.between):
+            there &= lasting(window.cut(present(window.run, name)))
         if not there.any():
             raise NotReached(f"{self.between[0]} and {self.between[1]} were never there together")
         judged: list[_Judged] = []
@@ -110,8 +120,30 @@ class Clearance(Predicate):
         smallest = margins.min(axis=0)
         values = np.where(there & ~(unknown & (smallest >= 0)), smallest, np.nan)
         links = window.run.robot.link_names if "robot" in self.between else ()
-        warnings = shapeless(window.run, links)
+        warnings = (*shapeless(window.run, links), *self._held_nearer(window))
         return MarginSignal(values, "m", evidence, applies=there, warnings=warnings)
+
+    def _held_nearer(self, window: Window) -> tuple[VerdictWarning, ...]:
+        """A warning of what the hand carries nearer to an object than its links may come.
+
+        Not of what it takes from the object or puts on it.
+        """
+        others = set(self.between) - {"robot"}
+        run, is_one = window.run, "robot" in self.between and others and "any" not in others
+        if not (is_one and self.at_least) or "contact_forces" in run.unrecorded:
+            return ()
+        (other,) = others
+        found: list[VerdictWarning] = []
+        for name in carried_by_hand(run):
+            pairs = [pair for pair in run.signals.contact_forces if set(pair) == {name, other}]
+            if pairs and not colliding(run, pairs[0]).any():
+                continue
+            rows = window.cut(run.signals.clearances.get((name, other), np.array([np.inf])))
+            if len(rows) and np.fmin.reduce(rows) < self.at_least:
+                nearest = amount(float(np.fmin.reduce(rows)), "m")
+                text = f"{name}, which the hand carries, comes within {nearest} of {other}"
+                found.append(VerdictWarning("held object is nearer", f"{text}: name it"))
+        return tuple(found)
 
     def _largest_loss(self, window: Window) -> _Worst:
         """Planned less actual distance, the largest of all pairs [m]; unknown where either is."""

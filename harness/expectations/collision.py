@@ -22,7 +22,7 @@ from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.observations import Observations
 from harness.assertions.temporal import episodes, trailing_max, without_gaps
 from harness.assertions.text import amount
-from harness.assertions.window import NotObservable, Window
+from harness.assertions.window import NotObservable, Window, lasting
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.types import BoolArray, FloatArray
@@ -127,7 +127,7 @@ class Collision(Predicate):
                 " objects that it does not hold touch"
             )
         possible = pairs_of(first, second)
-        together = window.cut(could_touch(run, possible))
+        together = lasting(window.cut(could_touch(run, possible)))
         return replace(
             self._contacts(window),
             applies=together,
@@ -152,9 +152,9 @@ class Collision(Predicate):
             if not guilty.any():
                 continue
             force = _force(run, guilty, run.signals.contact_forces[pair])
-            lasting = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
-            if (lasting > 0).any():
-                forces[pair] = lasting
+            unbroken = window.cut(without_gaps(force, run.signals.times, DEBOUNCE))
+            if (unbroken > 0).any():
+                forces[pair] = unbroken
         overlaps = _overlaps_at_start(window, forces)
         if overlaps:
             return _overlapped(forces, overlaps)

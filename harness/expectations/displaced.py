@@ -18,7 +18,10 @@ DISTANCE = Quantity("distance from the start", "m", "at least `at_least`")
 
 
 class Displaced(ObjectPredicate):
-    """The object is away from where it started."""
+    """The object is away from where it started, by the place of its origin.
+
+    A turn about the origin is none: `upright` and the formula `tilt` measure it.
+    """
 
     quantities = (DISTANCE,)
     opposite = "static"

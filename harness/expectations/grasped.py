@@ -15,25 +15,27 @@ from harness.assertions.hold import (
     cradled,
     held_by_fingers,
     held_for,
+    moved_since,
     weld_note,
     why_not_between,
 )
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import object_poses, present
+from harness.assertions.poses import present
 from harness.assertions.temporal import TIME_RESOLUTION, episodes
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
 from harness.cell.scope import At
-from harness.core.pose_arrays import conjugate, quat_product, relative, rotation_angle
 from harness.language.base import AngleBetween, Force, PositiveLength
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
 FINGERS = Quantity("finger force", "N", "at least `min_force` on every side", "contact")
-BETWEEN = Quantity("between the fingers", "1", "pressed from opposite sides by fingers that close")
+BETWEEN = Quantity(
+    "between the fingers", "1", "free, and pressed from opposite sides by fingers that close"
+)
 HELD = Quantity("time held", "s", "at least 0.1 s without a break")
-SLIP = Quantity("slip in the hand", "m", "at most `max_slip`", "slip")
+SLIP = Quantity("slip in the hand", "m", "between the fingers at most `max_slip`", "slip")
 TURN = Quantity("turn in the hand", "rad", "at most `max_rotation`", "slip")
 
 
@@ -43,7 +45,9 @@ class Grasped(ObjectPredicate):
     It is between the fingers where two sides press it from opposite directions, more than 90
     degrees apart, at places as far from each other as the object is thick: two contacts with
     coefficients of friction of at most 1 can only then balance each other. Closed tips on a larger
-    box are not, nor is what lies on fingers that do not close. A grasp has lasted for 0.1 s: a blow
+    box are not, nor is what lies on fingers that do not close, nor what is fixed in the world.
+    Fingers may also spread inside a ring. The object slips as its point between the fingers does,
+    wherever its origin is. A grasp has lasted for 0.1 s: a blow
     lasts a few milliseconds, and what flies past at 0.5 m/s is 5 cm further by then.
     """
 
@@ -70,18 +74,17 @@ class Grasped(ObjectPredicate):
     def signal(self, window: Window) -> MarginSignal:
         """Force on each side, and drift in the hand since all sides have held without a break.
 
-        Drift is the change of T_tcp_object since the first sample of the current grasp; every turn
-        counts, also about the axis of a round object.
+        Drift is that of the object's point between the fingers since the first sample of the
+        current grasp; every turn counts, also about the axis of a round object.
         """
         run, name = window.run, self.object
         min_force = max(self.min_force, TOUCH_FORCE)
-        in_hand = held_by_fingers(run, name, min_force)
-        in_tcp = relative(run.signals.tcp_pose, object_poses(run, name))
-        since = np.zeros(len(in_tcp), dtype=int)
+        is_free = not object_record(run, name).is_static
+        in_hand = held_by_fingers(run, name, min_force) & is_free
+        since = np.zeros(len(in_hand), dtype=int)
         for start, stop in episodes(in_hand):
             since[start:stop] = start
-        distance = window.cut(np.linalg.norm(in_tcp[:, :3] - in_tcp[since, :3], axis=1))
-        turn = window.cut(rotation_angle(quat_product(conjugate(in_tcp[since, 3:]), in_tcp[:, 3:])))
+        distance, turn = (window.cut(each) for each in moved_since(run, name, since))
         relevant = window.cut(in_hand)
         sides = {side: window.cut(force) for side, force in side_forces(run, name).items()}
         parts = [
@@ -92,7 +95,7 @@ class Grasped(ObjectPredicate):
             Part(SLIP, distance, self.max_slip, "<=", relevant=relevant),
             Part(TURN, turn, self.max_rotation, "<=", relevant=relevant),
         ]
-        between = between_fingers(run, name) & ~cradled(run, name)
+        between = between_fingers(run, name) & ~cradled(run, name) & is_free
         touched = np.min([part.margins() for part in parts], axis=0) >= 0
         duration = window.cut(held_for(run, in_hand))
         # by half of the limit: a gripper that has stalled holds for 0.15 s, and slip says more then
@@ -126,6 +129,8 @@ def _where_pressed(run: Run, name: str, sample: int) -> str:
     """A note on fingers that touch an object and do not have it between them."""
     if min(force[sample] for force in side_forces(run, name).values()) < TOUCH_FORCE:
         return ""
+    if object_record(run, name).is_static:
+        return ", it is fixed in the world"
     why = why_not_between(run, name, sample)
     return f", {why}" if why else ""
 

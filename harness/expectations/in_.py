@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Annotated
 
@@ -35,16 +36,23 @@ PARALLEL = 1e-9
 
 DEPTH = Quantity("distance inside", "m", "at least 0, to the nearest side of the outline")
 LEAN = Quantity("lean of the container", "rad", "at most `max_lean`")
-SIDES = Quantity("enclosed", "1", "a shape of it is under the origin, or on all four sides")
+SIDES = Quantity(
+    "enclosed", "1", "a shape of it is under the object, or on all four sides; and not the reverse"
+)
 
 
 class In(ObjectPredicate):
-    """The object's origin is inside the outline of a container that has not tipped over.
+    """Half of the object is inside the outline of a container that has not tipped over.
 
     The outline is the smallest box along the container's axes that holds all of its collision
-    shapes; what it looks like does not count. Along these axes a shape of the container (the box
-    around it) is under the origin, or there is one on each of the four sides: what lies under a
-    table or next to the handle of a pan is in its outline, and not in it.
+    shapes; what it looks like does not count. Inside are the object's collision shapes whose
+    centres are: they make half of its volume at least, wherever its origin is. A ring around a bin
+    is not in the bin, and of two objects that have each other's middle inside the smaller one is in
+    the larger one.
+
+    Along the container's axes a shape of it (the box around it) is under these centres, or there
+    is one on each of the four sides: what lies under a table or next to the handle of a pan is in
+    its outline, and not in it. That the object is closed in above is not required.
     """
 
     quantities = (DEPTH, LEAN, SIDES)
@@ -64,7 +72,7 @@ class In(ObjectPredicate):
             at.scope.problems.add(at.key("container"), f"'{self.object}' is not in itself")
 
     def signal(self, window: Window) -> MarginSignal:
-        """Distance of the origin to the nearest side of the container's outline, and its lean.
+        """Depth of the object inside the container's outline, and the container's lean.
 
         A bin of five boards is a box of air in wood, and what is inside it is inside that.
         """
@@ -72,10 +80,17 @@ class In(ObjectPredicate):
         record = object_record(run, self.container)
         lower, upper = outline(record)
         container = object_poses(run, self.container)
-        origin = window.cut(relative(container, physical_poses(run, self.object))[:, :3])
-        depth = np.minimum(origin - lower, upper - origin).min(axis=1)
+        poses = physical_poses(run, self.object)
+        content = object_record(run, self.object)
+        depth, enclosed = _inside(
+            record, (lower, upper), content, window.cut(relative(container, poses))
+        )
         lean = window.cut(angle_between(rotate(container[:, 3:], UP), UP))
-        enclosed = _enclosed(record, origin)
+        with suppress(NotObservable):  # of a mesh it is not known what it surrounds
+            bounds = outline(content)
+            around = _inside(content, bounds, record, window.cut(relative(poses, container)))[0]
+            if np.prod(bounds[1] - bounds[0]) > np.prod(upper - lower):
+                enclosed = np.where(around >= 0, 0.0, enclosed)
         there = window.cut(present(run, self.object) & present(run, self.container))
         parts = [
             Part(DEPTH, depth, 0.0, ">=", 0.01, detail=self.container),
@@ -100,10 +115,11 @@ class In(ObjectPredicate):
         return all_of(window, parts, text, present=there)
 
     def unchanged(self, window: Window) -> str:
-        begin = int(start_samples(window.run, self.object)[window.stop - 1])
+        both = (self.object, self.container)
+        begin = max(int(start_samples(window.run, each)[window.stop - 1]) for each in both)
         if (self.margins(replace(window, start=begin)).values < 0).any():
             return ""
-        since = "a step put it there" if begin else "the run began"
+        since = "a step put one of them there" if begin else "the run began"
         return f"{self.object} was in {self.container} since {since}"
 
 
@@ -125,6 +141,40 @@ def _corners(shape: Shape, name: str) -> tuple[FloatArray, FloatArray]:
     if half is None:
         raise NotObservable(f"the extent of '{name}' is not known: it is no box or cylinder")
     return shape.pose.translation - half, shape.pose.translation + half
+
+
+def _inside(
+    container: ObjectRecord,
+    bounds: tuple[FloatArray, FloatArray],
+    content: ObjectRecord,
+    poses: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """How deep half of an object is inside bounds [m], and 1 where it is enclosed, (n,) each.
+
+    Args:
+        container: The record of the container.
+        bounds: The lower and upper corner of its outline in its frame [m].
+        content: The record of the object.
+        poses: T_container_object, shape (n, 7).
+    """
+    lower, upper = bounds
+    centres = [shape.pose.translation for shape in content.shapes] or [np.zeros(3)]
+    volumes = np.array([_volume(shape) for shape in content.shapes] or [1.0])
+    shares = volumes / volumes.sum()
+    points = [poses[:, :3] + rotate(poses[:, 3:], centre) for centre in centres]
+    depths = np.stack([np.minimum(each - lower, upper - each).min(axis=1) for each in points], 1)
+    order = np.argsort(-depths, axis=1)
+    most = (np.cumsum(shares[order], axis=1) >= 0.5 - 1e-9).argmax(axis=1)
+    depth = np.take_along_axis(depths, order, axis=1)[np.arange(len(poses)), most]
+    closed = np.stack([_enclosed(container, each) for each in points], 1) * (depths >= 0)
+    enclosed = np.where(closed @ shares >= 0.5 - 1e-9, 1.0, 0.0)
+    return depth, np.where(np.isnan(depth), np.nan, enclosed)
+
+
+def _volume(shape: Shape) -> float:
+    """Of the box around a shape [m³]; 1 of a mesh or plane."""
+    half = reach(shape.geometry, np.eye(3))
+    return 1.0 if half is None else float(np.prod(2 * half))
 
 
 def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.temporal import without_gaps
 from harness.assertions.text import amount
-from harness.assertions.window import Window
+from harness.assertions.window import Window, lasting
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.language.base import Force, Name
@@ -69,9 +69,9 @@ class InContact(Predicate):
         pairs = pairs_of(firsts, seconds)
         every = force_between(run, firsts, seconds)
         force = window.cut(every)
-        lasting = window.cut(without_gaps(every, run.signals.times, DEBOUNCE))
+        unbroken = without_gaps(every, run.signals.times, DEBOUNCE)
         limit = max(self.min_force, TOUCH_FORCE)
-        part = Part(CONTACT, lasting, limit, ">=", detail=f"{first} and {second}")
+        part = Part(CONTACT, window.cut(unbroken), limit, ">=", detail=f"{first} and {second}")
 
         touching = np.flatnonzero(force >= TOUCH_FORCE)
 
@@ -83,7 +83,7 @@ class InContact(Predicate):
             peak = amount(float(force.max()), "N")
             return f"{now} (first at t={begun:.3f} s, {amount(seconds, 's')} in all, up to {peak})"
 
-        together = window.cut(could_touch(run, pairs))
+        together = lasting(window.cut(could_touch(run, pairs)))
         return replace(
             all_of(window, [part], text, applies=together),
             pairs=len(pairs),

@@ -8,8 +8,8 @@ from pydantic import Field
 from harness.assertions.contacts import (
     TOUCH_FORCE,
     bodies_touching,
-    finger_links,
     gripper_of,
+    hand_links,
     side_forces,
 )
 from harness.assertions.expectation import ObjectPredicate
@@ -29,7 +29,7 @@ from harness.assertions.hold import (
 )
 from harness.assertions.margins import Evidence, MarginSignal, measured
 from harness.assertions.poses import object_poses, present, start_poses
-from harness.assertions.support import rides_on
+from harness.assertions.support import riders
 from harness.assertions.temporal import TIME_RESOLUTION
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import Window, object_record
@@ -90,11 +90,12 @@ class Lifted(ObjectPredicate):
         """
         run, name = window.run, self.object
         gripper = gripper_of(run)
-        hand = finger_links(gripper) | {gripper.palm_link}
+        hand = hand_links(gripper)
         rise = object_poses(run, name)[:, 2] - start_poses(run, name)[:, 2]
         sides = side_forces(run, name)
+        loads = riders(run, name)
         others = {
-            body: np.where(rides_on(run, body, name), 0.0, force)
+            body: np.where(loads.get(body, False), 0.0, force)
             for body, force in bodies_touching(run, name, but=hand).items()
         }
         unknown = ~present(run, name)

@@ -5,20 +5,19 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.contacts import TOUCH_FORCE
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import present
-from harness.assertions.support import supports
+from harness.assertions.support import required_support, supports
 from harness.assertions.text import amounts
-from harness.assertions.window import Window, object_record
+from harness.assertions.window import Window
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.language.base import Name
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
-SUPPORT = Quantity("support from below", "N", "at least half of its weight")
+SUPPORT = Quantity("support from below", "N", "at least half of its weight, within 1 %")
 
 
 class On(ObjectPredicate):
@@ -37,9 +36,7 @@ class On(ObjectPredicate):
         """Touches the support, which is under it and carries half of its weight or more."""
         run, name = window.run, self.object
         force = supports(run, name).get(self.support, np.zeros(len(run.signals.times)))
-        mass = object_record(run, name).mass
-        weight = mass * float(np.linalg.norm(run.gravity))
-        limit = TOUCH_FORCE if np.isnan(weight) else max(0.5 * weight, TOUCH_FORCE)
+        limit = required_support(run, name)
         part = Part(SUPPORT, window.cut(force), limit, ">=", detail=self.support)
 
         def text(_: int, measure: Measure) -> str:

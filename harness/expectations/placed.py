@@ -9,22 +9,21 @@ from pydantic import Field
 
 from harness.assertions.contacts import TOUCH_FORCE, robot_contact, was_in_robot
 from harness.assertions.expectation import ObjectPredicate
-from harness.assertions.hold import in_hand
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import (
     JUMP,
     STILL,
     UP,
+    body_speeds,
     calm,
     frame_poses,
     object_poses,
     observed_for,
     present,
-    speeds,
     start_samples,
 )
-from harness.assertions.support import supports
+from harness.assertions.support import required_support, standing, supports
 from harness.assertions.text import amounts
 from harness.assertions.window import NotReached, Window, object_record
 from harness.cell.possible_contacts import check_contact
@@ -40,7 +39,7 @@ from harness.core.pose_arrays import (
 )
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.symmetry import ANY, equal_turns
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import FloatArray
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose, PoseTolerance
@@ -52,8 +51,12 @@ PLACE_POSITION = 0.01
 PLACE_TILT = 0.1
 """And how far it may lean from the given pose, turns about the vertical free [rad]."""
 
-SUPPORT = Quantity("support", "N", "at least 0.001 N from below, by what the robot does not hold")
-SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
+SUPPORT = Quantity(
+    "support", "N", "at least half of its weight from below, by what the robot does not carry"
+)
+SPEED = Quantity(
+    "speed", "m/s", "of its fastest point at most `max_velocity`, for 50 ms too", "displacement"
+)
 TURNING = Quantity(
     "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
 )
@@ -68,6 +71,9 @@ ORIENTATION = Quantity("orientation error", "rad", "with `tolerance`: at most it
 
 class Placed(ObjectPredicate):
     """The object rests on a support, released and still, at a pose if one is given.
+
+    A support carries at least half of its weight from below. What the robot holds is none, nor is
+    what lies on the robot, nor anything stacked on these, also where `on` names it.
 
     A `pose` without a rotation allows every turn about the vertical after which the object's
     collision shapes are the same. It is still where it was slow for 50 ms, which may begin before
@@ -110,38 +116,37 @@ class Placed(ObjectPredicate):
     def signal(self, window: Window) -> MarginSignal:
         """Rests on a support from below, untouched by the robot, still, and at the pose if given.
 
-        What is in the hand is no support but for a `placed` that names it.
-
         Raises:
             NotReached: The object is not there for `STILL` seconds at any sample.
         """
         run, name = window.run, self.object
         carried = {
-            body: force if self.on is not None else np.where(_is_carried(run, body), 0.0, force)
-            for body, force in supports(run, name).items()
-            if self.on in (None, body)
+            body: force for body, force in standing(run, name).items() if self.on in (None, body)
         }
-        support = np.max([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
+        support = np.sum([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
         force, hold = robot_contact(run, name)
         speed, turning = (
-            window.cut(calm(run, rate)) for rate in speeds(run, object_poses(run, name))
+            window.cut(calm(run, rate)) for rate in body_speeds(run, name, object_poses(run, name))
         )
         by = f"support by {self.on or 'anything but the robot'}"
         parts = [
             *self._at_pose(window),
             Part(SPEED, speed, self.max_velocity, "<="),
             Part(TURNING, turning, self.max_angular_velocity, "<="),
-            Part(SUPPORT, window.cut(support), TOUCH_FORCE, ">=", measured_name=by),
+            Part(SUPPORT, window.cut(support), required_support(run, name), ">=", measured_name=by),
             Part(CONTACT, window.cut(force), TOUCH_FORCE, "<="),
             Part(ATTACHED, window.cut(hold), 0.0, "=="),
         ]
 
         def text(index: int, tightest: Measure) -> str:
             sample = window.start + index
-            bodies = [body for body, force in carried.items() if force[sample] > TOUCH_FORCE]
-            rests = f"rests on {' and '.join(bodies)}" if bodies else "rests on nothing"
-            if self.on is not None and not bodies:
+            every = supports(run, name)
+            below = [each for each in carried if every[each][sample] > TOUCH_FORCE]
+            held = [each for each in below if carried[each][sample] <= TOUCH_FORCE]
+            rests = f"rests on {' and '.join(below) or 'nothing'}"
+            if self.on is not None and not below:
                 rests = f"does not rest on {self.on}"
+            rests += f", and the robot carries {' and '.join(held)}" if held else ""
             return f"{name} {rests}; {_against(tightest)}"
 
         here = present(run, name)
@@ -194,13 +199,6 @@ class Placed(ObjectPredicate):
             Part(POSITION, distance, self.tolerance.position, "<=", points=points),
             Part(ORIENTATION, turn, self.tolerance.orientation, "<="),
         ]
-
-
-def _is_carried(run: Run, body: str) -> BoolArray:
-    """Samples at which the robot holds a body, shape (N,)."""
-    if all(record.name != body for record in run.objects):
-        return np.zeros(len(run.signals.times), dtype=bool)
-    return in_hand(run, body)
 
 
 def _moved(run: Run, name: str, base: str, samples: slice) -> float:

@@ -9,16 +9,18 @@ from pydantic import Field
 
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import STILL, calm, observed_for, physical_poses, present, speeds
+from harness.assertions.poses import STILL, body_speeds, calm, observed_for, physical_poses, present
 from harness.assertions.text import amount
-from harness.assertions.window import NotReached, Window
+from harness.assertions.window import NotReached, Window, lasting
 from harness.cell.scope import At
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
-SPEED = Quantity("speed", "m/s", "at most `max_velocity`, and for 50 ms before", "displacement")
+SPEED = Quantity(
+    "speed", "m/s", "of its fastest point at most `max_velocity`, for 50 ms too", "displacement"
+)
 TURNING = Quantity(
     "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
 )
@@ -32,7 +34,8 @@ class Static(Predicate):
 
     It counts as still where it was slower for 50 ms: at the turning point of a swing it is slow for
     a moment. Those 50 ms may begin before the step's window. Where less was recorded of an object
-    it is not judged, since what is let go in the air is slow at first.
+    it is not judged, since what is let go in the air is slow at first. The speed is that of its
+    fastest point: the ends of a long plank that turns slowly are fast.
     """
 
     short = "object"
@@ -75,9 +78,11 @@ class Static(Predicate):
         parts: list[Part] = []
         names = [self.object] if self.object is not None else _dynamic(run)
         for name in names:
-            here = None if self.object is not None else window.cut(present(run, name))
+            there = present(run, name)
+            here = None if self.object is not None else window.cut(there)
             linear, angular = (
-                window.cut(calm(run, speed)) for speed in speeds(run, physical_poses(run, name))
+                window.cut(calm(run, speed, there))
+                for speed in body_speeds(run, name, physical_poses(run, name), there)
             )
             turning = self.max_angular_velocity
             parts += [
@@ -90,7 +95,8 @@ class Static(Predicate):
         def text(_: int, measure: Measure) -> str:
             return f"{measure.detail} moves with {amount(measure.value, measure.unit)}"
 
-        return all_of(window, parts, text, applies=judged)
+        here = None if self.object is None else lasting(window.cut(present(run, self.object)))
+        return all_of(window, parts, text, applies=judged, present=here)
 
     def _of_joints(self, window: Window) -> list[Part]:
         parts: list[Part] = []
@@ -99,7 +105,7 @@ class Static(Predicate):
             slides = joint.kind == "prismatic"
             limit = self.max_velocity if slides else self.max_angular_velocity
             unit = "m/s" if slides else "rad/s"
-            still = window.cut(calm(window.run, speed))
+            still = window.cut(calm(window.run, speed, np.ones(len(speed), dtype=bool)))
             parts.append(
                 Part(JOINT_SPEED, still, limit, "<=", detail=joint.name, measured_unit=unit)
             )

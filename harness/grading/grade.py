@@ -12,6 +12,8 @@ import numpy as np
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
+from harness.assertions.temporal import episodes
+from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.grading.bag.content import BagTopics
 from harness.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
 from harness.recording.run import Run
@@ -157,14 +159,30 @@ def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:
 
 
 def _with_distances(prepared: Prepared, run: Run) -> Run:
-    """With distances from joints and poses, where all joints are known."""
-    if np.isnan(run.signals.joint_positions).any():
-        return run
+    """With distances from joints and poses, from each sample to the next where joints are known."""
     from harness.observation.clearance import CoalClearance
 
+    known: BoolArray = np.isfinite(run.signals.joint_positions.sum(axis=1))
     there = [obj for obj in run.objects if obj.pose or obj.name in run.signals.object_poses]
     observer = CoalClearance(prepared.program.description)
     cutoff = prepared.observations.recorded_cutoff
-    signals = observer.observe(run.signals, there, (), cutoff)
+    clearances: dict[Pair, FloatArray] = {}
+    links: dict[Pair, IntArray] = {}
+    for start, stop in episodes(known):
+        part = slice(start, stop)
+        some = replace(
+            run.signals,
+            times=run.signals.times[part],
+            joint_positions=run.signals.joint_positions[part],
+            object_poses={name: rows[part] for name, rows in run.signals.object_poses.items()},
+        )
+        found = observer.observe(some, there, (), cutoff)
+        for key, values in found.clearances.items():
+            clearances.setdefault(key, np.full(len(known), np.nan))[part] = values
+        for key, values in found.clearance_links.items():
+            links.setdefault(key, np.full(len(known), -1))[part] = values
+    signals = replace(
+        run.signals, clearances=clearances, clearance_links=links, clearance_cutoff=cutoff
+    )
     missing = tuple(name for name in run.unrecorded if name != "clearances")
-    return replace(run, signals=signals, unrecorded=missing)
+    return replace(run, signals=signals, unrecorded=missing) if clearances else run

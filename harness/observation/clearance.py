@@ -61,6 +61,7 @@ class CoalClearance:
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
         measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
+        only: Collection[Pair] | None = None,
     ) -> Signals:
         """The same signals with `clearances` and `clearance_links` filled in.
 
@@ -70,6 +71,7 @@ class CoalClearance:
             attachments: All attachments of the run.
             cutoff: Larger distances are reported as the cutoff [m].
             measured: What `measured_parts` found in a part of the run, or None.
+            only: The pairs that are measured; by default all.
         """
         count = len(signals.times)
         if not count:
@@ -77,7 +79,7 @@ class CoalClearance:
         motion = Motion.of(signals)
         samples = knots(motion.times, objects, attachments)
         parts = [
-            measured(number) or self._measured(motion.at(part), objects, attachments, cutoff)
+            measured(number) or self._measured(motion.at(part), objects, attachments, cutoff, only)
             for number, part in reversed([*enumerate(parts_of_run(motion.times, samples))])
         ]  # the last ones first: others may still be measured by another process
         found = MeasuredClearance.joined(parts[::-1])
@@ -88,7 +90,7 @@ class CoalClearance:
             inside_of(samples, largest_dip(found.dips()) > LARGEST_ERROR),
         )
         if len(near):
-            finer = self._measured(motion.at(near), objects, attachments, cutoff)
+            finer = self._measured(motion.at(near), objects, attachments, cutoff, only)
             samples = found.refined(finer, samples, near)
         distances = {
             key: between(samples, values, count) for key, values in found.distances.items()
@@ -133,7 +135,9 @@ class CoalClearance:
         if not len(fast):
             return
         owners, shares = parts_of(samples[fast], dips[fast])
-        finer = self._measured(motion.between(owners, shares), objects, attachments, cutoff)
+        finer = self._measured(
+            motion.between(owners, shares), objects, attachments, cutoff, distances.keys()
+        )
         for key, values in finer.distances.items():
             absent = np.isnan(distances[key][owners])
             np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))

@@ -39,6 +39,7 @@ def observed_run(
         measured: The distances in a part of the run that were measured while it went on.
     """
     from harness.observation.clearance import CoalClearance
+    from harness.observation.held_clearance import with_held_distances
     from harness.observation.link_overlaps import with_link_overlaps
 
     description, needed = prepared.program.description, prepared.observations
@@ -46,6 +47,7 @@ def observed_run(
     observer = CoalClearance(description)
     signals = observer.observe(executed.signals, *bodies, cutoff, measured)
     run = replace(executed, signals=with_link_overlaps(signals, description))
+    run = replace(run, signals=with_held_distances(run, observer))
     if not needed.planned_clearances:
         return run
     planned = observer.observe(as_commanded(run, prepared.kinematics), *bodies, cutoff)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tests.adversarial.contact_scenes import GRASP, UP
+from tests.adversarial.fixture_scenes import BIN
 from tests.adversarial.scenes import RED_BOX, Scene, near, place_of, rose, speed_at_end, touched
 
 BALL = "  - {name: ball, sphere: {radius: 0.015}, mass: 20 g, pose: {xyz: [%s]}}\n"
@@ -57,7 +58,87 @@ def within_outline(run, name, container, low, high):
     return bool((place > low).all() and (place < high).all())
 
 
+HOOP = """
+  - name: hoop
+    mass: 100 g
+    pose: {xyz: [-0.3, -0.3, %s]}
+    shapes:
+      - {box: {size: [0.3, 0.01, 0.02]}, pose: {xyz: [0, 0.145, 0]}}
+      - {box: {size: [0.3, 0.01, 0.02]}, pose: {xyz: [0, -0.145, 0]}}
+      - {box: {size: [0.01, 0.3, 0.02]}, pose: {xyz: [0.145, 0, 0]}}
+      - {box: {size: [0.01, 0.3, 0.02]}, pose: {xyz: [-0.145, 0, 0]}}
+"""
+COVER = made_of("cover", [0.4, 0.4, 0.0605], [
+    *(([0.01, 0.1, 0.12], [x, 0, 0]) for x in (-0.05, 0.05)),
+    *(([0.1, 0.01, 0.12], [0, y, 0]) for y in (-0.05, 0.05)),
+    ([0.1, 0.1, 0.01], [0, 0, 0.055]),
+])  # fmt: skip
+BLOCK = "  - {name: block, box: {size: [0.06, 0.06, 0.1]}, mass: 100 g, pose: {xyz: [0.4, 0.4, 0.0501]}}\n"  # noqa: E501
+FAR = "  - {name: part, mass: 100 g, center_of_mass: [%s], pose: {xyz: [%s]}, shapes: [{box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [%s]}}]}\n"  # noqa: E501
+
+
+def first_shape_within(run, name, container, reach):
+    """The first shape's middle is less than this from the container's origin, along x and y."""
+    record = next(each for each in run.objects if each.name == name)
+    middle = place_of(run, name)[-1] + record.shapes[0].pose.translation
+    return bool((np.abs(middle - place_of(run, container)[-1])[:2] < reach).all())
+
+
 CONTAINER_SCENES = (
+    Scene(
+        "hoop on the floor around a bin",
+        "a hoop of 30 cm lies around a bin of 20 cm, and touches none of it",
+        "objects:" + BIN + HOOP % "0.0101" + WAIT,
+        "its origin is in the smallest box that holds all of the bin",
+        lambda run: within_outline(run, "hoop", "bin", [-0.1, -0.1, 0], [0.1, 0.1, 0.1]),
+        ("in: {object: hoop, container: bin}",),
+        ("on: {object: hoop, support: ground_plane}",),
+        truth=lambda run: not first_shape_within(run, "hoop", "bin", 0.1),
+    ),
+    Scene(
+        "cover over a block",
+        "a cover stands over a block that it does not touch",
+        "objects:\n" + BLOCK + COVER + WAIT,
+        "the origin of the cover is in the smallest box that holds the block",
+        lambda run: near(run, "cover", "block", (0.03, 0.03, 0.05)),
+        ("in: {object: cover, container: block}",),
+        ("always: {in: {object: block, container: cover}}",),
+        truth=lambda run: not first_shape_within(run, "cover", "block", 0.03),
+    ),
+    Scene(
+        "part whose origin is in a bin and nothing else of it",
+        "the frame of a part is 30 cm away from its shape, as those of some CAD files are",
+        "objects:" + BIN + FAR % ("0.3, 0, -0.02", "-0.3, -0.3, 0.0401", "0.3, 0, -0.02") + WAIT,
+        "its origin is in the bin",
+        lambda run: within_outline(run, "part", "bin", [-0.1, -0.1, 0], [0.1, 0.1, 0.1]),
+        ("in: {object: part, container: bin}",),
+        ("on: {object: part, support: ground_plane}",),
+        truth=lambda run: not first_shape_within(run, "part", "bin", 0.1),
+    ),
+    Scene(
+        "part whose origin is above the bin that it lies in",
+        "the frame of a part is 30 cm above its shape",
+        "objects:" + BIN + FAR % ("0, 0, -0.3", "-0.3, -0.3, 0.3301", "0, 0, -0.3") + WAIT,
+        "its origin is outside of the bin: too strict",
+        lambda run: bool(place_of(run, "part")[-1, 2] > 0.2),
+        (),
+        ("always: {in: {object: part, container: bin}}", "on: {object: part, support: bin}"),
+        truth=lambda run: first_shape_within(run, "part", "bin", 0.08),
+    ),
+    Scene(
+        "bin that a step puts around a box",
+        "`move_object` moves a bin, 30 cm, until it surrounds a box; nothing touched the box",
+        "objects:" + BIN.replace("-0.3, -0.3, 0]", "0, -0.3, 0]")
+        + "  - {name: cube, box: {size: [0.04, 0.04, 0.04]}, mass: 50 g, pose: {xyz: [-0.3, -0.3, 0.0301]}}\n"  # noqa: E501
+        "  - {name: pad, static: true, box: {size: [0.05, 0.05, 0.01]}, pose: {xyz: [-0.3, -0.3, 0.005]}}\n"  # noqa: E501
+        "steps:\n  - wait: 0.1 s\n"
+        "  - move_object: {object: bin, pose: {xyz: [-0.3, -0.3, 0]}}\n  - wait: 0.2 s\n",
+        "it was outside before, and is in the middle of the bin now",
+        lambda run: near(run, "cube", "bin", (0.05, 0.05, 0.05)),
+        (),
+        ("static: {object: cube, max_velocity: 1 m/s, max_angular_velocity: 10}",),
+        warned=("in: {object: cube, container: bin}",),
+    ),
     Scene(
         "ball under a table",
         "a ball lies on the floor, between the legs of a table",

@@ -41,6 +41,7 @@ GAZEBO = BagTopics(objects=(POSES,))
 ARRIVED = "joints: {positions: {joint1: 0.6}}"
 ALWAYS_LOW = "formula: always abs(position(joint1)) < 1"
 BOX_STANDS = "always: {upright: red_box}"
+BOX_LOW = "formula: always z(red_box) < 3 cm"
 BOX_MOVED = "displaced: {object: red_box, at_least: 5 cm}"
 
 
@@ -241,6 +242,113 @@ def smoothed_velocities(recording, _run):
     return recording
 
 
+def hop_between_joint_states(recording, run):
+    """Joint states at 5 Hz, and a hop of 6 cm between two of them."""
+
+    def place(since, _):
+        return [0.3, -0.2, 0.0199 + max(0.0, 4.9 * since * (0.18 - since))]
+
+    slow = [m for m in recording.of("/joint_states") if fifth_of_second(m) < 0.03]
+    for message in boxes_after(1.01, place)(recording.without("/joint_states"), run).of(POSES):
+        slow.append(message)
+    return Recording(sorted(slow, key=lambda message: message.logged))
+
+
+def fifth_of_second(message):
+    """Time since the last full fifth of a second [s]."""
+    return (message.stamp - GAZEBO_STARTED + 1e-6) % 0.2
+
+
+def is_low_at_joint_states(recording):
+    """At every time with joint states the box is lower than 3 cm."""
+    states = {round(message.stamp, 3) for message in recording.of("/joint_states")}
+    moved = (m for m in recording.of(POSES) if round(m.stamp, 3) in states)
+    places = (p["transform"]["translation"] for m in moved for p in m.content["transforms"])
+    return all(place["z"] < 0.03 for place in places)
+
+
+def once_a_second(change):
+    """Poses at 1 Hz, changed before."""
+
+    def thinned(recording, run):
+        changed = change(recording, run)
+        kept = [m for m in changed.messages if m.topic != POSES or full_second(m) < 0.01]
+        return Recording(kept)
+
+    return thinned
+
+
+def full_second(message):
+    """Time since the last full second [s]."""
+    return (message.stamp - GAZEBO_STARTED + 1e-6) % 1.0
+
+
+def zero_velocities(recording, _run):
+    """The driver does not measure velocities."""
+    for message in recording.of("/joint_states"):
+        message.content["velocity"] = [0.0] * len(message.content["name"])
+    return recording
+
+
+def no_velocities(recording):
+    """The largest recorded velocity is 0."""
+    return not any(any(message.content["velocity"]) for message in recording.of("/joint_states"))
+
+
+def arm_put_elsewhere(recording, _run):
+    """The arm stands still, and from 1.4 s on it is at the goal."""
+    for message in recording.of("/joint_states"):
+        names, late = message.content["name"], message.stamp > GAZEBO_STARTED + 1.4
+        if "joint1" in names:
+            message.content["position"][names.index("joint1")] = 0.6 if late else 0.0
+        message.content["velocity"] = []
+    return recording
+
+
+def lying_in(is_lying):
+    """In some messages the box lies on its side."""
+
+    def change(recording, _run):
+        for number, message in enumerate(recording.of(POSES)):
+            for each in message.content["transforms"]:
+                if named(each, "red_box") and is_lying(number):
+                    each["transform"]["rotation"] = {"x": 0.5**0.5, "y": 0, "z": 0, "w": 0.5**0.5}
+        return recording
+
+    return change
+
+
+def tipped_over(recording, _run):
+    """Within 0.14 s, from 1.4 s on, the box tips over."""
+    for message in recording.of(POSES):
+        angle = float(np.clip((message.stamp - GAZEBO_STARTED - 1.4) / 0.14, 0, 1)) * np.pi / 2
+        for each in message.content["transforms"]:
+            if named(each, "red_box"):
+                half = {"x": np.sin(angle / 2), "y": 0.0, "z": 0.0, "w": np.cos(angle / 2)}
+                each["transform"]["rotation"] = half
+    return recording
+
+
+def other_topic(topic, parent, pose):
+    """Another topic has one more pose of the red box in each of its messages."""
+
+    def change(recording, _run):
+        poses = recording.of(POSES)
+        for message in poses if topic == "/tf" else poses[:1]:
+            time = message.stamp - GAZEBO_STARTED
+            content = {"transforms": [transform(parent, "red_box", pose)]}
+            recording.add(topic, "tf2_msgs/msg/TFMessage", time, content)
+        return recording
+
+    return change
+
+
+def glued_by_tf_static(recording, run):
+    """Nothing but /tf_static says where the red box is: 10 cm from the hand."""
+    other_topic("/tf_static", run.robot.tcp_link, [0.1, 0, 0, 1, 0, 0, 0])(recording, run)
+    return renamed({"red_box": "crate"})(recording, run)
+
+
 @dataclass(frozen=True)
 class RecordingScene:
     """A damaged recording.
@@ -345,7 +453,7 @@ RECORDINGS = (
     ),
     RecordingScene(
         "joints exchanged on the way", "from 1.4 s on two joints have each other's names",
-        exchanged_names, IN_RANGE, in_range, {ALWAYS_LOW: "velocities", BOX_STANDS: "velocities"},
+        exchanged_names, IN_RANGE, in_range, {ALWAYS_LOW: "jumps", BOX_STANDS: "jumps"},
     ),
     RecordingScene(
         "boxes exchanged on the way", "from 1.4 s on two boxes have each other's names",
@@ -397,6 +505,67 @@ RECORDINGS = (
         "four lost messages", "80 ms of joint states are missing: less than ten periods",
         without("/joint_states", 1.2, 1.28), IN_RANGE, in_range,
         {}, (ALWAYS_LOW, ARRIVED, BOX_STANDS),
+    ),
+    RecordingScene(
+        "hop between two joint states", "the box hops 4 cm high, and joint states come at 5 Hz",
+        hop_between_joint_states, "at every joint state the box is low", is_low_at_joint_states,
+        {BOX_LOW: "failed", "always: {static: red_box}": "failed"}, (BOX_STANDS,),
+    ),
+    RecordingScene(
+        "box that is seen once a second", "between two of its poses it goes 8 cm aside",
+        once_a_second(boxes_after(1.5, lambda *_: [0.38, -0.2, 0.0199])),
+        "half way between two poses it is 4 cm aside",
+        lambda recording: 0.3 < np.mean(box_poses(recording)[:, 0]) < 0.38,
+        {"formula: eventually abs(x(red_box) - 34 cm) < 1 cm": "not observable",
+         BOX_STANDS: "not observable"},
+        (BOX_MOVED, ARRIVED),
+    ),
+    RecordingScene(
+        "box that stands and is seen once a second", "all of its poses are the same",
+        once_a_second(lambda recording, _: recording),
+        "it is known for less than 1.5 s: too strict", lambda _: True,
+        {}, (BOX_STANDS, "always: {static: red_box}", ARRIVED),
+    ),
+    RecordingScene(
+        "velocities that are all 0", "the driver fills them with zeros", zero_velocities,
+        "the largest velocity is 0", no_velocities,
+        {"formula: always abs(velocity(joint1)) < 0.01": "velocities", ARRIVED: "velocities"},
+    ),
+    RecordingScene(
+        "arm put at its goal by a program", "it stands still, and from 1.4 s on it is there",
+        arm_put_elsewhere, "the last position is the goal",
+        lambda recording: abs(arm_positions(recording)[-1] - 0.6) < 0.05,
+        {ARRIVED: "jumps", ALWAYS_LOW: "jumps"},
+    ),
+    RecordingScene(
+        "box that flips in each message", "every other pose lies on its side",
+        lying_in(lambda number: number % 2 == 1), "its place is the same in all poses",
+        lambda recording: bool(np.ptp(box_poses(recording), axis=0).max() < 0.01),
+        {"eventually: {upright: red_box}": "publishers"}, (ARRIVED, "upright: blue_box"),
+    ),
+    RecordingScene(
+        "box that tips over", "within 0.14 s it is on its side", tipped_over,
+        "it turns by more than 10 degrees between two messages: too strict", lambda _: True,
+        {}, ("never: {displaced: red_box}", "eventually: {upright: red_box}", ARRIVED),
+    ),
+    RecordingScene(
+        "/tf that contradicts the poses of the box", "/tf has it lying, half a metre up",
+        other_topic("/tf", "world", [0.3, -0.2, 0.5, 0.5**0.5, 0.5**0.5, 0, 0]),
+        "every pose in the topic of objects is upright",
+        lambda recording: len(box_poses(recording)) > 10,
+        {BOX_STANDS: "tf", BOX_LOW: "tf"}, (ARRIVED, ALWAYS_LOW),
+    ),
+    RecordingScene(
+        "/tf that agrees with the poses of the box", "it has the same pose, 3 mm aside",
+        other_topic("/tf", "world", [0.303, -0.2, 0.02, 1, 0, 0, 0]),
+        "both topics have the same numbers: too strict", lambda _: True,
+        {}, (BOX_STANDS, BOX_LOW, ARRIVED),
+    ),
+    RecordingScene(
+        "box glued to the hand by /tf_static", "one static transform holds it next to the hand",
+        glued_by_tf_static, "it has a pose in the hand's frame", lambda _: True,
+        {"displaced: red_box": "once", "formula: eventually z(red_box) > 10 cm": "once"},
+        (ARRIVED, ALWAYS_LOW),
     ),
 )  # fmt: skip
 

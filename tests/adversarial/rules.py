@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+GRADING = "../guides/grading.md"
 EXPECTATIONS = "expectations.md"
 
 
@@ -67,6 +68,63 @@ RULES = (
         ("box lifted with a jerk", "ball gripped above its middle"),
     ),
     Rule(
+        "A support stands on the ground",
+        f"[`placed`]({EXPECTATIONS}#placed), with `on` or without, and [`on`]({EXPECTATIONS}#on)"
+        " require half of the weight from below, within 1 % (the forces of equal supports differ)."
+        " For `placed` a support is itself carried by something fixed, directly or through others:"
+        " each of them takes half of its own weight and of what presses it down. What the robot"
+        " holds, what lies on its moving links, and what is stacked on these carries nothing. A"
+        " support ends with its last contact.",
+        (
+            "part on a tray in the hand",
+            "part on a cup on a tray in the hand",
+            "cube on a plank that lies across both fingers",
+            "cube put down with a tenth of it on the goal",
+            "table that a step takes away",
+        ),
+        ("cube put on a block that stands on the floor", "plank on two posts"),
+    ),
+    Rule(
+        "What rides on a held object is carried",
+        "Riders are a group of objects that touches nothing but itself, what carries it and the"
+        f" hand, each with something of it below. [`lifted`]({EXPECTATIONS}#lifted) leaves them"
+        f" out, [`collision`]({EXPECTATIONS}#collision) judges what they hit like what the hand"
+        f" holds, and their distances are recorded for [`clearance`]({EXPECTATIONS}#clearance) and"
+        " formulas, as those of what the fingers hold without a step that attaches it.",
+        (
+            "tray lifted with two loads that lean on each other",
+            "load on a held tray is pushed against a beam",
+            "stack on a held tray is raised against a beam",
+            "gripped rod comes within 5 mm of a wall",
+        ),
+        (
+            "tray raised with a plank that lies on a shelf, too",
+            "tray with a stack set down again",
+        ),
+    ),
+    Rule(
+        "The shapes of a body count, not its origin",
+        f"[`in`]({EXPECTATIONS}#in): half of the object's volume is inside, by the middles of its"
+        f" shapes. [`static`]({EXPECTATIONS}#static) and `placed`: the speed is that of the fastest"
+        " point. [`grasped`]"
+        f"({EXPECTATIONS}#grasped): the object slips as its point between the fingers does, and"
+        " what is fixed in the world is not held. Where a designer put the origin says nothing;"
+        " `displaced` and the signals x(), y(), z() and speed() of a formula are those of the"
+        " origin, and say so.",
+        (
+            "hoop on the floor around a bin",
+            "cover over a block",
+            "part whose origin is in a bin and nothing else of it",
+            "plank of 4 m that turns slowly",
+            "post fixed in the world between the fingers",
+            "part that sags in the grip, with its frame far away",
+        ),
+        (
+            "part whose origin is above the bin that it lies in",
+            "plank of 4 m that lies still",
+        ),
+    ),
+    Rule(
         "Shapes decide, pictures do not",
         f"[`in`]({EXPECTATIONS}#in), [`placed`]({EXPECTATIONS}#placed), distances and widths are"
         " those of collision shapes. Where `visuals` reach further, or less far, by 5 mm and a"
@@ -104,8 +162,15 @@ RULES = (
             "step that takes no time",
             "box that a step puts on the tray",
             "box that a step puts into the bin",
+            "bin that a step puts around a box",
+            "box that a step removes before the end",
+            "pillar that a step removes before the arm moves",
         ),
-        ("object that a push put there", "box that a step lets fall into the bin"),
+        (
+            "object that a push put there",
+            "box that a step lets fall into the bin",
+            "box that a step removes after it was judged",
+        ),
     ),
     Rule(
         "A variation varies something",
@@ -156,7 +221,7 @@ RULES = (
     Rule(
         "A contact is not broken by a gap of 10 ms",
         f"[`in_contact`]({EXPECTATIONS}#in_contact) and [`collision`]({EXPECTATIONS}#collision)"
-        " last through gaps of at most 10 ms, as holds and supports do: stiff bodies that rub or"
+        " last through gaps of at most 10 ms, as supports do: stiff bodies that rub or"
         " rattle part for some steps of the physics again and again, so that `never ... for 50 ms`"
         " would pass, and `always` fail. A gap is closed between two contacts alone: a blow lasts"
         " no longer for it. In 10 ms of fall a body comes 0.5 mm away.",
@@ -228,6 +293,33 @@ RULES = (
             "digest written over as well",
         ),
         ("folder that was moved", "run of another robot"),
+    ),
+    Rule(
+        "Every recorded message is judged",
+        "The samples of a recording are the times of"
+        f" [all messages]({GRADING}#how-recordings-are-read) about joints and objects. What stands"
+        " still is known between messages that are up to ten periods of their topic apart, at most"
+        " 1.5 s; a motion is interpolated over at most 0.25 s.",
+        ("hop between two joint states", "box that is seen once a second"),
+        ("box that stands and is seen once a second", "four lost messages"),
+    ),
+    Rule(
+        "A recording that contradicts itself earns nothing",
+        f"Points are withheld for each [doubt]({GRADING}#points): positions that contradict"
+        " velocities, jumps and flips that no joint or body makes, topics that contradict each"
+        " other, and poses that were sent once. The grader may allow each of them.",
+        (
+            "velocities that are all 0",
+            "arm put at its goal by a program",
+            "box that flips in each message",
+            "/tf that contradicts the poses of the box",
+            "box glued to the hand by /tf_static",
+        ),
+        (
+            "box that tips over",
+            "/tf that agrees with the poses of the box",
+            "/tf that is 20 ms late",
+        ),
     ),
     Rule(
         "What is not checked is said",

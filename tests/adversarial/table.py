@@ -7,6 +7,7 @@ from pathlib import Path
 
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
+from tests.adversarial.carried_scenes import CARRIED_SCENES
 from tests.adversarial.contact_scenes import CONTACT_SCENES
 from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
@@ -28,6 +29,7 @@ ALL_SCENES = (
     *WINDOW_SCENES,
     *TRICK_SCENES,
     *FIXTURE_SCENES,
+    *CARRIED_SCENES,
 )
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
@@ -102,6 +104,13 @@ LIMITS = """
   `placed`, `upright` and `lifted` keep that meaning.
 - **`on` on slopes**: forces are counted by their upward part; on a slope steeper than 45 degrees
   less than half of the weight may be carried as normal force, and friction is not counted.
+- **`robot` in `clearance` and distance()** means its links: what it holds is named on its own, and
+  where it comes nearer a warning says so. What is taken from an object, or put on it, has none.
+- **force()** is a sum of normal forces: on a slope it is less than the weight, in a vice more than
+  the resultant, and friction is no part of it.
+- **Supports by friction** carry nothing for `placed` and `on`: what a vice clamps rests on nothing.
+- **Origins**: `displaced` and a formula's x(), y(), z() and speed() are those of the object's
+  origin, `in` counts shapes by their middles, and of meshes nothing but the origin is known.
 - **Forces below 0.001 N** are no contact: what weighs less than 0.2 g rests on nothing, and touches
   nothing where it lies.
 - **Two objects in one grip** touch one finger each: neither is between the fingers, so that neither

@@ -40,7 +40,79 @@ def shot(speed, *, x=0.316, z=0.2168):
     )  # fmt: skip
 
 
+REMOVED = CUBE % ON_FLOOR + "steps:\n  - wait: 0.2 s\n  - remove_object: cube\n"
+PLANK = "  - {name: plank, box: {size: [4, 0.1, 0.02]}, mass: 2 kg, friction: 0.002, pose: {xyz: [0, 3, 0.0101]}}\n"  # noqa: E501
+BUMPER = "  - {name: %s, box: {size: [0.04, 0.04, 0.04]}, mass: 1 kg, friction: 0.002, pose: {xyz: [%s, 0.0201]}}\n"  # noqa: E501
+BUMPERS = BUMPER % ("front", "1.95, 3.075") + BUMPER % ("back", "-1.95, 2.925")
+TURN = "  - inject: {push: {front: [0, -1, 0], back: [0, 1, 0]}, push_duration: 0.1}\n"
+
+
+def ends_move(run, name, speed, half=2.0):
+    """Whether an end of a plank, this far from its origin along x, is faster than this [m/s]."""
+    quat = run.signals.object_poses[name][:, 3:]
+    yaw = 2 * np.arctan2(quat[:, 3], quat[:, 0])
+    end = place_of(run, name)[:, :2] + half * np.column_stack([np.cos(yaw), np.sin(yaw)])
+    return bool((np.linalg.norm(np.diff(end, axis=0), axis=1) / run.timestep > speed).any())
+
+
 WINDOW_SCENES = (
+    Scene(
+        "box that a step removes before the end",
+        "a step removes a box, and the run goes on for 0.2 s",
+        "objects:\n" + REMOVED + "  - {wait: 0.2 s, id: after}\n",
+        "no contact with the robot was recorded in the last step",
+        lambda run: not touched(run, "cube"),
+        ("released: cube", "upright: cube", "static: cube", "placed: cube",
+         "{always: {upright: cube}, during: after}",
+         "{never: {in_contact: {between: [robot, cube]}}, during: after}",
+         "{never: {collision: {between: [robot, cube]}}, during: after}"),
+        ("always: {upright: cube}", "never: {in_contact: {between: [robot, cube]}}"),
+    ),
+    Scene(
+        "pillar that a step removes before the arm moves",
+        "a step removes the pillar next to the arm, which then moves",
+        "objects:\n  - {name: pillar, static: true, box: {size: [0.05, 0.05, 0.2]}, "
+        "pose: {xyz: [0.3, 0.3, 0.1]}}\n"
+        "steps:\n  - remove_object: pillar\n"
+        "  - {move_relative: {direction: {xyz: [0, 0, 1]}, distance: 5 cm}, id: go}\n",
+        "no distance below 1 cm was recorded while the arm moved",
+        lambda run: not (run.signals.clearances["robot", "pillar"] < 0.01).any(),
+        ("{clearance: {between: [robot, pillar], at_least: 1 cm}, during: go}",
+         "{never: {collision: {between: [robot, pillar]}}, during: go}"),
+        ("{never: {collision: {between: [robot, ground_plane]}}, during: go}",),
+    ),
+    Scene(
+        "box that a step removes after it was judged",
+        "a box is judged over the step before the one that removes it",
+        "objects:\n" + REMOVED.replace("wait: 0.2 s", "{wait: 0.2 s, id: before}"),
+        "the box is not there when the run ends: too strict",
+        lambda run: bool(np.isnan(place_of(run, "cube")[-1]).any() or len(run.steps) == 2),
+        (),
+        ("{upright: cube, during: before}", "{static: cube, during: before}",
+         "{always: {upright: cube}, during: before}",
+         "{never: {in_contact: {between: [robot, cube]}}, during: before}"),
+    ),
+    Scene(
+        "plank of 4 m that turns slowly",
+        "two boxes hit its ends from both sides: it turns at 2 degrees a second, and its ends move"
+        " at 7 cm/s",
+        "objects:\n" + PLANK + BUMPERS + "steps:\n" + TURN + "  - wait: 0.2 s\n",
+        "its origin moves slower than 5 mm/s, and it turns slower than 0.05 rad/s",
+        lambda run: speed_at_end(run, "plank") < 0.005,
+        ("static: plank", "placed: plank"),
+        ("on: {object: plank, support: ground_plane}",),
+        truth=lambda run: ends_move(run, "plank", 0.04),
+    ),
+    Scene(
+        "plank of 4 m that lies still",
+        "the same plank after it has settled",
+        "objects:\n" + PLANK + "steps: [{wait: 0.5 s}]\n",
+        "its ends are 2 m away from its middle: too strict",
+        lambda run: speed_at_end(run, "plank") < 0.01,
+        (),
+        ("static: plank", "on: {object: plank, support: ground_plane}"),
+        truth=lambda run: speed_at_end(run, "plank") < 1e-4,
+    ),
     Scene(
         "object that only the planner knows",
         "the arm's planner avoids a box that is not in the physics",

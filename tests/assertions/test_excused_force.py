@@ -70,7 +70,7 @@ def test_what_rests_on_an_object_is_part_of_its_load():
     forces = {
         ("box", "cup"): np.full(N, 3.0),
         ("box", "lid"): np.full(N, 3.0),
-        ("palm", "cup"): force(N, (20, N)),
+        ("arm_link", "cup"): force(N, (20, N)),
     }
     poses = {name: at(N, (0, 0, 0.06)) for name in ("cup", "lid")}
     run = make_run(N, objects=(TABLE, BOX, cup, lid), object_poses=poses, contact_forces=forces)

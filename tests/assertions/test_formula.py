@@ -495,3 +495,14 @@ EVIDENCE = Evidence(
         ),
     ),
 )
+
+
+@pytest.mark.parametrize("way", ["always", "eventually", "always not"])
+def test_a_quotient_by_zero_is_not_observable_and_says_so(way):
+    """At the third sample y is 0; a quotient of zeros and one of a length are none either."""
+    run = run_of([0.0, 1.0, 0.0, 1.0], [1.0, 1.0, 0.0, 1.0], [0.0, 0.01, 0.02, 0.03])
+    limit = 9 if way == "eventually" else -9 if way == "always" else 9
+    answer = verdict(run, Formula(formula=f"{way} x(tcp) / y(tcp) > {limit}"))
+    assert answer.status == "not observable"
+    assert "x(tcp) / y(tcp) >" in answer.reason
+    assert answer.reason.endswith("has no value at t=0.020 s, where it divides by zero")

@@ -5,7 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.assertions.support import SINKING, is_below, lowest_points, rides_on, supports
+from harness.assertions.support import (
+    SINKING,
+    is_below,
+    lowest_points,
+    riders,
+    standing,
+    supports,
+)
 from harness.core.geometry import Mesh, Shape, Sphere
 from harness.core.spatial import SE3
 from tests.assertions.surfaces import GEOMETRIES, surface_of
@@ -82,9 +89,49 @@ def test_an_object_rides_on_another_while_it_touches_nothing_else():
     poses = {"cup": at(N, (0, 0, 0.06)), "box": at(N, (0, 0, 0.02))}
     forces = {("box", "cup"): force(N, (0, N)), ("arm_link", "cup"): force(N, (2, N), value=0.002)}
     run = make_run(N, objects=(TABLE, BOX, cup), object_poses=poses, contact_forces=forces)
-    assert rides_on(run, "cup", "box").tolist() == [True, True, False, False]
-    assert not rides_on(run, "box", "cup").any()
-    assert not rides_on(run, "Table", "box").any(), "what is fixed rides on nothing"
+    assert riders(run, "box")["cup"].tolist() == [True, True, False, False]
+    assert not riders(run, "cup")["box"].any()
+    assert "Table" not in riders(run, "box"), "what is fixed rides on nothing"
     light = {**forces, ("arm_link", "cup"): force(N, (2, N), value=0.001)}
     run = make_run(N, objects=(TABLE, BOX, cup), object_poses=poses, contact_forces=light)
-    assert rides_on(run, "cup", "box").all()
+    assert riders(run, "box")["cup"].all()
+
+
+def stacked(*touching):
+    """Cup and lid on the box, each 4 cm high, and what else touches, all with 1 N of weight."""
+    objects = (TABLE, BOX, thing("cup"), thing("lid"))
+    poses = {name: at(N, (0, 0, 0.02 + 0.04 * k)) for k, name in enumerate(("box", "cup", "lid"))}
+    pairs = (("box", "cup"), ("cup", "lid"), *touching)
+    forces = {
+        pair: force(N, (0, N), value=2.0 if pair == ("box", "cup") else 1.0) for pair in pairs
+    }
+    return make_run(N, objects=objects, object_poses=poses, contact_forces=forces)
+
+
+def test_a_stack_rides_as_long_as_none_of_it_touches_anything_else():
+    assert {name: rides.all() for name, rides in riders(stacked(), "box").items()} == {
+        "cup": True,
+        "lid": True,
+    }
+    assert not riders(stacked(), "cup")["box"].any(), "what carries rides on nothing"
+    leaning = riders(stacked(("Table", "lid")), "box")
+    assert not any(rides.any() for rides in leaning.values())
+    assert riders(stacked(("palm", "lid")), "box")["cup"].all(), "the hand may touch it"
+
+
+@pytest.mark.parametrize(
+    ("below", "stands"), [("Table", True), ("arm_link", False), ("base_link", True)]
+)
+def test_a_stack_stands_where_its_lowest_body_does(below, stands):
+    """On something fixed, also on a link that never moves, but not on a moving link."""
+    run = stacked((below, "box"))
+    forces = {**run.signals.contact_forces, (below, "box"): force(N, (0, N), value=3.0)}
+    presses = {(below, "box"): np.tile([0, 0, 0, 0, 0, 3.0], (N, 1))} if below != "Table" else {}
+    run = replace(run, signals=replace(run.signals, contact_forces=forces, presses=presses))
+    assert standing(run, "lid")["cup"].tolist() == [1.0 if stands else 0.0] * N
+    assert supports(run, "lid")["cup"].tolist() == [1.0] * N
+
+
+def test_no_support_lasts_longer_than_its_last_contact():
+    forces = {("Table", "box"): force(N, (0, 2))}
+    assert supports(make_run(N, contact_forces=forces), "box")["Table"].tolist() == [1, 1, 0, 0]

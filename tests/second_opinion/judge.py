@@ -66,6 +66,13 @@ def _model(trial: Trial) -> mujoco.MjModel:
     )
 
 
+def _matrix(quat: np.ndarray) -> np.ndarray:
+    """The rotation matrix of a unit quaternion wxyz."""
+    found = np.zeros(9)
+    mujoco.mju_quat2Mat(found, quat)
+    return found.reshape(3, 3)
+
+
 @dataclass(eq=False)
 class Judge:
     """What it measures of a run."""
@@ -152,13 +159,28 @@ class Judge:
         return (since >= count) & (np.linalg.norm(local - earlier, axis=1) <= 0.005)
 
     def grasped(self) -> bool:
-        """Held at the end, and moved and turned little in the palm's frame since it was pinched."""
+        """Held at the end; between the fingers it moved and turned little since the pinch began."""
         if not self.held()[-1]:
             return False
-        local = (self.pose[:, :3] - self.palm)[-1 - self.since[-1] :]
-        quats = self.pose[-1 - self.since[-1] :, 3:]
+        began = -1 - self.since[-1]
+        quats = self.pose[began:, 3:]
         turned = 2 * np.arccos(min(1.0, abs(float(quats[0] @ quats[-1]))))
-        return bool(np.linalg.norm(local[-1] - local[0]) <= 0.005 and turned <= 0.1)
+        point = self._between_fingers(began)
+        turns = [_matrix(quat) for quat in (quats[0], quats[-1])]
+        moved = (turns[1] - turns[0]) @ turns[0].T @ (point - self.pose[began, :3])
+        local = self.pose[:, :3] - self.palm
+        moved = moved + local[-1] - local[began]
+        return bool(np.linalg.norm(moved) <= 0.005 and turned <= 0.1)
+
+    def _between_fingers(self, sample: int) -> np.ndarray:
+        """The middle of what the fingers and the upright box around the thing share [m]."""
+        half = np.abs(_matrix(self.pose[sample, 3:])) @ np.array(self.trial.size) / 2
+        half = half if self.trial.shape == "box" else np.full(3, self.trial.size[0] / 2)
+        finger = self.palm[sample] - (0, 0, FINGER_DROP)
+        reach = np.array([FINGER[0] / 2, 1.0, FINGER[2] / 2])
+        thing = self.pose[sample, :3]
+        low = np.maximum(thing - half, finger - reach)
+        return (low + np.minimum(thing + half, finger + reach)) / 2
 
     def lifted(self) -> bool:
         held = self.held()
@@ -176,7 +198,10 @@ class Judge:
         dots = np.abs(np.sum(quats[1:] * quats[:-1], axis=1))
         turning = 2 * np.arccos(np.minimum(dots, 1.0)) / self.step
         rough = 2 * np.linalg.norm(np.diff(quats, axis=0), axis=1) / self.step
-        return bool(speed.max() <= 0.005 and np.minimum(turning, rough).max() <= 0.05)
+        turning = np.minimum(turning, rough)
+        size = np.linalg.norm(self.trial.size) if self.trial.shape == "box" else self.trial.size[0]
+        fastest = speed + turning * size / 2  # a bound: the farthest point from the middle
+        return bool(fastest.max() <= 0.005 and turning.max() <= 0.05)
 
     def released(self) -> bool:
         return not any(self.touches(link)[-1] for link in LINKS)
@@ -186,14 +211,18 @@ class Judge:
         return bool(self.released() and self._still() and rests)
 
     def on(self, support: str) -> bool | None:
-        """By the balance of forces where nothing else touches the thing."""
+        """By the balance of forces where nothing else touches the thing.
+
+        No support outlasts its last contact. A thing that rattles when the run ends, where the last
+        accelerations decide, leaves the question open.
+        """
         others = {"floor", "bin", "wall", *LINKS} - {support}
-        if not self.touches(support)[-1]:
+        if not (self.distances["thing", support][-1] <= 0):
             return False
         if any(self.touches(name)[-1] for name in others):
             return None
-        upward = self.force[-round(RECENT / self.step) - 2 : -1, 2]
-        return bool(upward.max() >= 0.5 * self.trial.mass * GRAVITY)
+        carried = self.force[-4:-1, 2] >= 0.5 * self.trial.mass * GRAVITY
+        return bool(carried[-1]) if len(set(carried.tolist())) == 1 else None
 
     def inside_bin(self) -> bool:
         x, y, z = self.pose[-1, :3] - BIN

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.geometry import Shape, Sphere
+from harness.core.pose_arrays import (
+    angle_between,
+    conjugate,
+    quat_product,
+    rotate,
+    rotation_angle,
+)
+from harness.core.symmetry import ANY, equal_turns
+from harness.core.types import BoolArray, FloatArray
 from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, RecordedTrack, Tracks
-from harness.grading.bag.joints import JointRows, joints_of_frames, rows_of_joint
-from harness.recording.robot_record import LinkPlacement
+from harness.grading.bag.content import RecordedTrack, Tracks
+from harness.grading.bag.joints import APART, SLACK, JointMessages, JointRows
+from harness.grading.bag.sampling import gap_limit
 from harness.robot.description import RobotDescription
 
 DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities", "jumps", "once"]
@@ -21,19 +30,24 @@ FEWEST_JUMPS = 3
 """Jumps there and back from which on a topic has two publishers; one is a wrong message."""
 FASTEST = 3.0
 """A joint that moves faster than this multiple of its velocity limit jumps."""
-FASTEST_OBJECT = 5.0
-"""And an object above this speed [m/s]."""
-SLACK = {"revolute": 0.02, "continuous": 0.02, "prismatic": 0.002}
-"""What noise and rounding may add [rad or m]."""
-OBJECT_SLACK = 0.02  # [m]
-FROM_REST = 20.0
+UNKNOWN_LIMIT = 2 * np.pi
+"""Velocity limit of a joint whose description has none, or 0 [rad/s or m/s]."""
+SHORTEST_TIME = 0.02
+"""Less time between two messages counts as this in the search for a single jump of a joint [s]: a
+message that is up to 60 ms late is no jump at the velocity limit."""
+FASTEST_OBJECT, OBJECT_SLACK = 5.0, 0.02
+"""And an object above this speed [m/s], by more than this [m]."""
+FASTEST_TURN, FASTEST_FLIP, TURN_SLACK = 25.0, 12.0, 0.35
+"""And one that turns faster [rad/s], for a single jump and there and back, by more than this [rad]:
+a cube of 4 cm that tips over lands with 12 rad/s, and a camera is off by 20 degrees at times."""
+FROM_REST, TURN_FROM_REST = 20.0, 400.0
 """Acceleration of an object that rests at two messages and rests elsewhere at the next two
-[m/s^2]: twice that of a fall."""
-APART = {"revolute": 0.1, "continuous": 0.1, "prismatic": 0.01}
-"""Difference between a joint and its frame in /tf that no delay of a message explains [rad or m]:
-20 ms at 5 rad/s or 0.5 m/s."""
+[m/s^2, rad/s^2]: twice that of a fall, and of a cube of 4 cm that tips over."""
 FEWEST_APART = 0.02
-"""Share of the samples that differ by more, from which on the two contradict each other."""
+"""Share of the samples that differ by more than `APART`, from which on two topics contradict each
+other."""
+OBJECT_APART, OBJECT_TURNED_APART = 0.02, 0.2
+"""Difference between two topics with the pose of an object [m, rad]: a joint's twice."""
 
 STRETCH = 0.5
 """Motions are compared with the integral of the velocities over this time [s]."""
@@ -56,44 +70,116 @@ class Doubt:
     names: tuple[str, ...] = ()
 
 
-def publisher_doubts(
-    content: BagContent, description: RobotDescription, timeline: Timeline, objects: set[str]
+def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iterator[Doubt]:
+    """Joints whose messages jump: there and back, as those of two publishers do, or once.
+
+    Args:
+        messages: What was recorded of the joints.
+        is_own: Whether this program made the recording, and its faults may make a sensor jump.
+    """
+    for name, said in messages.items():
+        joint, spans = said.joint, np.diff(said.times)
+        fastest = FASTEST * (joint.velocity if 0 < joint.velocity < np.inf else UNKNOWN_LIMIT)
+        sizes, slack = np.abs(said.steps), SLACK[joint.kind]
+        is_back = said.steps[1:] * said.steps[:-1] < 0
+        both = _there_and_back(sizes > slack + fastest * spans, is_back)
+        if both is not None:
+            yield Doubt("publishers", f"{name} {_two_values(said.times[both])}")
+            continue
+        far = sizes > slack + fastest * np.maximum(spans, SHORTEST_TIME)
+        if far.any() and not is_own:
+            first = int(np.argmax(far))
+            factor, unit = (1000, "mm") if joint.kind == "prismatic" else (180 / np.pi, "deg")
+            when = f"by {factor * sizes[first]:.0f} {unit} at t={said.times[first + 1]:.3f} s"
+            why = "a program put it there, or messages are missing"
+            yield Doubt(
+                "jumps", f"{name} jumps {when}, faster than {FASTEST:g} times its limit: {why}"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class _Moves:
+    """From message to message of an object, shape (N - 1,): time [s], way [m] and turn [rad]."""
+
+    times: FloatArray
+    spans: FloatArray
+    ways: FloatArray
+    turns: FloatArray
+    is_way_back: BoolArray
+    is_turn_back: BoolArray
+
+    @classmethod
+    def of(cls, track: RecordedTrack, timeline: Timeline, shapes: tuple[Shape, ...]) -> _Moves:
+        seconds, is_judged = timeline.rows(track)
+        order = np.argsort(seconds[is_judged], kind="stable")
+        times, poses = seconds[is_judged][order], track.rows()[is_judged][order]
+        steps, quats = np.diff(poses[:, :3], axis=0), poses[:, 3:]
+        turns = angles_between(quats[:-1], quats[1:], shapes)
+        return cls(
+            times,
+            np.diff(times),
+            np.linalg.norm(steps, axis=1),
+            turns,
+            np.sum(steps[1:] * steps[:-1], axis=1) < 0,
+            angles_between(quats[:-2], quats[2:], shapes) < turns[1:],
+        )
+
+
+def angles_between(a: FloatArray, b: FloatArray, shapes: tuple[Shape, ...]) -> FloatArray:
+    """Angles between orientations of an object, as far as they can be seen [rad], shape (N,)."""
+    if shapes and all(isinstance(shape.geometry, Sphere) for shape in shapes):
+        return np.zeros(len(a))
+    if equal_turns(shapes, np.eye(3)) == ANY:
+        axis = np.array([0.0, 0.0, 1.0])
+        return angle_between(rotate(a, axis), rotate(b, axis))
+    return rotation_angle(quat_product(conjugate(a), b))
+
+
+def object_doubts(
+    edges: Tracks,
+    timeline: Timeline,
+    objects: Mapping[str, tuple[Shape, ...]],
+    *,
+    is_own: bool,
 ) -> Iterator[Doubt]:
-    """Joints and objects whose messages jump there and back, as those of two publishers do."""
-    for joint in description.movable_joints:
-        seconds, rows = rows_of_joint(joint.name, content.joints, timeline, "")
-        limit = joint.velocity if np.isfinite(joint.velocity) else 2 * np.pi
-        first = _first_jump(seconds, rows[:, :1], FASTEST * limit, SLACK[joint.kind])
-        if first is not None:
-            yield Doubt("publishers", f"{joint.name} {_two_values(first)}")
-    for edges in (content.edges, content.objects):
-        for (_, child), track in sorted(edges.items()):
-            first = _first_jump(*_places(track, timeline), FASTEST_OBJECT, OBJECT_SLACK)
-            if child in objects and first is not None:
-                yield Doubt("publishers", f"{child} {_two_values(first)}", (child,))
-        yield from _doubts_about_parents(edges, objects)
+    """Objects whose messages jump or flip there and back, or once, as exchanged ones do.
 
-
-def jump_doubts(content: BagContent, timeline: Timeline, objects: set[str]) -> Iterator[Doubt]:
-    """Objects that are elsewhere from one message to the next, as exchanged ones are."""
-    for edges in (content.edges, content.objects):
-        for (_, child), track in sorted(edges.items()):
-            if child not in objects:
-                continue
-            times, places = _places(track, timeline)
-            steps, spans = np.linalg.norm(np.diff(places, axis=0), axis=1), np.diff(times)
-            around = np.concatenate([np.zeros(1), steps, np.zeros(1)])
-            at_rest = np.maximum(around[:-2], around[2:]) < 0.1 * steps
-            far = steps > OBJECT_SLACK + FASTEST_OBJECT * spans
-            far |= at_rest & (steps > OBJECT_SLACK + FROM_REST * spans**2 / 2)
-            if far.any():
-                first = int(np.argmax(far))
-                said = (
-                    f"{child} jumps by {1000 * steps[first]:.0f} mm at t={times[first + 1]:.3f} s"
-                )
-                yield Doubt(
-                    "jumps", f"{said}: objects were exchanged, or a program put it there", (child,)
-                )
+    Args:
+        edges: Tracks of poses, by parent and child frame.
+        timeline: The times of the messages.
+        objects: Shapes of the objects by name.
+        is_own: Whether this program made the recording, and its steps may put objects somewhere.
+    """
+    parents: dict[str, list[str]] = {}
+    for (parent, child), track in sorted(edges.items()):
+        if child not in objects:
+            continue
+        parents.setdefault(child, []).append(parent)
+        moves = _Moves.of(track, timeline, objects[child])
+        ways, turns, spans = moves.ways, moves.turns, moves.spans
+        far = ways > OBJECT_SLACK + FASTEST_OBJECT * spans
+        flipped = turns > TURN_SLACK + FASTEST_FLIP * spans
+        both = _there_and_back(far, moves.is_way_back)
+        both = both if both is not None else _there_and_back(flipped, moves.is_turn_back)
+        if both is not None:
+            yield Doubt("publishers", f"{child} {_two_values(moves.times[both])}", (child,))
+            continue
+        far |= _is_at_rest(ways) & (ways > OBJECT_SLACK + FROM_REST * spans**2 / 2)
+        turned = turns > TURN_SLACK + FASTEST_TURN * spans
+        turned |= _is_at_rest(turns) & (turns > TURN_SLACK + TURN_FROM_REST * spans**2 / 2)
+        if (far | turned).any() and not is_own:
+            first = int(np.argmax(far | turned))
+            said = f"{1000 * ways[first]:.0f} mm and {np.degrees(turns[first]):.0f} deg"
+            yield Doubt(
+                "jumps",
+                f"{child} jumps by {said} at t={moves.times[first + 1]:.3f} s: objects were"
+                " exchanged, or a program put it there",
+                (child,),
+            )
+    for child, several in sorted(parents.items()):
+        if len(several) > 1:
+            said = f"{child} has poses in {' and in '.join(several)}: two programs say so"
+            yield Doubt("publishers", said, (child,))
 
 
 def _two_values(time: float) -> str:
@@ -103,92 +189,77 @@ def _two_values(time: float) -> str:
     )
 
 
-def _places(track: RecordedTrack, timeline: Timeline) -> tuple[FloatArray, FloatArray]:
-    """Times of the messages in their order [s], shape (N,), and places [m], shape (N, 3)."""
-    seconds, is_judged = timeline.rows(track)
-    order = np.argsort(seconds[is_judged], kind="stable")
-    return seconds[is_judged][order], track.rows()[is_judged, :3][order]
-
-
-def _first_jump(
-    times: FloatArray, values: FloatArray, fastest: float, slack: float
-) -> float | None:
-    """Time of the first of several jumps there and back; None where there are too few [s].
+def _there_and_back(jumps: BoolArray, is_back: BoolArray) -> int | None:
+    """The message of the first of several jumps there and back; None where there are too few.
 
     Args:
-        times: The times of the messages [s], shape (N,), in any order.
-        values: The values of the messages, shape (N, k).
-        fastest: Speed that is no jump.
-        slack: Distance that is no jump at any speed.
+        jumps: Whether each step is a jump, shape (N - 1,).
+        is_back: Whether each step but the first undoes the one before it, shape (N - 2,).
     """
-    order = np.argsort(times, kind="stable")
-    times, steps = times[order], np.diff(values[order], axis=0)
-    jumps = np.linalg.norm(steps, axis=1) > slack + fastest * np.diff(times)
-    back = np.sum(steps[1:] * steps[:-1], axis=1) < 0
-    places = np.flatnonzero(jumps[1:] & jumps[:-1] & back)
-    return float(times[places[0] + 1]) if len(places) >= FEWEST_JUMPS else None
+    places = np.flatnonzero(jumps[1:] & jumps[:-1] & is_back)
+    return int(places[0]) + 1 if len(places) >= FEWEST_JUMPS else None
 
 
-def _doubts_about_parents(edges: Tracks, objects: set[str]) -> Iterator[Doubt]:
-    parents: dict[str, list[str]] = {}
-    for parent, child in edges:
-        parents.setdefault(child, []).append(parent)
-    for child, several in sorted(parents.items()):
-        if child in objects and len(several) > 1:
-            said = f"{child} has poses in {' and in '.join(sorted(several))}: two programs say so"
-            yield Doubt("publishers", said, (child,))
+def _is_at_rest(steps: FloatArray) -> BoolArray:
+    """Whether a step is much larger than the one before it and the one after it."""
+    around = np.concatenate([np.zeros(1), steps, np.zeros(1)])
+    return np.maximum(around[:-2], around[2:]) < 0.1 * steps
 
 
 def tf_doubts(
-    content: BagContent,
-    placements: Mapping[str, LinkPlacement],
-    description: RobotDescription,
-    timeline: Timeline,
-    times: FloatArray,
-    measured: JointRows,
+    description: RobotDescription, times: FloatArray, measured: JointRows, shown: JointRows
 ) -> Iterator[Doubt]:
     """Joints whose frames in /tf stand elsewhere than the joint states say."""
-    shown = joints_of_frames(content, placements, description, timeline, times).positions
     for column, joint in enumerate(description.movable_joints):
-        apart = shown[:, column] - measured.positions[:, column]
+        apart = shown.positions[:, column] - measured.positions[:, column]
         if joint.kind != "prismatic":
             apart = (apart + np.pi) % (2 * np.pi) - np.pi
-        known = np.isfinite(apart)
-        far = known & (np.abs(apart) > APART[joint.kind])
-        if far.any() and far.sum() > FEWEST_APART * known.sum():
-            time = float(times[int(np.argmax(far))])
-            said = f"/tf and the joint states contradict each other about {joint.name}"
-            yield Doubt("tf", f"{said} at {int(far.sum())} samples, first at t={time:.3f} s")
+        found = _contradiction(times, np.abs(apart) / APART[joint.kind])
+        if found:
+            said = f"/tf and the joint states contradict each other about {joint.name} {found}"
+            yield Doubt("tf", said)
 
 
-def velocity_doubts(
-    description: RobotDescription, arm_joints: Collection[str], times: FloatArray, rows: JointRows
+def source_doubts(
+    name: str, shapes: tuple[Shape, ...], times: FloatArray, poses: FloatArray, others: FloatArray
 ) -> Iterator[Doubt]:
-    """Joints of the arm that move otherwise than their recorded velocities say.
+    """An object of which two topics have different poses at the samples, shape (N, 7) each."""
+    apart = np.linalg.norm(poses[:, :3] - others[:, :3], axis=1) / OBJECT_APART
+    turned = angles_between(poses[:, 3:], others[:, 3:], shapes) / OBJECT_TURNED_APART
+    found = _contradiction(times, np.maximum(apart, turned))
+    if found:
+        yield Doubt("tf", f"two topics contradict each other about {name} {found}", (name,))
+
+
+def _contradiction(times: FloatArray, shares: FloatArray) -> str:
+    """Where two topics differ, as shares of what may be, at too many samples; NaN is unknown."""
+    known, far = np.isfinite(shares), np.nan_to_num(shares) > 1
+    if not far.any() or far.sum() <= FEWEST_APART * known.sum():
+        return ""
+    return f"at {int(far.sum())} samples, first at t={times[int(np.argmax(far))]:.3f} s"
+
+
+def velocity_doubts(messages: Mapping[str, JointMessages]) -> Iterator[Doubt]:
+    """Joints that move otherwise than their recorded velocities say, or in spite of zeros.
 
     So it is where the clock of a recording runs at another speed, where positions repeat while the
     arm moves, and where joints are exchanged during the recording.
 
     Args:
-        arm_joints: Names of the arm's joints; fingers report velocities that mean little.
-        times: Times of the samples [s], shape (N,).
-        rows: The measured joints at these times.
+        messages: What was recorded of the arm's joints; fingers report velocities that mean little.
     """
-    for column, joint in enumerate(description.movable_joints):
-        positions, velocities = rows.positions[:, column], rows.velocities[:, column]
-        if joint.name not in arm_joints or not np.nan_to_num(velocities).any():
+    for name, said in messages.items():
+        velocities, spans = said.values[:, 1], np.diff(said.times)
+        if said.has_false_zeros():
+            text = f"{name} moves, and its velocities are all 0: they count as not recorded"
+            yield Doubt("velocities", text)
             continue
-        means = (velocities[1:] + velocities[:-1]) / 2
-        turns = np.diff(positions)
-        if joint.kind == "continuous":
-            turns = (turns + np.pi) % (2 * np.pi) - np.pi
-        steps = np.stack([turns, means * np.diff(times)])
-        steps[:, ~np.isfinite(steps).all(axis=0)] = 0.0
-        sums = np.concatenate([np.zeros((2, 1)), np.cumsum(steps, axis=1)], axis=1)
-        moved, integral = sums - sums[:, np.searchsorted(times, times - STRETCH)]
+        steps = np.stack([said.steps, (velocities[1:] + velocities[:-1]) / 2 * spans])
+        steps[:, ~np.isfinite(steps).all(axis=0) | (spans > gap_limit(said.times))] = 0.0
+        moved, integral = (said.moved_within(STRETCH, each) for each in steps)
         allowed = SHARE_OF_MOTION * np.maximum(np.abs(moved), np.abs(integral))
-        wrong = np.abs(moved - integral) > APART[joint.kind] / 2 + allowed
+        wrong = np.abs(moved - integral) > APART[said.joint.kind] / 2 + allowed
         if wrong.any():
-            time = float(times[int(np.argmax(wrong))])
-            said = f"{joint.name} moves otherwise than its velocities say, first at t={time:.3f} s"
-            yield Doubt("velocities", said)
+            time = float(said.times[int(np.argmax(wrong))])
+            text = f"{name} moves otherwise than its velocities say, first at t={time:.3f} s"
+            yield Doubt("velocities", text)

@@ -12,7 +12,7 @@ from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_record import StepRecord, StepStatus
-from harness.recording.step_results import SavedResult
+from harness.recording.step_results import SavedResult, SceneChange
 
 RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
@@ -24,12 +24,14 @@ Timed = tuple[float, dict[str, Any]]
 StepInterval = tuple[float, float]
 
 
-def timed_events(content: BagContent, timeline: Timeline) -> list[Timed]:
-    """Every event with its time [s], in order."""
+def timed_events(content: BagContent, timeline: Timeline, begin: float) -> list[Timed]:
+    """Every event from a time on with its own time [s], in order."""
     logged = np.array([time for time, _ in content.events], dtype=np.int64)
     moments = timeline.at_logged(logged).tolist() if len(logged) else []
     timed = zip(moments, (event for _, event in content.events), strict=True)
-    return sorted(((time, event) for time, event in timed if time >= -RESOLUTION), key=_moment)
+    return sorted(
+        ((time, event) for time, event in timed if time >= begin - RESOLUTION), key=_moment
+    )
 
 
 def steps_of(
@@ -142,8 +144,12 @@ def _step(
     name, path = str(event["step"]), _path(event)
     line, summary = known.get(name, known.get(path, (0, "")))
     begin, end = span
-    # a step without duration is judged on the first sample after it
+    result = _result(event)
+    # a step without duration is judged on the first sample after it, which windows add themselves
+    # where it changes the scene
     start = min(int(np.searchsorted(times, begin - RESOLUTION)), len(times) - 1)
+    if result.find(SceneChange) is not None:
+        start = max(int(np.searchsorted(times, begin + RESOLUTION)) - 1, 0)
     return StepRecord(
         id=name,
         path=path,
@@ -157,7 +163,7 @@ def _step(
         end_index=max(int(np.searchsorted(times, end + RESOLUTION)), start + 1),
         error_code=str(event.get("error_code", "")),
         message=str(event.get("message", "")),
-        result=_result(event),
+        result=result,
     )
 
 

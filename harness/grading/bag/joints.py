@@ -1,4 +1,4 @@
-"""Joints of a recording in the robot's order, at the times of the arm's messages."""
+"""What a recording says of the joints, in the robot's order at the times of a run."""
 
 from __future__ import annotations
 
@@ -11,9 +11,75 @@ from harness.core.pose_arrays import relative, rotation_vector
 from harness.core.types import FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent, RecordedTrack, Tracks, joined_tracks
-from harness.grading.bag.sampling import gap_limit, rows_at, with_gaps_filled
+from harness.grading.bag.sampling import Trace, first_of_each
 from harness.recording.robot_record import LinkPlacement
-from harness.robot.description import RobotDescription
+from harness.robot.description import Joint, RobotDescription
+
+SLACK = {"revolute": 0.02, "continuous": 0.02, "prismatic": 0.002}
+"""What noise and rounding may add to a position [rad or m]; a joint that moves by less stands
+still."""
+APART = {"revolute": 0.1, "continuous": 0.1, "prismatic": 0.01}
+"""Difference between a joint and its frame in /tf that no delay of a message explains [rad or m]:
+20 ms at 5 rad/s or 0.5 m/s."""
+STRETCH_OF_ZEROS = 2.0
+"""A joint that moves by half of `APART` within this time has a velocity [s]: 0.025 rad/s is the
+smallest one that the motors of small arms report."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointMessages:
+    """What was recorded of a joint, by rising time; NaN where a message says nothing.
+
+    Attributes:
+        times: Times of the messages [s], shape (N,), N > 0.
+        values: Positions, velocities and efforts, shape (N, 3).
+    """
+
+    joint: Joint
+    times: FloatArray
+    values: FloatArray
+
+    @property
+    def steps(self) -> FloatArray:
+        """Change of the position since the message before, shape (N - 1,)."""
+        return self._wrapped(np.diff(self.values[:, 0]))
+
+    def moved_within(self, span: float, steps: FloatArray) -> FloatArray:
+        """Sum of some steps over the last `span` seconds at each message, shape (N,)."""
+        sums = np.concatenate([[0.0], np.cumsum(steps)])
+        return sums - sums[np.searchsorted(self.times, self.times - span)]
+
+    def has_false_zeros(self) -> bool:
+        """Whether every velocity is 0 although the joint moves: the driver does not measure it."""
+        velocities = self.values[:, 1]
+        if np.isnan(velocities).all() or np.nan_to_num(velocities).any():
+            return False
+        moved = self.moved_within(STRETCH_OF_ZEROS, np.nan_to_num(self.steps))
+        return bool((np.abs(moved) > APART[self.joint.kind] / 2).any())
+
+    def traces(self) -> tuple[Trace | None, ...]:
+        """Positions, velocities and efforts over time; None of what was not recorded."""
+        slack, found = SLACK[self.joint.kind], list[Trace | None]()
+        for kind in range(3):
+            known = ~np.isnan(self.values[:, kind])
+            if not known.any() or (kind == 1 and self.has_false_zeros()):
+                found.append(None)
+                continue
+            times, rows = first_of_each(self.times[known], self.values[known, kind : kind + 1])
+            steps, is_moving = np.diff(rows, axis=0), np.zeros(len(rows) - 1, dtype=bool)
+            if kind == 0:
+                steps = self._wrapped(steps)
+                is_moving = np.abs(steps[:, 0]) > slack
+            found.append(Trace.of(times, rows, steps, is_moving))
+        return tuple(found)
+
+    def _wrapped(self, steps: FloatArray) -> FloatArray:
+        """Steps of a joint that turns without end, along the shorter way."""
+        return (steps + np.pi) % (2 * np.pi) - np.pi if self.joint.kind == "continuous" else steps
+
+
+JointTraces = Mapping[str, tuple[Trace | None, ...]]
+"""`JointMessages.traces` by the names of the joints."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,38 +114,83 @@ def reference_track(
     return None
 
 
-def sample_times(reference: RecordedTrack, content: BagContent, timeline: Timeline) -> FloatArray:
-    """Times of the run's samples [s], rising, from 0; in gaps too, where the joints are NaN.
+def joint_messages(
+    tracks: Tracks, description: RobotDescription, timeline: Timeline, name: str
+) -> dict[str, JointMessages]:
+    """The messages about each joint, of all publishers.
 
-    A gap lasts to the end of the recording where the joints fall silent before other topics do.
+    Args:
+        name: Name of the topic in notes.
     """
-    times, is_judged = timeline.rows(reference)
-    found = np.unique(times[is_judged])
-    if len(found) < 2:
-        return found
-    others = [*content.joints.values(), *content.edges.values(), *content.objects.values()]
-    last = max(float(timeline.rows(track)[0].max()) for track in others)
-    whole = with_gaps_filled(np.append(found, last) if last > found[-1] else found)
-    is_silent = last - found[-1] > gap_limit(found)
-    return whole if is_silent else whole[whole <= found[-1]]
+    judged: dict[tuple[str, ...], tuple[FloatArray, FloatArray]] = {}
+    for names, track in tracks.items():
+        seconds, is_judged = timeline.rows(track, name)
+        judged[names] = seconds[is_judged], track.rows()[is_judged]
+    found: dict[str, JointMessages] = {}
+    for joint in description.movable_joints:
+        times: list[FloatArray] = []
+        values: list[FloatArray] = []
+        for names, (seconds, rows) in judged.items():
+            if joint.name in names and len(seconds):
+                place, count = names.index(joint.name), len(names)
+                times.append(seconds)
+                values.append(rows[:, [place, count + place, 2 * count + place]])
+        if times:
+            found[joint.name] = _in_order(joint, np.concatenate(times), np.concatenate(values))
+    return found
 
 
-def joint_rows(
-    tracks: Tracks, description: RobotDescription, timeline: Timeline, times: FloatArray, name: str
-) -> JointRows:
-    """All joints from the messages of all publishers.
+def traces_of(messages: Mapping[str, JointMessages]) -> JointTraces:
+    """The traces of all joints."""
+    return {name: each.traces() for name, each in messages.items()}
 
-    The position of a mimic joint that no message names follows from the joint that it mimics.
+
+def messages_of_frames(
+    content: BagContent,
+    placements: Mapping[str, LinkPlacement],
+    description: RobotDescription,
+    timeline: Timeline,
+) -> dict[str, JointMessages]:
+    """Positions of the joints from the transforms of their links in /tf."""
+    found: dict[str, JointMessages] = {}
+    for joint in description.movable_joints:
+        track = content.edges.get((joint.parent, joint.child))
+        if track is None:
+            continue
+        seconds, is_judged = timeline.rows(track, "/tf")
+        placement = placements[joint.child]
+        moved = relative(np.array([placement.pose]), track.rows()[is_judged])
+        axis = np.array(placement.axis)
+        shift = moved[:, :3] if placement.slides else rotation_vector(moved[:, 3:])
+        values = np.full((len(moved), 3), np.nan)
+        values[:, 0] = shift @ axis
+        if len(values):
+            messages = _in_order(joint, seconds[is_judged], values)
+            if not placement.slides:
+                messages.values[:, 0] = np.unwrap(messages.values[:, 0])
+            found[joint.name] = messages
+    return found
+
+
+def _in_order(joint: Joint, times: FloatArray, values: FloatArray) -> JointMessages:
+    order = np.argsort(times, kind="stable")
+    return JointMessages(joint, times[order], values[order])
+
+
+def joint_rows(traces: JointTraces, description: RobotDescription, times: FloatArray) -> JointRows:
+    """All joints at some times [s].
+
+    Where a position is not known, nothing is known of the joint. The position of a mimic joint that
+    no message names follows from the joint that it mimics.
     """
     joints = description.movable_joints
     values = np.full((3, len(times), len(joints)), np.nan)
     for column, joint in enumerate(joints):
-        seconds, rows = rows_of_joint(joint.name, tracks, timeline, name)
-        for kind in range(3):
-            known = ~np.isnan(rows[:, kind])
-            if known.any():
-                found = rows_at(seconds[known], rows[known, kind : kind + 1], times)
-                values[kind, :, column] = found[:, 0]
+        for kind, trace in enumerate(traces.get(joint.name, ())):
+            if trace is not None:
+                values[kind, :, column] = trace.at(times)[:, 0]
+            if kind and not np.isnan(values[0, :, column]).all():
+                values[kind, np.isnan(values[0, :, column]), column] = np.nan
     index = description.joint_index
     for column, joint in enumerate(joints):
         if joint.mimic is not None and np.isnan(values[0, :, column]).all():
@@ -87,50 +198,6 @@ def joint_rows(
             values[0, :, column] = joint.mimic.multiplier * followed[0] + joint.mimic.offset
             values[1, :, column] = joint.mimic.multiplier * followed[1]
     return JointRows(*values)
-
-
-def rows_of_joint(
-    joint: str, tracks: Tracks, timeline: Timeline, name: str
-) -> tuple[FloatArray, FloatArray]:
-    """Times and (position, velocity, effort) of a joint in all messages that name it."""
-    times: list[FloatArray] = []
-    rows: list[FloatArray] = []
-    for names, track in tracks.items():
-        if joint in names:
-            place, count = names.index(joint), len(names)
-            seconds, is_judged = timeline.rows(track, name)
-            times.append(seconds[is_judged])
-            rows.append(track.rows()[is_judged][:, [place, count + place, 2 * count + place]])
-    if not times:
-        return np.zeros(0), np.zeros((0, 3))
-    return np.concatenate(times), np.concatenate(rows)
-
-
-def joints_of_frames(
-    content: BagContent,
-    placements: Mapping[str, LinkPlacement],
-    description: RobotDescription,
-    timeline: Timeline,
-    times: FloatArray,
-) -> JointRows:
-    """Joint positions from the transforms of the links, for recordings without joint states."""
-    positions = np.full((len(times), len(description.movable_joints)), np.nan)
-    for column, joint in enumerate(description.movable_joints):
-        track = content.edges.get((joint.parent, joint.child))
-        if track is None:
-            continue
-        placement = placements[joint.child]
-        moved = relative(np.array([placement.pose]), track.rows())
-        axis = np.array(placement.axis)
-        values = (moved[:, :3] if placement.slides else rotation_vector(moved[:, 3:])) @ axis
-        seconds, is_judged = timeline.rows(track, "/tf")
-        if is_judged.any():
-            order = np.argsort(seconds[is_judged], kind="stable")
-            turned = values[is_judged][order]
-            turned = turned if placement.slides else np.unwrap(turned)
-            positions[:, column] = rows_at(seconds[is_judged][order], turned[:, None], times)[:, 0]
-    unknown = np.full_like(positions, np.nan)
-    return JointRows(positions, unknown, unknown.copy())
 
 
 def foreign_links(content: BagContent, placements: Mapping[str, LinkPlacement]) -> list[str]:

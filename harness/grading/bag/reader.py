@@ -60,11 +60,15 @@ def read_bag(path: Path, topics: BagTopics) -> BagContent:
     return content
 
 
+class _Unusable(Exception):
+    """Why a message cannot be used."""
+
+
 class _Reader:
     def __init__(self, path: Path, topics: BagTopics, content: BagContent) -> None:
         self._path, self._topics, self._content = path, topics, content
         self._objects = {topic: name for name, topic in topics.object_poses.items()}
-        self._malformed: dict[str, int] = {}
+        self._malformed: dict[str, list[str]] = {}
         self._kept = 0
 
     def take(self, message: RawMessage) -> None:
@@ -76,10 +80,11 @@ class _Reader:
             return
         try:
             if message.log_time > LATEST:
-                raise ValueError("a time beyond the year 2262")  # noqa: TRY301
+                raise _Unusable("its time is beyond the year 2262")  # noqa: TRY301
             keep(TYPES.deserialize_cdr(message.data, message.msgtype), message)
-        except Exception:  # noqa: BLE001 - a damaged message may raise anything
-            self._malformed[message.topic] = self._malformed.get(message.topic, 0) + 1
+        except Exception as error:  # noqa: BLE001 - a damaged message may raise anything
+            reason = str(error) if isinstance(error, _Unusable) else "it is damaged"
+            self._malformed.setdefault(message.topic, []).append(reason)
         if self._kept > MOST_NUMBERS:
             raise bag_error(
                 self._path,
@@ -97,11 +102,12 @@ class _Reader:
             if known[topic][0] not in types:
                 said = f"{topic} is of type {known[topic][0]}, which has no poses of objects"
                 raise bag_error(self._path, said, f"supported types: {', '.join(types)}")
-        for topic, count in sorted(self._malformed.items()):
-            whole = known[topic][1]
+        for topic, reasons in sorted(self._malformed.items()):
+            count, whole = len(reasons), known[topic][1]
             if count == whole:
-                raise bag_error(self._path, f"no message of {topic} can be read")
-            self._content.notes.append(f"{count} of {whole} messages of {topic} cannot be read")
+                raise bag_error(self._path, f"no message of {topic} can be read: {reasons[0]}")
+            said = f"{count} of {whole} messages of {topic} cannot be read; the first: {reasons[0]}"
+            self._content.notes.append(said)
 
     def _handler(self, message: RawMessage) -> Callable[[Any, RawMessage], None] | None:
         topic, msgtype = message.topic, message.msgtype
@@ -129,16 +135,18 @@ class _Reader:
     def _put_joints(self, tracks: Tracks, content: Any, message: RawMessage) -> None:
         names = tuple(map(str, content.name))
         count = len(names)
-        if not count or len(set(names)) < count:
-            raise ValueError("the names are missing or not unique")
+        if not count:
+            raise _Unusable("it names no joint")
+        if len(set(names)) < count:
+            raise _Unusable(f"it names {next(n for n in names if names.count(n) > 1)} twice")
         parts: list[Sequence[float]] = []
         for values in (content.position, content.velocity, content.effort):
             if len(values) not in (0, count):
-                raise ValueError("the number of values is not that of the names")
+                raise _Unusable(f"it has {count} names and {len(values)} values")
             parts.append(values if len(values) else [math.nan] * count)
         row = [float(value) for part in parts for value in part]
         if any(map(math.isinf, row)):
-            raise ValueError("infinite numbers")
+            raise _Unusable("it has infinite numbers")
         self._put(self._track(tracks, names, 3 * count), content.header, message, row)
 
     def _frames(self, content: Any, message: RawMessage) -> None:
@@ -183,16 +191,16 @@ class _Reader:
         orientation: Any,
     ) -> None:
         quat = (orientation.w, orientation.x, orientation.y, orientation.z)
-        length = math.hypot(*quat)
+        length = math.hypot(*quat) or math.nan
         row = [position.x, position.y, position.z, *(value / length for value in quat)]
         if not all(map(math.isfinite, row)) or abs(length - 1) > 0.01:
-            raise ValueError("no pose")
+            raise _Unusable("its numbers are no pose: not finite, or no unit quaternion")
         self._put(self._track(edges, edge, 7), header, message, row)
 
     def _event(self, content: Any, message: RawMessage) -> None:
         event = json.loads(content.data)
         if not isinstance(event, dict):
-            raise TypeError("no event")
+            raise _Unusable("it is no event")
         self._kept += NEW_KEY + len(content.data)
         self._content.events.append((message.log_time, event))
 

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.grading.bag.clocks import Timeline
-from harness.grading.bag.content import BagContent, BagTopics
+from harness.grading.bag.clocks import SAME_CLOCK, Timeline
+from harness.grading.bag.content import BagContent, BagTopics, RecordedTrack
 from harness.grading.bag.doubts import (
     Doubt,
-    jump_doubts,
-    publisher_doubts,
+    joint_doubts,
+    object_doubts,
+    source_doubts,
     tf_doubts,
     velocity_doubts,
 )
@@ -31,13 +32,16 @@ from harness.grading.bag.events import (
 from harness.grading.bag.frames import Frames
 from harness.grading.bag.joints import (
     foreign_links,
+    joint_messages,
     joint_rows,
-    joints_of_frames,
+    messages_of_frames,
     reference_track,
-    sample_times,
+    traces_of,
 )
 from harness.grading.bag.message_files import bag_error
+from harness.grading.bag.missing import gaps, no_joints
 from harness.grading.bag.reader import read_bag
+from harness.grading.bag.sampling import Trace, gap_limit, sample_times
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Finding, ObjectRecord, Run
@@ -56,6 +60,9 @@ JOINT_SIGNALS = (
     "joint_commands",
     "joint_command_velocities",
 )
+MOST_NUMBERS = 60_000_000
+"""Most numbers of all signals of a run (480 MB); ten minutes of twelve joints at 500 Hz and of five
+objects at 100 Hz need 40 million."""
 FINDING, DOUBT = "recording", "doubt"
 
 
@@ -90,30 +97,41 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     content = read_bag(path, topics)
     reference = reference_track(content, known.description, known.robot.arm_joints)
     if reference is None:
-        raise _no_joints(path, topics, content, known)
+        raise no_joints(path, topics, content, known.robot.arm_joints)
     timeline = Timeline(reference)
-    times = sample_times(reference, content, timeline)
-    if len(times) < 2:
-        raise bag_error(path, "has joints at a single time; at least two samples are needed")
     placements = {placement.link: placement for placement in known.robot.placements}
-    if content.joints:
-        measured = joint_rows(
-            content.joints, known.description, timeline, times, topics.joint_states
-        )
-    else:
+    in_frames = messages_of_frames(content, placements, known.description, timeline)
+    states = joint_messages(content.joints, known.description, timeline, topics.joint_states)
+    messages = states or in_frames
+    if not states:
         content.notes.append("there are no joint states; the joints are read from /tf")
-        measured = joints_of_frames(content, placements, known.description, timeline, times)
-    commanded = joint_rows(content.commands, known.description, timeline, times, "/joint_commands")
+    commands = joint_messages(content.commands, known.description, timeline, "/joint_commands")
+    joints, commanded_joints = traces_of(messages), traces_of(commands)
+    frames = Frames(content, known.robot.link_names, timeline)
+    seen = [obj for obj in known.objects if frames.knows(obj.name)]
+    moving = frames.moving(obj.name for obj in seen)
+    traces = [
+        *(each for some in (joints, commanded_joints) for kinds in some.values() for each in kinds),
+        *map(frames.trace, moving),
+    ]
+    others = (*content.joints.values(), *content.commands.values(), *moving)
+    times = _judged_times(path, traces, [reference, *others], content, timeline)
+    numbers = len(times) * (5 * len(known.robot.joints) + 7 * (len(seen) + len(known.frames) + 1))
+    if numbers > MOST_NUMBERS:
+        hint = "cut out what is to be graded, with `ros2 bag convert` for example"
+        raise bag_error(path, f"has messages at {len(times)} different times", hint)
+    measured = joint_rows(joints, known.description, times)
+    commanded = joint_rows(commanded_joints, known.description, times)
     links = replayed_link_poses(known.robot, measured.positions, _links_needed(known, content))
-    frames = Frames(content, links, timeline, times)
-    events = timed_events(content, timeline)
+    events = timed_events(content, timeline, float(times[0]))
     present = {obj.name: presence_of(events, obj.name, times) for obj in known.objects}
     poses = {
         obj.name: np.where(
-            is_present(present[obj.name], times)[:, None], frames.pose(obj.name), np.nan
+            is_present(present[obj.name], times)[:, None],
+            frames.pose(obj.name, links, times),
+            np.nan,
         )
-        for obj in known.objects
-        if frames.knows(obj.name)
+        for obj in seen
     }
     signals = Signals(
         times=times,
@@ -127,24 +145,32 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
         object_poses=poses,
     )
     steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
+    is_own = _is_of_this_program(events)
+    shapes = {obj.name: obj.shapes for obj in seen}
+    movable = [obj.name for obj in known.objects if not obj.is_static]
     doubts = [
-        *publisher_doubts(content, known.description, timeline, set(poses)),
-        *_frame_doubts(frames, list(poses), {obj.name for obj in known.objects if obj.is_static}),
+        *joint_doubts(messages, is_own=is_own),
+        *object_doubts(content.edges, timeline, shapes, is_own=is_own),
+        *object_doubts(content.objects, timeline, shapes, is_own=is_own),
+        *_once_doubts(frames, [name for name in movable if name in shapes], is_own=is_own),
+        *_unknown_roots(frames, list(shapes)),
         *_step_doubts(events, steps),
     ]
-    twice = {name for doubt in doubts if doubt.kind == "publishers" for name in doubt.names}
-    if not _is_of_this_program(events):  # its steps may put objects somewhere
-        doubts += jump_doubts(content, timeline, set(poses) - twice)
-    if content.joints:
-        doubts += tf_doubts(content, placements, known.description, timeline, times, measured)
+    for name in shapes:
+        for others in frames.other_poses(name, links, times):
+            doubts += source_doubts(name, shapes[name], times, poses[name], others)
+    if states:
+        shown = joint_rows(traces_of(in_frames), known.description, times)
+        doubts += tf_doubts(known.description, times, measured, shown)
         if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
-            doubts += velocity_doubts(known.description, known.robot.arm_joints, times, measured)
+            arm = known.robot.arm_joints
+            doubts += velocity_doubts({n: each for n, each in messages.items() if n in arm})
     notes = [
         *content.notes,
         *timeline.notes,
         *frames.notes,
         *foreign_links(content, placements),
-        *_gaps(known, signals, present),
+        *gaps([joint.name for joint in known.robot.joints], movable, signals, present),
     ]
     return Run(
         scenario=known.title,
@@ -179,24 +205,58 @@ def _links_needed(known: Recorded, content: BagContent) -> set[str]:
     return {known.robot.tcp_link, *known.frames, *(carriers & robot)}
 
 
-def _frame_doubts(frames: Frames, objects: Sequence[str], static: set[str]) -> list[Doubt]:
-    names = {name: frames.assumed_below(name) for name in objects}
-    once = [name for name in objects if name not in static and frames.is_published_once(name)]
-    return [
-        *(
-            Doubt("once", f"{name} has one pose in all; it counts as its pose all along", (name,))
-            for name in once
-        ),
-        *_unknown_roots(frames, names),
-    ]
+def _judged_times(
+    path: Path,
+    traces: Sequence[Trace | None],
+    tracks: Sequence[RecordedTrack],
+    content: BagContent,
+    timeline: Timeline,
+) -> FloatArray:
+    """Times of the samples [s]: those of every message about a joint or an object.
+
+    Stamps of times before or after the recording, as of a message that was sent once before it, do
+    not count. Where every other topic falls silent before the last one, the last sample is its end.
+
+    Args:
+        path: The recording, for its error.
+        traces: What was recorded of joints and objects.
+        tracks: Their messages, the joints' first.
+        content: What was read of the recording.
+        timeline: The times of its messages.
+
+    Raises:
+        SpecError: There are fewer than two, or too many.
+    """
+    seconds, is_judged = timeline.rows(tracks[0])
+    own: FloatArray = np.unique(seconds[is_judged])
+    first, last = timeline.recorded(tracks)
+    limit = gap_limit(own)
+    found = sample_times([trace for trace in traces if trace is not None])
+    margin = min(limit, SAME_CLOCK)
+    found = found[(found >= min(first, own[0]) - margin) & (found <= max(last, own[-1]) + margin)]
+    if len(own) < 2 or len(found) < 2:
+        raise bag_error(path, "has joints at a single time; at least two samples are needed")
+    ends: list[float] = []
+    for track in (*content.joints.values(), *content.edges.values(), *content.objects.values()):
+        seconds, is_judged = timeline.rows(track)
+        ends.append(float(seconds[is_judged].max(initial=-np.inf)))
+    return np.append(found, max(ends)) if max(ends) - found[-1] > limit else found
 
 
-def _unknown_roots(frames: Frames, names: Mapping[str, str]) -> list[Doubt]:
+def _once_doubts(frames: Frames, names: Sequence[str], *, is_own: bool) -> Iterator[Doubt]:
+    """Movable objects of which a single pose counts at all times."""
+    for name in names:
+        if frames.is_published_once(name) and not is_own:
+            said = f"{name} has one pose in all, or one in /tf_static; it counts all along"
+            yield Doubt("once", said, (name,))
+
+
+def _unknown_roots(frames: Frames, names: Sequence[str]) -> list[Doubt]:
     return [
         Doubt(
             "frames",
             f"frame '{frame}' has no parent; it counts as the world",
-            tuple(name for name in names if names[name] == frame),
+            tuple(name for name in names if frames.assumed_below(name) == frame),
         )
         for frame in frames.assumed
     ]
@@ -233,58 +293,5 @@ def _object_record(
     return ObjectRecord.of(obj, present, obj.pose if is_known else None)
 
 
-def _gaps(
-    known: Recorded, signals: Signals, present: Mapping[str, tuple[StepInterval, ...]]
-) -> list[str]:
-    """Messages about gaps in joints and objects."""
-    messages: list[str] = []
-    unknown: BoolArray = np.isnan(signals.joint_positions)
-    names = [joint.name for joint in known.robot.joints]
-    without = [
-        name for name, gone in zip(names, np.all(unknown, axis=0).tolist(), strict=True) if gone
-    ]
-    if without:
-        messages.append(f"the recording lacks the joints {', '.join(without)}")
-    for column, name in enumerate(names):
-        gone = unknown[:, column]
-        if gone.any() and name not in without:
-            messages.append(f"{name} has a gap that begins at t={signals.times[gone][0]:.3f} s")
-    for name, poses in sorted(signals.object_poses.items()):
-        there = is_present(present[name], signals.times)
-        gone = np.isnan(poses[:, 0]) & there
-        if gone.any():
-            share = 100 * float(gone.sum() / there.sum())
-            first = signals.times[gone][0]
-            messages.append(
-                f"{name}: no pose for {share:.0f} % of the time, first at t={first:.3f} s"
-            )
-    dynamic = [obj.name for obj in known.objects if not obj.is_static]
-    lost = [name for name in dynamic if name not in signals.object_poses]
-    if lost:
-        messages.append(f"the recording lacks poses of {', '.join(lost)}")
-    return messages
-
-
 def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
     return np.array(np.broadcast_to(poses, (len(times), 7)))
-
-
-def _no_joints(path: Path, topics: BagTopics, content: BagContent, known: Recorded) -> Exception:
-    expected = known.robot.arm_joints
-    if content.joints:
-        seen = sorted({name for names in content.joints for name in names})
-        return bag_error(
-            path,
-            f"{topics.joint_states} names none of the robot's joints, but {', '.join(seen[:12])}",
-            f"expected: {', '.join(expected)}",
-        )
-    others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
-    if others:
-        hint = f"topics of joint states: {', '.join(others)} (--joint-states TOPIC)"
-    else:
-        hint = (
-            f"its topics: {', '.join(sorted(content.topics)[:20])}"
-            if content.topics
-            else "it has no messages"
-        )
-    return bag_error(path, f"has no {topics.joint_states} and no frames of this robot in /tf", hint)

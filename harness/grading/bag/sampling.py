@@ -1,10 +1,14 @@
-"""Interpolation of recorded rows, except in gaps."""
+"""Interpolation of recorded rows, except where nothing is known."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.pose_arrays import conjugate, quat_product, rotation_angle
+from harness.core.types import BoolArray, FloatArray
 
 SHORTEST_GAP, LONGEST_GAP = 0.1, 1.5
 """Bounds of the time between two messages, or beyond the first and last, that counts as a gap [s].
@@ -13,6 +17,61 @@ A burst of lost messages is shorter than the first; a topic at 1 Hz has no gaps.
 """
 GAP_PERIODS = 10
 """Between the bounds a gap is longer than so many of the topic's median periods."""
+LONGEST_MOTION = 0.25
+"""Longest time between two messages over which a motion is interpolated [s]: an arm that
+accelerates by 2 m/s^2 is 16 mm off the straight line then. Over a longer time only what is the same
+at both messages is known in between. The topics of a recorder begin so far apart, too."""
+SAME_PLACE, SAME_ORIENTATION = 0.01, 0.05
+"""An object that moves and turns by less from one message to the next stands still [m, rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What was recorded of one thing, and where nothing is known of it.
+
+    Attributes:
+        times: Rising times of the rows [s], shape (N,), N > 0.
+        rows: What was recorded, shape (N, width).
+        steps: The change from each row to the next, shape (N - 1, width).
+        is_hole: Whether nothing is known between each row and the next, shape (N - 1,).
+        reach: How long before the first and after the last row they apply [s].
+    """
+
+    times: FloatArray
+    rows: FloatArray
+    steps: FloatArray
+    is_hole: BoolArray
+    reach: tuple[float, float]
+
+    @classmethod
+    def of(
+        cls, times: FloatArray, rows: FloatArray, steps: FloatArray, is_moving: BoolArray
+    ) -> Trace:
+        """A trace of rows at rising times; `is_moving` says which steps are motions, (N - 1,)."""
+        limit, spans = gap_limit(times), np.diff(times)
+        is_hole = (spans > limit) | (is_moving & (spans > LONGEST_MOTION))
+        moves = is_moving if len(is_moving) else np.array([False])
+        first = LONGEST_MOTION if moves[0] else max(limit, LONGEST_MOTION)
+        last = min(limit, LONGEST_MOTION) if moves[-1] else limit
+        return cls(times, rows, steps, is_hole, (first, last))
+
+    def at(self, sample_times: FloatArray) -> FloatArray:
+        """Linear interpolation; NaN where nothing is known, shape (len(sample_times), width)."""
+        last = len(self.times) - 1
+        before = np.clip(np.searchsorted(self.times, sample_times, side="right") - 1, 0, last)
+        since = sample_times - self.times[before]
+        spans = np.append(np.diff(self.times), np.inf)[before]
+        steps = np.concatenate([self.steps, np.zeros_like(self.rows[:1])])[before]
+        found = self.rows[before] + (np.clip(since, 0, None) / spans)[:, None] * steps
+        unknown = np.append(self.is_hole, False)[before] & (since > 0)
+        unknown |= (since < -self.reach[0]) | ((before == last) & (since > self.reach[1]))
+        return np.where(unknown[:, None], np.nan, found)
+
+
+def first_of_each(times: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Rising times and their rows, of messages in any order; the first of equal times."""
+    times, first = np.unique(times, return_index=True)
+    return times, rows[first]
 
 
 def gap_limit(times: FloatArray) -> float:
@@ -25,60 +84,33 @@ def gap_limit(times: FloatArray) -> float:
     return float(np.clip(GAP_PERIODS * period, SHORTEST_GAP, LONGEST_GAP))
 
 
-def with_gaps_filled(times: FloatArray) -> FloatArray:
-    """Rising sample times with further ones inside each gap, at which nothing is known [s].
-
-    The first and last are a median period from the edges, and at most `MOST_FILLED` in a gap.
-    """
-    steps = np.diff(times)
-    period, limit = float(np.median(steps)), gap_limit(times)
-    inside: list[FloatArray] = []
-    for index in np.flatnonzero(steps > limit):
-        count = min(int(steps[index] / period), MOST_FILLED)
-        inside.append(np.linspace(times[index] + period, times[index + 1] - period, count))
-    return np.sort(np.concatenate([times, *inside]))
+def sample_times(traces: Sequence[Trace]) -> FloatArray:
+    """The times of all rows of all traces, and two in each hole that has none inside [s]."""
+    times = np.unique(np.concatenate([trace.times for trace in traces]))
+    begins = np.concatenate([trace.times[:-1][trace.is_hole] for trace in traces])
+    ends = np.concatenate([trace.times[1:][trace.is_hole] for trace in traces])
+    is_empty = np.searchsorted(times, begins, side="right") == np.searchsorted(times, ends)
+    begins, ends = begins[is_empty], ends[is_empty]
+    inset = np.minimum((ends - begins) / 3, SHORTEST_GAP / 2)
+    return np.unique(np.concatenate([times, begins + inset, ends - inset]))
 
 
-MOST_FILLED = 1000
-"""Samples in a gap; more would say no more of an hour in which nothing was recorded."""
-
-
-def rows_at(times: FloatArray, rows: FloatArray, sample_times: FloatArray) -> FloatArray:
-    """Linear interpolation of rows; NaN in gaps; shape (len(sample_times), width).
-
-    Args:
-        times: Times of the rows [s], in any order; of equal times the first is used.
-        rows: Rows, shape (N, width).
-        sample_times: The times of the samples, rising [s].
-    """
-    times, first = np.unique(times, return_index=True)
-    rows = rows[first]
-    after = np.clip(np.searchsorted(times, sample_times), 0, len(times) - 1)
-    before = np.clip(np.searchsorted(times, sample_times, side="right") - 1, 0, len(times) - 1)
-    span = times[after] - times[before]
-    share = np.where(span > 0, (sample_times - times[before]) / np.where(span > 0, span, 1.0), 0.0)
-    found = rows[before] + share[:, None] * (rows[after] - rows[before])
-    beyond = np.maximum(times[0] - sample_times, sample_times - times[-1])
-    limit = gap_limit(times)
-    return np.where(((span > limit) | (beyond > limit))[:, None], np.nan, found)
-
-
-def interpolated_poses(
-    times: FloatArray, poses: FloatArray, sample_times: FloatArray
-) -> FloatArray:
-    """Interpolation of poses (xyz, quat wxyz); NaN in gaps; shape (len(sample_times), 7).
+def pose_trace(times: FloatArray, poses: FloatArray) -> Trace:
+    """The trace of poses (xyz, quat wxyz) in any order.
 
     A single pose applies at all times: it was published once because nothing moves. Quaternions are
-    interpolated linearly along the shorter way, which is accurate between adjacent messages.
+    interpolated linearly along the shorter way, which is accurate between adjacent messages; they
+    do not have unit length then.
     """
-    if len(poses) == 1:
-        return np.tile(poses[0], (len(sample_times), 1))
-    order = np.argsort(times, kind="stable")
-    times, poses = times[order], poses[order].copy()
+    times, poses = first_of_each(times, poses)
     turns = np.einsum("ij,ij->i", poses[1:, 3:], poses[:-1, 3:])
-    signs = np.concatenate([[1.0], np.cumprod(np.where(turns < 0, -1.0, 1.0))])
-    poses[:, 3:] *= signs[:, None]
-    found = rows_at(times, poses, sample_times)
-    with np.errstate(invalid="ignore"):
-        found[:, 3:] /= np.linalg.norm(found[:, 3:], axis=1, keepdims=True)
-    return found
+    poses[:, 3:] *= np.cumprod(np.append(1.0, np.where(turns < 0, -1.0, 1.0)))[:, None]
+    steps = np.diff(poses, axis=0)
+    moves = np.linalg.norm(steps[:, :3], axis=1) > SAME_PLACE
+    trace = Trace.of(times, poses, steps, moves | (turned(poses[:, 3:]) > SAME_ORIENTATION))
+    return trace if len(poses) > 1 else replace(trace, reach=(np.inf, np.inf))
+
+
+def turned(quats: FloatArray) -> FloatArray:
+    """Angle from each orientation to the next [rad], shape (N - 1,)."""
+    return rotation_angle(quat_product(conjugate(quats[:-1]), quats[1:]))

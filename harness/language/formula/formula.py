@@ -31,7 +31,11 @@ SIGNALS: dict[str, tuple[tuple[Kind, ...], str, str]] = {
     "velocity": (("joint",), "", "measured velocity of a joint"),
     "effort": (("joint",), "", "effort of a joint's motor"),
     "command": (("joint",), "", "commanded position of a joint"),
-    "force": (("body", "body"), "N", "contact force between two of: link, object, `robot`, ..."),
+    "force": (
+        ("body", "body"),
+        "N",
+        "sum of the normal forces between two of: link, object, `robot`, ...",
+    ),
     "distance": (
         ("body", "body"),
         "m",

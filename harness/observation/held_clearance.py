@@ -1,0 +1,45 @@
+"""Distances of what the hand holds or carries in the physics and the planner does not know of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from harness.assertions.contacts import attached
+from harness.assertions.facts import remembered_facts
+from harness.assertions.support import carried_by_hand
+from harness.assertions.temporal import bridged, episodes
+from harness.core.pose_arrays import IDENTITY
+from harness.observation.clearance import CoalClearance
+from harness.recording.run import AttachmentRecord, Run
+from harness.recording.signals import Signals
+
+
+@remembered_facts()
+def with_held_distances(run: Run, observer: CoalClearance) -> Signals:
+    """The signals of a run with distances of objects in the hand that are not attached."""
+    holds = [] if "contact_forces" in run.unrecorded else _holds(run)
+    if not holds:
+        return run.signals
+    held = {hold.object for hold in holds}
+    pairs = {(name, other.name) for name in held for other in run.objects if other.name != name}
+    cutoff = run.signals.clearance_cutoff
+    found = observer.observe(run.signals, run.objects, holds, cutoff, only=pairs)
+    distances = dict(run.signals.clearances)
+    for pair, values in found.clearances.items():
+        known = distances.get(pair, np.full(len(values), np.nan))
+        distances[pair] = np.where(np.isnan(known), values, known)
+    return replace(run.signals, clearances=distances)
+
+
+def _holds(run: Run) -> list[AttachmentRecord]:
+    """As what is attached to the TCP, when the hand holds or carries an object all the same."""
+    times, tcp = run.signals.times, run.robot.tcp_link
+    return [
+        AttachmentRecord(
+            name, tcp, float(times[start]), float(times[stop - 1]), tuple(IDENTITY), name
+        )
+        for name, mask in carried_by_hand(run).items()
+        for start, stop in bridged(times, episodes(mask & ~attached(run, name)))
+    ]
