@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from harness.assertions.collision import colliding
-from harness.assertions.contacts import shapeless
+from harness.assertions.contacts import attached, shapeless
 from harness.assertions.distances import (
     MEASURED_WORDS,
     Key,
@@ -146,7 +146,10 @@ class Clearance(Predicate):
         return tuple(found)
 
     def _largest_loss(self, window: Window) -> _Worst:
-        """Planned less actual distance, the largest of all pairs [m]; unknown where either is."""
+        """Planned less actual distance, the largest of all pairs [m]; unknown where either is.
+
+        What the hand holds and the planner does not carry has no plan.
+        """
         run = window.run
         actual = recorded_distances(run, *self.between)
         planned = run.signals.planned_clearances
@@ -156,7 +159,14 @@ class Clearance(Predicate):
                 f"planned distances of {' and '.join(missing[0])} were not recorded"
             )
         stack = np.stack([window.cut(planned[key] - values) for key, values in actual.items()])
-        absent = np.stack([window.cut(np.isnan(values)) for values in actual.values()])
+        names = {name for name, _ in actual} - {"robot"}
+        unplanned = {name: ~attached(run, name) for name in names}  # the plan does not carry it
+        absent = np.stack(
+            [
+                window.cut(np.isnan(values) | unplanned.get(name, False))
+                for (name, _), values in actual.items()
+            ]
+        )
         ranked = np.where(absent, -np.inf, np.nan_to_num(stack, nan=np.inf))
         return _Worst(ranked.max(axis=0), ranked.argmax(axis=0), list(actual))
 
