@@ -240,8 +240,11 @@ def test_what_is_gripped_again_is_in_the_hand_again():
 def test_the_put_down_needs_something_below():
     run = carried((145, 180))
     assert not collides(run)
-    above = changed(run, object_poses={**run.signals.object_poses, "shelf": shelf_poses(0.5)})
-    assert collides(above)
+    poses = run.signals.object_poses
+    assert collides(changed(run, object_poses={**poses, "shelf": shelf_poses(0.5)}))
+    for gone, expected in ((150, True), (151, False)):  # the hand holds it last at sample 150
+        shelf = np.where(np.arange(200)[:, None] < gone, poses["shelf"], shelf_poses(0.5))
+        assert collides(changed(run, object_poses={**poses, "shelf": shelf})) is expected
 
 
 def test_what_is_held_may_press_as_much_as_its_weight_explains():
