@@ -166,12 +166,15 @@ def carried(
     forces = {name: supports(run, name, run.robot.static_links) for name in others}
     found = {**dict.fromkeys(others, never), **carriers}
     for _ in others:
+        before = dict(found)
         for name, on_it in forces.items():
             shares = [np.where(found.get(body, never), force, 0) for body, force in on_it.items()]
             load = np.sum([0 * never, *(each[name] for each in forces.values() if name in each)], 0)
             required = required_support(run, name) + (1 - ROUNDING) * SUPPORT_SHARE * load
             borne = np.sum([0 * never, *shares], 0) >= required
             found[name] = carriers.get(name, never) | (borne & others[name])
+        if all(np.array_equal(found[name], before[name]) for name in others):
+            break
     return found
 
 

@@ -256,10 +256,21 @@ def _could_hold(
 ) -> bool:
     """Whether the expectation holds if a window that was cut short goes on in the best way."""
     best = -np.inf if terms.word == "never" else np.inf
+    return _holds_after(terms, best, values, times, applies, progress)
+
+
+def _holds_after(
+    terms: Terms,
+    future: float,
+    values: FloatArray,
+    times: FloatArray,
+    applies: np.ndarray,
+    progress: FloatArray | None,
+) -> bool:
+    """Whether the expectation holds if the margin stays at `future` after the window."""
     more = None if progress is None else with_future(progress, 0.0)
-    return _reduce(
-        terms, with_future(values, best), later(times), np.append(applies, [True, True]), more
-    ).holds
+    applies = np.append(applies, [True, True])
+    return _reduce(terms, with_future(values, future), later(times), applies, more).holds
 
 
 def _is_undecided(
@@ -273,10 +284,8 @@ def _is_undecided(
     if terms.word != "never" or (terms.hold is None and terms.within is None):
         return False
     within = float(times[-1] - times[0]) if terms.within is None else terms.within
-    more = None if progress is None else with_future(progress, 0.0)
-    applies = np.append(applies, [True, True])
-    values = with_future(values, np.inf)
-    return not _reduce(replace(terms, within=within), values, later(times), applies, more).holds
+    bounded = replace(terms, within=within)
+    return not _holds_after(bounded, np.inf, values, times, applies, progress)
 
 
 def _ended_before(terms: Terms, times: FloatArray) -> str:
