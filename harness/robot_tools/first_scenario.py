@@ -97,7 +97,7 @@ def _trouble(text: str, candidate: Path) -> tuple[str, bool]:
     failed = [step.message for step in result.steps if step.message]
     wrong = [each for each in result.verdicts if each.status != "passed"]
     judged = [f"{each.expectation}: {each.reason}" for each in wrong]
-    return (failed or [*judged, result.message])[0], True
+    return (failed[-1:] or [*judged, result.message])[0], True
 
 
 def _why_no_gripper(description: RobotDescription) -> str:

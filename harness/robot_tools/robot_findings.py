@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.trial import IkTrial
 from harness.reporting.robot_report import RobotFinding
 from harness.robot.collision_shapes import mesh_shapes
-from harness.robot.description import RobotDescription
+from harness.robot.description import Link, RobotDescription
 from harness.robot.link_masses import mass_notes, mass_problems
 from harness.robot.solids import box_corners, coal_geometry
 from harness.simulation.agreement import link_poses_in_physics
@@ -46,7 +47,7 @@ def forward_kinematics(
     turn = np.minimum(*(np.linalg.norm(each, axis=-1) for each in apart))
     most = float(shift.max(initial=0.0))
     agrees = max(most, float(turn.max(initial=0.0))) <= AGREEMENT
-    said = _mass(description)
+    said = _mass(description.links)
     weighs = abs(mass - said) <= AGREEMENT * max(1.0, said)
     text = (
         f"Pinocchio and MuJoCo differ by at most {most:.1g} m"
@@ -66,8 +67,7 @@ def masses(description: RobotDescription) -> RobotFinding:
     """Whether masses and inertias are those of bodies, and what looks like a placeholder."""
     problems, notes = mass_problems(description), mass_notes(description)
     moving = [link for link in description.links if link.name not in description.static_links]
-    total = _mass(description)
-    heavy = sum(link.inertial.mass for link in moving if link.inertial)
+    total, heavy = _mass(description.links), moving_mass(description)
     weightless = [link.name for link in moving if link.inertial is None and link.collisions]
     if weightless:
         notes.append(f"no <inertial>: {', '.join(weightless)}")
@@ -205,5 +205,11 @@ def inverse_kinematics(trial: IkTrial) -> RobotFinding:
     return RobotFinding("inverse kinematics", text, trial.rate >= ENOUGH_SOLVED, (), values)
 
 
-def _mass(description: RobotDescription) -> float:
-    return sum(link.inertial.mass for link in description.links if link.inertial)
+def moving_mass(description: RobotDescription) -> float:
+    """Mass of the links that a joint moves [kg]."""
+    fixed = description.static_links
+    return _mass([link for link in description.links if link.name not in fixed])
+
+
+def _mass(links: Sequence[Link]) -> float:
+    return sum(link.inertial.mass for link in links if link.inertial)

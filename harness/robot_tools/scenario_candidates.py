@@ -15,6 +15,7 @@ from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.description import Gripper, RobotDescription
+from harness.robot_tools.robot_findings import moving_mass
 
 SAMPLES = 5000
 """Random configurations that measure the reach."""
@@ -44,6 +45,8 @@ JAW_TURN = 0.35
 HEAVIEST_BOX, LIGHTEST_BOX = 0.1, 0.01  # [kg]
 GRIP_SHARE = 0.1
 """Weight of the box as a share of what the friction of both fingers carries; others creep down."""
+ARM_SHARE = 0.1
+"""Weight of the box as a share of what moves of the robot: a light arm holds a light box still."""
 SLIDING = 0.3
 """Friction of a box that a single jaw pushes against the palm; with more it jams on the stand."""
 GRAVITY = 9.81  # [m/s^2]
@@ -121,6 +124,7 @@ class Candidates:
         width, travel = self._box_width(gripper), _travel(self._reach)
         height, friction = min(TALLEST_BOX, 2.0 * width), SLIDING if gripper.has_single_jaw else 1.0
         carried = 2.0 * friction * _grip_force(gripper, width) / GRAVITY
+        light = min(GRIP_SHARE * carried, ARM_SHARE * moving_mass(self._description))
         numbers = {
             "base": self._base,
             "x": x,
@@ -128,7 +132,7 @@ class Candidates:
             "box_middle": top + height / 2,
             "width": width,
             "height": height,
-            "mass": max(min(HEAVIEST_BOX, round(GRIP_SHARE * carried, 2)), LIGHTEST_BOX),
+            "mass": max(min(HEAVIEST_BOX, round(light, 2)), LIGHTEST_BOX),
             "friction": friction,
             "least": min(SHORTEST_APPROACH, travel),
             "travel": travel,

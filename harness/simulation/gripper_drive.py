@@ -18,8 +18,8 @@ from harness.simulation.set_points import SetPoints, ramp
 CLOSING_SPEED = 0.075
 """Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
 
-VELOCITY_SHARE = 0.95
-"""Share of the joint's velocity limit that is commanded at most, for what the servo overshoots."""
+VELOCITY_SHARE = 0.8
+"""Share of the joint's velocity limit that is commanded at most: fingers bounce when they meet."""
 
 GOAL_TOLERANCE = 0.004
 """Largest position error at which the joint has reached its goal, as a share of its range."""

@@ -29,6 +29,10 @@ An estimate, as data sheets give neither rotor nor gear inertia: at full effort 
 accelerate its own rotor faster than 1000 rad/s^2.
 """
 
+ROTOR_SHARE = 0.03
+"""Rotor inertia of a joint without an effort limit, as a share of the largest inertia that a joint
+of its kind accelerates: without it, the wrist of a light arm yields to what its gripper holds."""
+
 GRIPPER_SATURATION = 0.0025
 """Lag of a gripper's joint at its default grip effort, as a share of its range."""
 
@@ -81,6 +85,9 @@ def design_servos(description: RobotDescription, timestep: float) -> Servos:
     )
     effort = np.array([joint.effort for joint in actuated])
     rotor = ROTOR_INERTIA_PER_EFFORT * np.where(np.isfinite(effort), effort, 0.0)
+    slides = np.array([joint.kind == "prismatic" for joint in actuated])
+    for kind in (slides, ~slides):
+        rotor[kind & ~np.isfinite(effort)] = ROTOR_SHARE * inertia[kind].max(initial=0.0)
     frequency = np.full(len(actuated), BANDWIDTH_PER_STEP / timestep)
     gripper = description.gripper
     if gripper is not None:

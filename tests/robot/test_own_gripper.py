@@ -205,6 +205,13 @@ def test_two_alike_fingers_without_a_mimic_are_coupled(tmp_path):
     assert "gripper 'hand': right_joint is made to follow left_joint" in arm.notes
 
 
+TIP = (
+    f'<link name="{{0}}_tip">{LIGHT}</link><joint name="{{0}}_bend" type="revolute">'
+    '<parent link="{0}"/><child link="{0}_tip"/><origin xyz="0 0 0.08"/><axis xyz="1 0 0"/>'
+    '<limit lower="0" upper="1" velocity="1" effort="1"/></joint>'
+)
+"""A link of a finger that bends by itself."""
+
 UNCOUPLED = HAND.replace('<mimic joint="left_joint"/>', "")
 JAW = PALM.replace(
     "</link>",
@@ -238,9 +245,18 @@ JAW = PALM.replace(
             0.05,
         ),
         (UNCOUPLED + LEFT.replace("left", "thumb"), "left_joint", 0.07),
+        (UNCOUPLED + TIP.format("left") + TIP.format("right"), "left_joint", 0.07),
         (JAW, "jaw_joint", 0.065),
     ],
-    ids=["coupled", "alike", "mirrored", "mirrored, of unlike ranges", "three fingers", "one jaw"],
+    ids=[
+        "coupled",
+        "alike",
+        "mirrored",
+        "mirrored, of unlike ranges",
+        "three fingers",
+        "two joints each",
+        "one jaw",
+    ],
 )
 def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     write(tmp_path, hand)

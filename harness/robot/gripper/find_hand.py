@@ -32,7 +32,7 @@ def hand_candidates(
 
     The groups of the arm's end effectors come first, then other groups whose joints the arm
     carries, then the movable joints that the arm carries and no group names: those that others
-    mimic, then all.
+    mimic, then all, then those of the fingers' first links.
     """
     carried = carried_joints(urdf, arm.joint_names)
     tools = [tool.group for tool in srdf.end_effectors if tool.parent_group in ("", arm.name)]
@@ -51,7 +51,9 @@ def hand_candidates(
     followed = {joint.mimic.joint for joint in urdf.joints if joint.mimic}
     name = next(each for each in (HAND, f"{arm.name}_{HAND}", "hand_") if each not in groups)
     leaders = tuple(joint for joint in driven if joint in followed)
-    for joints in dict.fromkeys(each for each in (leaders, driven) if each):
+    distal = {name for each in driven for name in carried_joints(urdf, (each,))}
+    proximal = tuple(joint for joint in driven if joint not in distal)
+    for joints in dict.fromkeys(each for each in (leaders, driven, proximal) if each):
         added = replace(srdf, groups=(*srdf.groups, SrdfGroup(name, joints=joints)))
         yield PlanningGroup(name, joints), added
 

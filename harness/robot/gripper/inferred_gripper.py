@@ -88,6 +88,8 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     if not np.isfinite([joint.lower, joint.upper]).all():
         kind = "is continuous and" if joint.kind == "continuous" else ""
         raise NoGripperError(" ".join(f"'{joint.name}' {kind} has no limits".split()))
+    if joint.kind != "prismatic" and joint.upper - joint.lower > 2 * np.pi:
+        raise NoGripperError(f"'{joint.name}' turns by more than a full turn")
     fingers = _fingers(urdf, joint)
     palm = fingers[0][0].parent
     hand = _Hand(urdf, joint, palm)
