@@ -194,7 +194,7 @@ class _Search:
         self._least = np.column_stack([pair.least for pair in pairs]) - COAL_TOLERANCE
         self._known = [-np.inf] * len(pairs)  # the distance last measured
         self._since = [-np.inf] * len(pairs)  # and the travel then
-        self._key = np.full(len(pairs), -np.inf)  # known + since; at j, the bound is key - travelled[j]
+        self._key = np.full(len(pairs), -np.inf)  # their sum; the bound at j is key - travelled[j]
 
     def smallest_at(self, sample: int, previous: int) -> tuple[float, int]:
         """The smallest distance at a sample, and its pair; -1 where none is below the cutoff.
