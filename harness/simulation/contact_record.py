@@ -24,7 +24,7 @@ CONTACTS_PER_ROW = 24
 BLOCK = 2**17
 """Contacts that are sorted at a time."""
 
-MOST_UNRESOLVED = 256
+MOST_UNRESOLVED = 1024
 """Contacts that are decoded at a time; their copies stay in the processor's cache."""
 
 BYTES = 52
@@ -295,7 +295,7 @@ class _Unresolved:
 
     def __init__(self, data: mujoco.MjData) -> None:
         self._data = data
-        self._memory = np.empty((0, 0))
+        self._memory: tuple[Array, ...] = (np.empty((0, 0)),)
         self._fields = np.dtype([])
         self._contacts = np.empty((0, 0))
         self._forces = np.empty(8 * MOST_UNRESOLVED)
@@ -310,14 +310,16 @@ class _Unresolved:
         forces = self._data.efc_force
         begin, row = self._count, self._rows
         end, last = begin + count, row + len(forces)
-        if count > len(self._memory):
+        if count > len(self._memory[0]):
             self._find_memory(count)
         if end > len(self._contacts) or last > len(self._forces):
             if begin:
                 return False
-            self._contacts = np.empty((max(end, MOST_UNRESOLVED), self._memory.shape[1]))
+            self._contacts = np.empty((max(end, MOST_UNRESOLVED), self._fields.itemsize // 8))
             self._forces = np.empty(max(last, len(self._forces)))
-        self._contacts[begin:end] = self._memory[:count]
+        head, tail = self._memory
+        self._contacts[begin:end, : head.shape[1]] = head[:count]
+        self._contacts[begin:end, head.shape[1] :] = tail[:count]
         self._forces[row:last] = forces
         self._samples.append((count, row))
         self._count, self._rows = end, last
@@ -326,19 +328,22 @@ class _Unresolved:
     def _find_memory(self, count: int) -> None:
         """Look up where MuJoCo keeps contacts, one after the other from the same place on.
 
-        Copying them whole takes a tenth of the time of copying some of their fields.
+        Copying their first and last fields at once takes a fifth of the time of copying each.
         """
         contact = self._data.contact
         (size,) = contact.dist.strides
-        self._memory = as_strided(contact.dist, (count, size // 8), (size, 8))
-        names = "geom", "pos", "frame", "efc_address"
-        parts = [getattr(contact, name) for name in names]
+        memory = as_strided(contact.dist, (count, size // 8), (size, 8))
+        parts = {name: getattr(contact, name) for name in ("pos", "frame", "geom", "efc_address")}
+        at = {name: _address(part) - _address(contact.dist) for name, part in parts.items()}
+        head, tail = at["frame"] // 8 + 9, min(at["geom"], at["efc_address"]) // 8
+        self._memory = memory[:, :head], memory[:, tail:]
+        moved = 8 * (tail - head)
         self._fields = np.dtype(
             {
-                "names": names,
-                "formats": [(part.dtype, part.shape[1:]) for part in parts],
-                "offsets": [_address(part) - _address(contact.dist) for part in parts],
-                "itemsize": size,
+                "names": list(parts),
+                "formats": [(part.dtype, part.shape[1:]) for part in parts.values()],
+                "offsets": [each if each < 8 * head else each - moved for each in at.values()],
+                "itemsize": size - moved,
             }
         )
 
@@ -350,15 +355,16 @@ class _Unresolved:
             return
         counts, rows = np.array(self._samples, dtype=np.int64).T
         contacts = self._contacts[: self._count].view(self._fields)[:, 0]
-        frames, addresses = contacts["frame"], contacts["efc_address"].astype(np.int64)
+        axes = np.ascontiguousarray(contacts["frame"].T)  # (9, C)
+        addresses = contacts["efc_address"].astype(np.int64)
         is_inactive = addresses < 0
         addresses += np.repeat(rows, counts)
-        geoms[:], points[:], normals[:] = contacts["geom"], contacts["pos"], frames[:, :3]
-        forces[:] = self._forces.take(addresses, mode="clip")
-        forces[is_inactive] = 0.0
-        along = self._forces.take(addresses[:, None] + (1, 2), mode="clip")
-        along[is_inactive] = 0.0
-        frictions[:] = along[:, :1] * frames[:, 3:6] + along[:, 1:] * frames[:, 6:]
+        values = [self._forces.take(addresses + row, mode="clip") for row in range(3)]
+        for each in values:
+            each[is_inactive] = 0.0
+        geoms[:], points[:], normals[:] = contacts["geom"], contacts["pos"], axes[:3].T
+        forces[:] = values[0]
+        frictions[:] = (values[1] * axes[3:6] + values[2] * axes[6:]).T
         self._clear()
 
 
