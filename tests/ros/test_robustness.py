@@ -12,9 +12,9 @@ import numpy as np
 import rosless
 
 from harness.ros.actions import Status
+from harness.ros.graph import DEFAULT, LATCHED
 from harness.ros.interfaces import decoded, encoded
 from harness.ros.rtps import wire
-from harness.ros.rtps.discovery import Qos
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, Node, follow, point
 
@@ -37,7 +37,7 @@ def test_garbage_on_the_ports_and_topics_is_ignored(tmp_path):
         trajectory = node.graph.participant.writer(
             "rt/arm_controller/joint_trajectory",
             "trajectory_msgs::msg::dds_::JointTrajectory_",
-            Qos(),
+            DEFAULT,
         )
         node.ready()
         node.wait(lambda: trajectory.matched)
@@ -110,14 +110,16 @@ def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
     with bridge(scenario(tmp_path, HOLD, camera)) as (node, _):
         node.ready()
         late = Node(node.graph.participant.domain)
-        description = late.listen("/robot_description", "std_msgs/msg/String", latched=True)
-        static = late.listen("/tf_static", "tf2_msgs/msg/TFMessage", latched=True)
+        description = late.listen("/robot_description", "std_msgs/msg/String", LATCHED)
+        static = late.listen("/tf_static", "tf2_msgs/msg/TFMessage", LATCHED)
         moving = late.listen("/tf", "tf2_msgs/msg/TFMessage")
         late.wait(lambda: description and static and moving)
         late.graph.close()
     assert description[0].data.startswith("<?xml")
     edges = {each.child_frame_id: each.header.frame_id for each in moving[0].transforms}
     assert edges["link2"] == "link1"
+    stamps = [each.header.stamp.sec for each in (*static[0].transforms, *moving[0].transforms)]
+    assert max(stamps) < 60, "frames have the time of /clock, which begins at 0"
     fixed = {each.child_frame_id: each.header.frame_id for each in static[0].transforms}
     assert fixed["top_optical_frame"] == "world"
     assert {fixed[name] for name in fixed} <= {"world", *fixed, *edges}, "one tree"
