@@ -101,13 +101,13 @@ class RclpyGraph:
         self._node.destroy_node()
         self._context.try_shutdown()
 
-    def _profile(self, wanted: Qos) -> Any:
+    def _profile(self, requested: Qos) -> Any:
         qos = self._rclpy.qos
         reliability, durability = qos.ReliabilityPolicy, qos.DurabilityPolicy
         return qos.QoSProfile(
-            depth=wanted.depth,
-            reliability=reliability.RELIABLE if wanted.is_reliable else reliability.BEST_EFFORT,
-            durability=durability.TRANSIENT_LOCAL if wanted.is_latched else durability.VOLATILE,
+            depth=requested.depth,
+            reliability=reliability.RELIABLE if requested.is_reliable else reliability.BEST_EFFORT,
+            durability=durability.TRANSIENT_LOCAL if requested.is_latched else durability.VOLATILE,
         )
 
     def _to_ros(self, content: Any, kind: str, ros_type: Any) -> Any:
