@@ -130,5 +130,5 @@ def show_case(case: CaseResult, request: RunRequest) -> None:
     say(case_line(case, style))
     if case.outcome != "passed":
         say_text(failure(case, style, source=source_lines(request.file)))
-    if case.report_dir:
+    elif case.report_dir:
         say(f"report: {report_link(case, style)}")
