@@ -41,10 +41,9 @@ class _Topics:
         return bool(self._raw.subscribers or self._compressed.subscribers)
 
     def publish_info(self, time: float) -> None:
-        if any(info.subscribers for info in self._infos):
-            content = camera_info(self.camera, header(time, self._frame))
-            for info in self._infos:
-                info.publish(content)
+        content = camera_info(self.camera, header(time, self._frame))
+        for info in self._infos:
+            info.publish(content)
 
     def publish(self, time: float, picture: np.ndarray, compressed: bytes) -> None:
         head = header(time, self._frame)

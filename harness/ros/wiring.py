@@ -14,6 +14,7 @@ from harness.reporting.rosbag.messages import message
 from harness.ros.actions import ActionServer
 from harness.ros.control.cell import ExternalCell
 from harness.ros.control.controller import Window
+from harness.ros.control.goals import MOTION
 from harness.ros.graph import Graph
 from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, seconds
 
@@ -100,9 +101,7 @@ def trajectory_content(trajectory: Any) -> Content:
         "points": [
             {
                 "time": seconds(point.time_from_start),
-                "positions": point.positions.tolist(),
-                "velocities": point.velocities.tolist(),
-                "accelerations": point.accelerations.tolist(),
+                **{key: getattr(point, key).tolist() for key in MOTION},
             }
             for point in trajectory.points
         ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,10 @@ LONGEST_NAME = 40
 
 OTHER_CLOCK = 1e6
 """Stamps that differ from the simulated time by more are those of another clock [s]."""
+
+
+MOTION = ("positions", "velocities", "accelerations")
+"""What points have; accelerations count where there are velocities too."""
 
 
 class Code(IntEnum):
@@ -87,12 +92,8 @@ def checked_goal(
         raise GoalRefused("the trajectory has no points")
     times = np.array([point["time"] for point in points], dtype=float)
     _check_times(times)
-    motion: list[FloatArray] = []
-    for key in ("positions", "velocities", "accelerations"):
-        column = _column(points, key, order)
-        if column is None:
-            break
-        motion.append(column)
+    columns = (_column(points, key, order) for key in MOTION)
+    motion = [*takewhile(lambda column: column.size, columns)]
     if not motion:
         raise GoalRefused("the points have no positions")
     _check_limits(motion[0], joints)
@@ -152,11 +153,11 @@ def _check_times(times: FloatArray) -> None:
         raise GoalRefused(f"the first point is at {times[0]:.6g} s, before 0")
 
 
-def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray | None:
-    """Positions, velocities or accelerations of all points; None where the points have none."""
+def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray:
+    """Positions, velocities or accelerations of all points; empty where the points have none."""
     lengths = [len(point[key]) for point in points]
     if not any(lengths):
-        return None
+        return np.empty(0)
     for place, length in enumerate(lengths):
         if length != len(order):
             said = f"point {place} has {length} {key}, and there are {len(order)} joints"

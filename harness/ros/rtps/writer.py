@@ -145,6 +145,4 @@ def _padded(payload: bytes) -> bytes:
     Cyclone DDS drops submessages of other lengths.
     """
     missing = -len(payload) % 4
-    if not missing:
-        return payload
     return payload[:3] + bytes([payload[3] | missing]) + payload[4:] + bytes(missing)
