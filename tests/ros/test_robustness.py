@@ -12,9 +12,12 @@ import numpy as np
 import rosless
 
 from harness.ros.actions import Status
-from harness.ros.graph import DEFAULT, LATCHED
+from harness.ros.domain import free_domain
+from harness.ros.graph import DEFAULT, LATCHED, Qos
 from harness.ros.interfaces import decoded, encoded
 from harness.ros.rtps import wire
+from harness.ros.rtps.participant import Participant
+from harness.ros.rtps.sockets import Sockets
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, Node, follow, point
 
@@ -50,6 +53,31 @@ def test_garbage_on_the_ports_and_topics_is_ignored(tmp_path):
             trajectory.write(b"\0\1\0\0" + rng.bytes(size))
             trajectory.write(b"\0\1\0\0" + struct.pack("<I", 2**31) * 5)
         assert node.send(follow(point(0.1, END))).status is Status.SUCCEEDED
+
+
+def test_datagrams_that_get_lost_are_sent_again(monkeypatch):
+    """A fifth of everything is lost, discovery and fragments of large samples included."""
+    rng, send, arrived = np.random.default_rng(0), Sockets.send, []
+
+    def lossy(sockets, datagram, address):
+        if rng.random() > 0.2:
+            send(sockets, datagram, address)
+
+    monkeypatch.setattr(Sockets, "send", lossy)
+    sent = [rng.bytes(4 * int(size)) for size in rng.choice([1, 100, 60_000], 60)]
+    with free_domain() as domain:
+        one, other = (Participant(domain, name=name) for name in ("one", "other"))
+        other.reader("rt/data", "Data_", DEFAULT, lambda sample: arrived.append(sample.payload))
+        writer = one.writer("rt/data", "Data_", Qos(depth=100))
+        end, left = time.monotonic() + 30, list(sent)
+        while len(arrived) < len(sent) and time.monotonic() < end:
+            if writer.matched and left:
+                writer.write(left.pop(0))
+            one.spin(time.monotonic() + 0.002)
+            other.spin(time.monotonic() + 0.002)
+        one.close()
+        other.close()
+    assert [payload[4:] for payload in arrived] == [payload[4:] for payload in sent]
 
 
 def test_bytes_after_a_message_do_not_count():
