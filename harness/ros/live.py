@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Callable, Generator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from textwrap import indent
-from types import FrameType
+from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,15 +42,12 @@ class BridgeRequest:
     """A scenario, and how nodes reach its cell.
 
     Attributes:
-        run: The case, and what is written of it.
-        domain: The number of the ROS domain.
         is_local: Whether nodes of other machines are kept out.
         adapter: `rtps`, or `rclpy` of a ROS 2 installation.
         nodes: Commands that steps may start, by name.
         factor: Simulated seconds in a wall second.
-        is_interactive: Whether the first Ctrl-C ends the session and not the command.
         say: Receives notes for the user while it runs.
-        should_end: Called a hundred times a second; whether the session ends now.
+        stop: Ends the session when it is set.
     """
 
     run: RunRequest
@@ -61,9 +56,8 @@ class BridgeRequest:
     adapter: str = "rtps"
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     factor: float = 1.0
-    is_interactive: bool = False
     say: Say = lambda _: None
-    should_end: Callable[[], bool] = lambda: False
+    stop: Event = field(default_factory=Event)
 
 
 class LiveControl(HandOver):
@@ -89,7 +83,6 @@ class LiveControl(HandOver):
         self._program: Program | None = None
         self._exit_code: int | None = None
         self._output = ""
-        self._is_stopped = False
         self._said: set[str] = set()
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
@@ -98,8 +91,7 @@ class LiveControl(HandOver):
         self._wiring.is_open = True
         self._pace.start()
         try:
-            with self._interruptible():
-                result = self.drive(request, self._feed, self._after)
+            result = self.drive(request, self._feed, self._after)
             self._look_at_names()
             if result.ended_by == "until":
                 self.names = ()
@@ -114,10 +106,14 @@ class LiveControl(HandOver):
         slow = f"this machine is too slow to judge the nodes: {self._pace.text()}"
         return slow if self._pace.is_slow else ""
 
+    @property
+    def command_count(self) -> int:
+        """The number of commands that arrived."""
+        return sum(command.kind != "end" for command in self.cell.commands)
+
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """What is said of wall time, names and the launched program; nothing of it is judged."""
-        count = sum(command.kind != "end" for command in self.cell.commands)
-        said = [f"{counted(count, 'command')}; {self._pace.text()}", *self.names]
+        said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self.names]
         if self._exit_code and has_passed:
             said.append(f"the launched program ended with exit code {self._exit_code}")
         if self._output and (self._exit_code or not has_passed):
@@ -130,8 +126,7 @@ class LiveControl(HandOver):
         self._pace.tick()
         if self._pace.ticks % LOOK_EVERY == 0:
             self._look_at_names()
-        if self._is_stopped or self._request.should_end():
-            self._is_stopped = False
+        if self._request.stop.is_set():
             self.cell.receive("end", content={"reason": "stopped"})
         if self._program is not None and self._program.exit_code is not None:
             self._exit_code = self._program.exit_code
@@ -176,20 +171,3 @@ class LiveControl(HandOver):
         if key not in self._said and len(self._said) < MOST_NOTES:
             self._said.add(key)
             self._request.say(note)
-
-    @contextmanager
-    def _interruptible(self) -> Generator[None]:
-        """Let the first Ctrl-C end an interactive session in order."""
-        if not self._request.is_interactive:
-            yield
-            return
-
-        def stop(_number: int, _frame: FrameType | None) -> None:
-            self._is_stopped = True
-            signal.signal(signal.SIGINT, before)
-
-        before = signal.signal(signal.SIGINT, stop)
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGINT, before)

@@ -5,9 +5,13 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
+from harness.ros.graph import Qos
 from harness.ros.rtps import wire
-from harness.ros.rtps.wire import Address
+from harness.ros.rtps.wire import Address, Parameters
+
+T = TypeVar("T")
 
 LEASE = 100.0
 """Seconds of silence after which peers forget this participant."""
@@ -23,21 +27,6 @@ _VERSION = [(wire.PID_VERSION, wire.VERSION), (wire.PID_VENDOR, wire.VENDOR)]
 
 
 @dataclass(frozen=True)
-class Qos:
-    """What decides whether a writer and a reader match.
-
-    Attributes:
-        is_reliable: Lost samples are sent again.
-        is_latched: Readers that come later get the kept samples too (transient local).
-        depth: Samples that a writer keeps.
-    """
-
-    is_reliable: bool = True
-    is_latched: bool = False
-    depth: int = 10
-
-
-@dataclass(frozen=True)
 class ParticipantData:
     """A participant as it announces itself.
 
@@ -45,7 +34,7 @@ class ParticipantData:
         domain: The number of its domain; None where it does not say.
         meta: The addresses for discovery.
         user: The addresses for samples, where endpoints have none of their own.
-        lease: The seconds of silence after which it is gone.
+        lease: The silence after which it is gone [s].
     """
 
     domain: int | None
@@ -57,12 +46,11 @@ class ParticipantData:
     def parsed(cls, payload: bytes) -> ParticipantData:
         """The content of an announcement."""
         known = wire.parameters_of(payload)
-        lease, domain = known.get(wire.PID_LEASE), known.get(wire.PID_DOMAIN)
         return cls(
-            _first(domain) if domain else None,
+            _number(known, wire.PID_DOMAIN, None),
             _addresses(known, wire.PID_META_UNICAST),
             _addresses(known, wire.PID_DEFAULT_UNICAST),
-            float(_first(lease)) if lease else PEER_LEASE,
+            _number(known, wire.PID_LEASE, PEER_LEASE),
         )
 
 
@@ -71,10 +59,7 @@ class Endpoint:
     """A writer or a reader as its participant announces it.
 
     Attributes:
-        guid: The GUID of the endpoint.
         topic: The name of its topic in DDS, such as `rt/joint_states`.
-        type_name: The name of its type in DDS.
-        qos: The quality that it offers or requests.
         addresses: Where it is reached; empty for its participant's addresses.
     """
 
@@ -87,7 +72,7 @@ class Endpoint:
     @property
     def is_writer(self) -> bool:
         """Whether it writes, with a key or without."""
-        return self.guid[15] & 0x0F in (0x02, 0x03)
+        return _is_writer(self.guid)
 
     def matches(self, other: Endpoint) -> bool:
         """Whether direction, topic, type and quality allow a connection with another endpoint."""
@@ -107,17 +92,13 @@ class Endpoint:
             KeyError: It has no topic or no type.
         """
         known = wire.parameters_of(payload)
-        reliable, durable = known.get(wire.PID_RELIABILITY), known.get(wire.PID_DURABILITY)
         guid = known[wire.PID_ENDPOINT][0][:16]
-        is_writer = cls(guid, "", "", Qos()).is_writer
+        reliability = _number(known, wire.PID_RELIABILITY, 2 if _is_writer(guid) else 1)
         return cls(
             guid,
             wire.text_of(known[wire.PID_TOPIC][0]),
             wire.text_of(known[wire.PID_TYPE][0]),
-            Qos(
-                is_reliable=_first(reliable) == 2 if reliable else is_writer,
-                is_latched=bool(durable) and _first(durable) >= 1,
-            ),
+            Qos(reliability == 2, _number(known, wire.PID_DURABILITY, 0) >= 1),
             _addresses(known, wire.PID_UNICAST),
         )
 
@@ -170,10 +151,14 @@ def is_gone(inline: dict[int, bytes]) -> bool:
     return bool(inline.get(wire.PID_STATUS, b"\0")[-1] & 3)
 
 
-def _addresses(known: dict[int, list[bytes]], key: int) -> list[Address]:
+def _is_writer(guid: bytes) -> bool:
+    return guid[15] & 0x0F in (0x02, 0x03)
+
+
+def _addresses(known: Parameters, key: int) -> list[Address]:
     found = map(wire.address_of, known.get(key, []))
     return [address for address in found if address is not None]
 
 
-def _first(values: list[bytes] | None) -> int:
-    return struct.unpack_from("<I", values[0])[0] if values else 0
+def _number(known: Parameters, key: int, default: T) -> int | T:
+    return struct.unpack_from("<I", known[key][0])[0] if key in known else default

@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 
+from harness.ros.graph import Qos
 from harness.ros.rtps import wire
 from harness.ros.rtps.discovery import (
     Endpoint,
     ParticipantData,
-    Qos,
     announcement,
     farewell,
     is_gone,
@@ -82,11 +82,8 @@ class Participant:
         self, topic: str, type_name: str, qos: Qos, deliver: Callable[[Sample], None]
     ) -> Reader:
         """A reader of a topic, known to the peers from now on."""
-
-        def arrive(sample: Sample) -> None:
-            self._arrived.append((deliver, sample))
-
-        made = Reader(self._endpoint(0x04, topic, type_name, qos), self._send, arrive)
+        endpoint = self._endpoint(0x04, topic, type_name, qos)
+        made = Reader(endpoint, self._send, lambda sample: self._arrived.append((deliver, sample)))
         self._readers[made.endpoint.guid[12:]] = made
         self._publish(wire.SUBSCRIPTIONS_WRITER, made)
         return made
@@ -107,11 +104,10 @@ class Participant:
             self._tend()
             left = until - time.monotonic()
             due = min(self._next_announcement, self._next_reminder) - time.monotonic()
-            is_quiet = True
-            for datagram in self._sockets.receive(max(0.0, min(left, due))):
-                is_quiet = False
+            datagrams = list(self._sockets.receive(max(0.0, min(left, due))))
+            for datagram in datagrams:
                 self._receive(datagram)
-            if (left <= 0 and is_quiet) or left < -0.05:  # the latter under a flood of messages
+            if left <= 0 and (not datagrams or left < -0.05):  # the latter under a flood of them
                 return
 
     def close(self) -> None:
@@ -236,11 +232,8 @@ class Participant:
     def _take_endpoint(self, sample: Sample) -> None:
         """A peer made or removed a writer or a reader."""
         if is_gone(sample.inline):
-            guid = sample.inline.get(wire.PID_KEY_HASH)
-            if guid is None and len(sample.payload) > 4:
-                guid = wire.parameters_of(sample.payload)[wire.PID_ENDPOINT][0][:16]
-            if guid is not None:
-                self._forget(guid)
+            key = sample.inline.get(wire.PID_KEY_HASH)
+            self._forget(key or wire.parameters_of(sample.payload)[wire.PID_ENDPOINT][0][:16])
             return
         endpoint = Endpoint.parsed(sample.payload)
         peer = self._peers.get(endpoint.guid[:12])
