@@ -58,6 +58,7 @@ def bridge_request(
         seed=arguments.seed,
         report_dir=folder,
         page=not arguments.no_page,
+        nodes=named_commands(arguments.nodes),
     )
     loaded = read_scenario(file, request.overrides, request.seed).loaded
     if loaded is not None and not any(isinstance(s, External) for s in loaded.scenario.steps):
@@ -73,7 +74,6 @@ def bridge_request(
         domain=domain,
         is_local=not arguments.network,
         adapter=arguments.adapter,
-        nodes=named_commands(arguments.nodes),
         factor=arguments.pace,
         say=note,
     )

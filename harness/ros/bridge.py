@@ -91,8 +91,7 @@ def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
     """Run a case whose steps may start the request's nodes, in a domain of its own."""
     said: list[str] = []
     with free_domain() as domain:
-        bridge = BridgeRequest(request, domain, nodes=request.nodes, say=said.append)
-        result = run_bridge(bridge, notify)
+        result = run_bridge(BridgeRequest(request, domain, say=said.append), notify)
     return replace(result.case, notes=(*result.case.notes, *said, *result.remarks))
 
 

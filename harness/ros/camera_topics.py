@@ -17,6 +17,7 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
 from harness.reporting.rosbag.frames import optical_frames
+from harness.reporting.rosbag.topics import topic_word
 from harness.robot.description import RobotDescription
 from harness.ros.graph import Graph, Qos
 from harness.ros.interfaces import header
@@ -30,7 +31,7 @@ class _Topics:
     """What one camera publishes, named as the course's Gazebo does."""
 
     def __init__(self, graph: Graph, camera: Camera, frame: str) -> None:
-        base, self.camera, self._frame, self.due = f"/{camera.name}", camera, frame, 0.0
+        base, self.camera, self._frame, self.due = f"/{topic_word(camera.name)}", camera, frame, 0.0
         self._raw = graph.advertise(f"{base}/image", IMAGE, Qos(depth=1))
         self._compressed = graph.advertise(f"{base}/image/compressed", COMPRESSED, Qos(depth=1))
         names = f"{base}/camera_info", f"{base}/image/camera_info"

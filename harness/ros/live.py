@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from textwrap import indent
 from threading import Event
@@ -44,7 +44,6 @@ class BridgeRequest:
     Attributes:
         is_local: Whether nodes of other machines are kept out.
         adapter: `rtps`, or `rclpy` of a ROS 2 installation.
-        nodes: Commands that steps may start, by name.
         factor: Simulated seconds in a wall second.
         say: Receives notes for the user while it runs.
         stop: Ends the session when it is set.
@@ -54,24 +53,19 @@ class BridgeRequest:
     domain: int
     is_local: bool = True
     adapter: str = "rtps"
-    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     factor: float = 1.0
     say: Say = lambda _: None
     stop: Event = field(default_factory=Event)
 
 
 class LiveControl(HandOver):
-    """Serves the robot on a graph while a step hands it over.
-
-    Attributes:
-        names: Sentences on names that are not served, where the last step did not end with `until`.
-    """
+    """Serves the robot on a graph while a step hands it over."""
 
     def __init__(
         self, prepared: Prepared, simulator: MujocoSimulator, graph: Graph, request: BridgeRequest
     ) -> None:
         super().__init__(prepared, simulator)
-        self.names: tuple[str, ...] = ()
+        self._names: tuple[str, ...] = ()
         self._graph, self._request = graph, request
         self._pace = Pace(request.factor)
         program = prepared.program
@@ -87,14 +81,15 @@ class LiveControl(HandOver):
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Serve the robot until the request's end; start the program that it names."""
-        self._program = start_program(self._request.nodes, request.launch, self._request.domain)
+        nodes, domain = self._request.run.nodes, self._request.domain
+        self._program = start_program(nodes, request.launch, domain)
         self._wiring.is_open = True
         self._pace.start()
         try:
             result = self.drive(request, self._feed, self._after)
             self._look_at_names()
             if result.ended_by == "until":
-                self.names = ()
+                self._names = ()
             return result
         finally:
             self._wiring.is_open = False
@@ -113,7 +108,7 @@ class LiveControl(HandOver):
 
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """What is said of wall time, names and the launched program; nothing of it is judged."""
-        said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self.names]
+        said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
         if self._exit_code and has_passed:
             said.append(f"the launched program ended with exit code {self._exit_code}")
         if self._output and (self._exit_code or not has_passed):
@@ -157,7 +152,7 @@ class LiveControl(HandOver):
         uses = self._graph.uses()
         for note in mismatched(*uses):
             self._say_once(note, note)
-        self.names = tuple(unserved(*uses)) or self.names
+        self._names = tuple(unserved(*uses)) or self._names
 
     def _note(self, record: CommandRecord) -> None:
         """A command took effect; say it, where it did not."""

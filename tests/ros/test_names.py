@@ -13,6 +13,7 @@ from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.ros.names import unserved
 from harness.ros.rtps.graph import dds_type
 from harness.session.run_request import RunRequest
+from tests.engine.front_door import problems
 from tests.ros.bridging import bridge, scenario
 
 HOLD = "- external: {}"
@@ -83,6 +84,20 @@ def test_a_second_robot_in_a_domain_is_refused(tmp_path):
         request = BridgeRequest(RunRequest(Path(file)), node.graph.participant.domain)
         with pytest.raises(SpecError, match="another robot or simulator publishes /joint_states"):
             run_bridge(request)
+
+
+@pytest.mark.parametrize(
+    ("names", "reason"),
+    [
+        ("{arm_controllers: [/my/arm]}", "no digit first, and `/` in between"),
+        ("{gripper_controller: two words}", "ROS 2 takes letters, digits and `_`"),
+        ("{arm_controllers: [a, b], gripper_controller: b}", "need different names"),
+    ],
+)
+def test_names_that_ros_does_not_take_are_reported_at_their_place(tmp_path, names, reason):
+    [(line, message)] = problems(tmp_path, HOLD, rest=f"ros2: {names}")
+    assert reason in message
+    assert line == 6
 
 
 @pytest.mark.parametrize("text", ["233", "-1", "abc"])

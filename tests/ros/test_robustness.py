@@ -134,7 +134,7 @@ def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
 
 
 def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
-    camera = "cameras: [{name: top, pose: {xyz: [0.5, 0, 0.5]}, look_at: [0, 0, 0]}]"
+    camera = "cameras: [{name: 2nd view, pose: {xyz: [0.5, 0, 0.5]}, look_at: [0, 0, 0]}]"
     with bridge(scenario(tmp_path, HOLD, camera)) as (node, _):
         node.ready()
         late = Node(node.graph.participant.domain)
@@ -142,12 +142,14 @@ def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
         static = late.listen("/tf_static", "tf2_msgs/msg/TFMessage", LATCHED)
         moving = late.listen("/tf", "tf2_msgs/msg/TFMessage")
         late.wait(lambda: description and static and moving)
+        served = {use.topic for use in late.graph.uses()[1]}
         late.graph.close()
+    assert "/_2nd_view/image" in served, "ROS takes no spaces and no digit first"
     assert description[0].data.startswith("<?xml")
     edges = {each.child_frame_id: each.header.frame_id for each in moving[0].transforms}
     assert edges["link2"] == "link1"
     stamps = [each.header.stamp.sec for each in (*static[0].transforms, *moving[0].transforms)]
     assert max(stamps) < 60, "frames have the time of /clock, which begins at 0"
     fixed = {each.child_frame_id: each.header.frame_id for each in static[0].transforms}
-    assert fixed["top_optical_frame"] == "world"
+    assert fixed["2nd view_optical_frame"] == "world"
     assert {fixed[name] for name in fixed} <= {"world", *fixed, *edges}, "one tree"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 from harness.ros.graph import Qos
@@ -12,6 +12,9 @@ from harness.ros.rtps import wire
 from harness.ros.rtps.wire import Address, Parameters
 
 T = TypeVar("T")
+
+Reachable = Callable[[Sequence[Address]], Address | None]
+"""The one of some addresses under which they are reached; None for none."""
 
 LEASE = 100.0
 """Seconds of silence after which peers forget this participant."""
@@ -24,34 +27,6 @@ BUILTIN = 0x3F
 
 _HEAD = b"\0\3\0\0"
 _VERSION = [(wire.PID_VERSION, wire.VERSION), (wire.PID_VENDOR, wire.VENDOR)]
-
-
-@dataclass(frozen=True)
-class ParticipantData:
-    """A participant as it announces itself.
-
-    Attributes:
-        domain: The number of its domain; None where it does not say.
-        meta: The addresses for discovery.
-        user: The addresses for samples, where endpoints have none of their own.
-        lease: The silence after which it is gone [s].
-    """
-
-    domain: int | None
-    meta: Sequence[Address]
-    user: Sequence[Address]
-    lease: float
-
-    @classmethod
-    def parsed(cls, payload: bytes) -> ParticipantData:
-        """The content of an announcement."""
-        known = wire.parameters_of(payload)
-        return cls(
-            _number(known, wire.PID_DOMAIN, None),
-            _addresses(known, wire.PID_META_UNICAST),
-            _addresses(known, wire.PID_DEFAULT_UNICAST),
-            _number(known, wire.PID_LEASE, PEER_LEASE),
-        )
 
 
 @dataclass(frozen=True)
@@ -118,6 +93,40 @@ class Endpoint:
                 (wire.PID_DURABILITY, struct.pack("<I", int(self.qos.is_latched))),
             ]
         )
+
+
+@dataclass
+class Peer:
+    """Another participant.
+
+    Attributes:
+        domain: The number of its domain; None where it does not say.
+        meta: The address for discovery.
+        user: The address for samples, where endpoints have none of their own.
+        lease: The silence after which it is gone [s].
+        seen: The moment of `time.monotonic` of its last message.
+        knows_us: Whether it has sent anything to this participant's endpoints.
+        endpoints: Its writers and readers, by GUID.
+    """
+
+    domain: int | None
+    meta: Address
+    user: Address
+    lease: float
+    seen: float = 0.0
+    knows_us: bool = False
+    endpoints: dict[bytes, Endpoint] = field(default_factory=dict[bytes, Endpoint])
+
+    @classmethod
+    def parsed(cls, payload: bytes, reachable: Reachable) -> Peer | None:
+        """The content of an announcement; None where the participant cannot be reached."""
+        known = wire.parameters_of(payload)
+        meta = reachable(_addresses(known, wire.PID_META_UNICAST))
+        if meta is None:
+            return None
+        user = reachable(_addresses(known, wire.PID_DEFAULT_UNICAST)) or meta
+        lease = _number(known, wire.PID_LEASE, PEER_LEASE)
+        return cls(_number(known, wire.PID_DOMAIN, None), meta, user, lease)
 
 
 def announcement(guid: bytes, domain: int, name: str, addresses: Sequence[Address]) -> bytes:

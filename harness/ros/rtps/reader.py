@@ -54,9 +54,7 @@ class Reader:
         proxy = self.matched.setdefault(other.guid, _Writer(address, is_reliable))
         proxy.address = address
         if is_reliable:
-            # what was sent before comes again: Fast DDS answers a base of 0 at once, and one of 1
-            # with its next heartbeat, three seconds later
-            self._acknowledge(other.guid, proxy, 0 if other.guid.startswith(FAST_DDS) else 1, [])
+            self._request_heartbeat(other.guid, proxy)
 
     def take(self, sample: Sample) -> None:
         """A sample or a fragment of a matched writer arrived."""
@@ -64,8 +62,10 @@ class Reader:
         whole = proxy and (_assembled(proxy, sample) if sample.first else sample)
         if proxy is None or whole is None:
             return
-        if not (proxy.is_reliable and proxy.expected):  # none before this one is waited for
+        if not proxy.is_reliable:  # none before this one is waited for
             proxy.expected = max(proxy.expected, sample.number)
+        elif not proxy.expected:  # whether there is one before it, a heartbeat says
+            self._request_heartbeat(sample.writer, proxy)
         if sample.number >= proxy.expected and len(proxy.waiting) < MOST_WAITING:
             proxy.waiting[sample.number] = whole
             self._drain(proxy)
@@ -87,11 +87,15 @@ class Reader:
         proxy = self.matched.get(guid)
         if proxy is None:
             return
-        if first <= (proxy.expected or first):
+        if first <= max(proxy.expected, 1):
             proxy.expected = max(proxy.expected, base)
         while proxy.expected in numbers:
             proxy.expected += 1
         self._drain(proxy)
+
+    def _request_heartbeat(self, guid: bytes, proxy: _Writer) -> None:
+        """Fast DDS answers a base of 0 at once, and 1 with its next heartbeat, 3 s later."""
+        self._acknowledge(guid, proxy, 0 if guid.startswith(FAST_DDS) else 1, [])
 
     def _drain(self, proxy: _Writer) -> None:
         for passed in (proxy.waiting, proxy.partial):

@@ -48,6 +48,31 @@ class Submessage:
         """The byte order, for `struct`."""
         return "<" if self.flags & 1 else ">"
 
+    def unpack(self, form: str, place: int) -> tuple[int, ...]:
+        """The numbers at a place of the body, in a form of `struct`."""
+        return struct.unpack_from(f"{self.order}{form}", self.body, place)
+
+    def number(self, place: int) -> int:
+        """The sequence number at a place."""
+        high, low = self.unpack("iI", place)
+        return (high << 32) + low
+
+    def numbers(self, place: int) -> tuple[int, list[int]]:
+        """The base and the members of the set of sequence numbers at a place."""
+        base = self.number(place)
+        return base, [base + each for each in self._members(place + 8)]
+
+    def fragments(self, place: int) -> list[int]:
+        """The members of the set of fragment numbers at a place."""
+        (base,) = self.unpack("I", place)
+        return [base + each for each in self._members(place + 4)]
+
+    def _members(self, place: int) -> list[int]:
+        bits = min(self.unpack("I", place)[0], MOST_BITS)
+        words = self.unpack(f"{-(-bits // 32)}I", place + 4)
+        marks = "".join(f"{word:032b}" for word in words)
+        return [bit for bit in range(bits) if marks[bit] == "1"]
+
 
 @dataclass(frozen=True)
 class Sample:
@@ -100,12 +125,6 @@ def sequence_number(number: int) -> bytes:
     return struct.pack("<iI", number >> 32, number & 0xFFFFFFFF)
 
 
-def number_at(body: bytes, place: int, order: str) -> int:
-    """The sequence number at a place."""
-    high, low = struct.unpack_from(f"{order}iI", body, place)
-    return (high << 32) + low
-
-
 def number_set(base: int, numbers: Sequence[int]) -> bytes:
     """A set of sequence numbers from a base on."""
     places = {number - base for number in numbers if base <= number < base + MOST_BITS}
@@ -114,26 +133,6 @@ def number_set(base: int, numbers: Sequence[int]) -> bytes:
     for place in places:
         words[place // 32] |= 1 << (31 - place % 32)
     return sequence_number(base) + struct.pack(f"<I{len(words)}I", bits, *words)
-
-
-def numbers_of(body: bytes, place: int, order: str) -> tuple[int, list[int]]:
-    """The base and the members of a set of sequence numbers."""
-    base = number_at(body, place, order)
-    return base, [base + each for each in _members(body, place + 8, order)]
-
-
-def fragments_of(body: bytes, place: int, order: str) -> list[int]:
-    """The members of a set of fragment numbers."""
-    (base,) = struct.unpack_from(f"{order}I", body, place)
-    return [base + each for each in _members(body, place + 4, order)]
-
-
-def _members(body: bytes, place: int, order: str) -> list[int]:
-    (bits,) = struct.unpack_from(f"{order}I", body, place)
-    bits = min(bits, MOST_BITS)
-    words = struct.unpack_from(f"{order}{-(-bits // 32)}I", body, place + 4)
-    marks = "".join(f"{word:032b}" for word in words)
-    return [bit for bit in range(bits) if marks[bit] == "1"]
 
 
 def parameters(values: Sequence[tuple[int, bytes]]) -> bytes:
@@ -211,15 +210,14 @@ def fragments(
 
 def sample_of(source: bytes, message: Submessage) -> Sample:
     """What DATA or DATA_FRAG of a participant carries."""
-    body, order = message.body, message.order
-    (to_inline,) = struct.unpack_from(f"{order}H", body, 2)
-    number, place = number_at(body, 12, order), 4 + to_inline
+    number, place = message.number(12), 4 + message.unpack("H", 2)[0]
     inline: dict[int, bytes] = {}
     if message.flags & 0x02:
-        listed, place = parsed_parameters(body, place, order)
+        listed, place = parsed_parameters(message.body, place, message.order)
         inline = {key: values[0] for key, values in listed.items()}
+    body = message.body
     rest = body[4:8], source + body[8:12], number, inline, body[place:]
     if message.kind == DATA:
         return Sample(*rest)
-    first, _, fragment_size, size = struct.unpack_from(f"{order}IHHI", body, 20)
+    first, _, fragment_size, size = message.unpack("IHHI", 20)
     return Sample(*rest, first, fragment_size, size)
