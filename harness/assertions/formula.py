@@ -236,8 +236,7 @@ class Evaluation:
         before = np.arange(count)
         reached = np.minimum(begin, count - 1)
         at_low = np.where(begin < count, low[reached], -np.inf)
-        is_begun = (begin <= last) | (beyond & (begin < count))
-        at_high = np.where(is_begun, high[reached], np.inf)
+        at_high = np.where(beyond | (begin <= last), high[reached], np.inf)
         held_low = _minima(first.low, before, begin - 1)
         held_high = _minima(first.high, before, np.minimum(begin, count) - 1)
         return Bounds(
