@@ -59,7 +59,7 @@ class Reader:
     def take(self, sample: Sample) -> None:
         """A sample or a fragment of a matched writer arrived."""
         proxy = self.matched.get(sample.writer)
-        if proxy is None or sample.number < proxy.expected:  # it came to the other address too
+        if proxy is None or sample.number < proxy.expected:  # a copy through another address
             return
         whole = _assembled(proxy, sample) if sample.first else sample
         if whole is None:
