@@ -54,7 +54,10 @@ class HandOver:
         return ""
 
     def drive(
-        self, request: ExternalRequest, feed: Callable[[], None], after: Callable[[], None]
+        self,
+        request: ExternalRequest,
+        feed: Callable[[], None],
+        after: Callable[[], None] = lambda: None,
     ) -> ExternalResult:
         """Move time tick by tick until the request's end.
 
@@ -143,7 +146,7 @@ class ReplayControl(HandOver):
         Raises:
             HarnessError: A command belongs to a sample that this run does not stop at.
         """
-        return self.drive(request, self._feed, self.cell.outcomes.clear)
+        return self.drive(request, self._feed)
 
     def _feed(self) -> None:
         now = self.simulator.sample_count - 1

@@ -160,7 +160,6 @@ class LiveControl(HandOver):
         if record.answer != "accepted":
             what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
             self._say_once(record.answer, what)
-        self._wiring.report()
 
     def _say_once(self, key: str, note: str) -> None:
         if key not in self._said and len(self._said) < MOST_NOTES:

@@ -13,7 +13,7 @@ from harness.recording.commands import CommandKind, CommandRecord
 from harness.reporting.rosbag.messages import message
 from harness.ros.actions import ActionServer
 from harness.ros.control.cell import ExternalCell
-from harness.ros.control.controller import Window
+from harness.ros.control.controller import Outcome, Window
 from harness.ros.control.goals import MOTION
 from harness.ros.graph import Graph
 from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, seconds
@@ -38,6 +38,7 @@ class Wiring:
         self.is_open = False
         self._cell, self._on_command, self._ticks = cell, on_command, 0
         self._servers: list[ActionServer] = []
+        cell.on_outcome = self._report
         actions = {
             "trajectory": ("follow_joint_trajectory", FOLLOW, follow_content),
             "gripper": ("gripper_cmd", GRIPPER, grip_content),
@@ -58,8 +59,7 @@ class Wiring:
                 self._servers.append(server)
 
     def after_tick(self) -> None:
-        """Report what ended, and how far the others are."""
-        self.report()
+        """Say now and then how far goals are."""
         self._ticks += 1
         if self._ticks % FEEDBACK_EVERY:
             return
@@ -69,13 +69,11 @@ class Wiring:
                     content = follow_feedback(controller.joint_names, window)
                     server.feedback(controller.goal, content)
 
-    def report(self) -> None:
-        """Send the results of goals that ended; a trajectory from a topic has none."""
-        outcomes, self._cell.outcomes = self._cell.outcomes, []
-        for outcome in outcomes:
-            for server in self._servers:
-                if server.owns(outcome.goal):
-                    server.finish(outcome.goal, outcome.has_succeeded, outcome.result)
+    def _report(self, outcome: Outcome) -> None:
+        """Send the result of a goal that ended; a trajectory from a topic has none."""
+        for server in self._servers:
+            if server.owns(outcome.goal):
+                server.finish(outcome.goal, outcome.has_succeeded, outcome.result)
 
     def _take(
         self,

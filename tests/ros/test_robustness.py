@@ -119,9 +119,10 @@ def test_two_bridges_side_by_side_do_not_hear_each_other(tmp_path):
     assert (one[0].commands, two[0].commands) == (1, 0)
 
 
-def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
+def test_another_implementation_of_the_protocol_reads_the_joints_and_commands_them(tmp_path):
     """rosless is written in Rust on RustDDS; like rclpy, it is not of this program."""
-    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+    last = {"positions": END, "time_from_start": {"sec": 0, "nanosec": 10**8}}
+    with bridge(scenario(tmp_path), waits=True) as (node, results):
         other = rosless.Node(node.graph.participant.domain)
         topic = other.subscribe("/joint_states", "sensor_msgs/msg/JointState")
         message, end = None, time.monotonic() + 20
@@ -129,6 +130,12 @@ def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
             node.sleep(0.05)
             message = topic.read(timeout=0.2)
         topic.close()
+        command = "/arm_controller/joint_trajectory"
+        publisher = other.advertise(command, "trajectory_msgs/msg/JointTrajectory")
+        while not results and time.monotonic() < end:
+            publisher.send({"joint_names": ARM, "points": [last]})
+            node.sleep(0.5)
+    assert results[0].case.outcome == "passed"
     assert message.name[:4] == list(ARM)
     assert len(message.position) == len(message.velocity) == len(message.name)
 

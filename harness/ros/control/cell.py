@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -51,7 +51,7 @@ class ExternalCell:
 
     Attributes:
         commands: Everything that was received.
-        outcomes: What ended since it was last taken; in order.
+        on_outcome: Called with each goal that ended.
         controllers: The controllers, by each of their names.
     """
 
@@ -59,7 +59,7 @@ class ExternalCell:
         self._servos = servos
         self.description = description = servos.description
         self.commands: list[CommandRecord] = []
-        self.outcomes: list[Outcome] = []
+        self.on_outcome: Callable[[Outcome], None] = lambda _: None
         self._rows = max(1, round(TICK / servos.timestep))
         self.controllers: dict[str, Controller] = {}
         arm, finger = controller_names(description, names)
@@ -122,7 +122,7 @@ class ExternalCell:
             record = replace(record, answer=str(refused))
             if kind == "trajectory" and goal:
                 result = follow_result(refused.code, record.answer)
-                self.outcomes.append(Outcome(goal, False, result))
+                self.on_outcome(Outcome(goal, False, result))
         self.commands.append(record)
         return record
 
@@ -141,7 +141,7 @@ class ExternalCell:
         motion, controller.motion = controller.motion, None
         if motion is not None and motion.goal:  # what came from a topic has no result
             now = self._window(controller, np.array([self.time]), self._last)
-            self.outcomes.append(motion.interrupted(code, reason, now))
+            self.on_outcome(motion.interrupted(code, reason, now))
 
     def _cancel(self, goal: str) -> None:
         """Hold the joints of a goal where they are."""
@@ -169,7 +169,7 @@ class ExternalCell:
                 controller.motion = None
                 if ended.hold is not None:
                     self._hold(controller, ended.hold)
-                self.outcomes.append(ended)
+                self.on_outcome(ended)
 
     def tracking(self) -> list[tuple[Controller, Window]]:
         """Desired and measured motion of every controller with a goal, at this moment."""

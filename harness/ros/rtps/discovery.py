@@ -86,7 +86,6 @@ class Endpoint:
                 (wire.PID_PARTICIPANT, self.guid[:12] + wire.PARTICIPANT),
                 *_VERSION,
                 (wire.PID_KEY_HASH, self.guid),
-                *((wire.PID_UNICAST, wire.locator(each)) for each in self.addresses),
                 (wire.PID_TOPIC, wire.text(self.topic)),
                 (wire.PID_TYPE, wire.text(self.type_name)),
                 (wire.PID_RELIABILITY, reliability),

@@ -184,8 +184,7 @@ class Participant:
 
     def _endpoint(self, kind: int, topic: str, type_name: str, qos: Qos) -> Endpoint:
         entity = (len(self._writers) + len(self._readers)).to_bytes(3, "big") + bytes([kind])
-        own = self._sockets.unicast[-1:]
-        return Endpoint(self.prefix + entity, topic, type_name, qos, own)
+        return Endpoint(self.prefix + entity, topic, type_name, qos)
 
     def _publish(self, announcer: bytes, made: Writer | Reader) -> None:
         self._writers[announcer].write(made.endpoint.payload())

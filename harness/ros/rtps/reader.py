@@ -59,14 +59,16 @@ class Reader:
     def take(self, sample: Sample) -> None:
         """A sample or a fragment of a matched writer arrived."""
         proxy = self.matched.get(sample.writer)
-        whole = proxy and (_assembled(proxy, sample) if sample.first else sample)
-        if proxy is None or whole is None:
+        if proxy is None or sample.number < proxy.expected:  # a copy through another address
+            return
+        whole = _assembled(proxy, sample) if sample.first else sample
+        if whole is None:
             return
         if not proxy.is_reliable:  # none before this one is waited for
-            proxy.expected = max(proxy.expected, sample.number)
+            proxy.expected = sample.number
         elif not proxy.expected:  # whether there is one before it, a heartbeat says
             self._request_heartbeat(sample.writer, proxy)
-        if sample.number >= proxy.expected and len(proxy.waiting) < MOST_WAITING:
+        if len(proxy.waiting) < MOST_WAITING:
             proxy.waiting[sample.number] = whole
             self._drain(proxy)
 
