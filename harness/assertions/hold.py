@@ -14,7 +14,7 @@ from harness.assertions.contacts import (
 )
 from harness.assertions.facts import fact
 from harness.assertions.poses import object_poses
-from harness.assertions.temporal import TIME_RESOLUTION, bridged, episodes
+from harness.assertions.temporal import bridged, episodes, first_within
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, object_record
 from harness.core.antipodal import (
@@ -125,7 +125,7 @@ def _side_presses(run: Run, name: str) -> list[FloatArray]:
 def recent_mean(run: Run, rows: FloatArray, span: float) -> FloatArray:
     """Mean over the samples of the last `span` seconds, itself included, shape (N, k)."""
     times = run.signals.times
-    first = np.searchsorted(times, times - span - TIME_RESOLUTION)
+    first = first_within(times, span)
     summed = np.concatenate([np.zeros((1, rows.shape[1])), np.cumsum(rows, axis=0)])
     counts = np.arange(1, len(times) + 1) - first
     return (summed[1:] - summed[first]) / counts[:, None]
@@ -198,8 +198,7 @@ def held_for(run: Run, held: BoolArray) -> FloatArray:
 
 def moves_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """How far an object moved [m] and turned [rad] in the hand within `HOLD_TIME`, (N,) each."""
-    times = run.signals.times
-    return moved_since(run, name, np.searchsorted(times, times - HOLD_TIME - TIME_RESOLUTION))
+    return moved_since(run, name, first_within(run.signals.times, HOLD_TIME))
 
 
 def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, FloatArray]:
