@@ -138,11 +138,12 @@ class Clearance(Predicate):
             pairs = [pair for pair in run.signals.contact_forces if set(pair) == {name, other}]
             if pairs and not colliding(run, pairs[0]).any():
                 continue
-            rows = window.cut(run.signals.clearances.get((name, other), np.array([np.inf])))
-            if len(rows) and np.fmin.reduce(rows) < self.at_least:
-                nearest = amount(float(np.fmin.reduce(rows)), "m")
-                text = f"{name}, which the hand carries, comes within {nearest} of {other}"
-                found.append(VerdictWarning("held object is nearer", f"{text}: name it"))
+            if (name, other) not in run.signals.clearances:
+                continue
+            nearest = float(np.fmin.reduce(window.cut(run.signals.clearances[name, other])))
+            if nearest < self.at_least:
+                comes = f"which the hand carries, comes within {amount(nearest, 'm')} of {other}"
+                found.append(VerdictWarning("held object is nearer", f"{name}, {comes}: name it"))
         return tuple(found)
 
     def _largest_loss(self, window: Window) -> _Worst:

@@ -91,6 +91,14 @@ def test_always_is_the_worst_sample_from_the_latest_start_allowed(signal, hold, 
     assert values[decision.index] == decision.value
 
 
+@pytest.mark.parametrize("word", [always, eventually, at_end, never])
+def test_a_span_may_be_as_long_as_all_that_is_known_and_no_longer(word):
+    values, times = np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.1, 0.3])
+    assert abs(word(values, times, 0.3).value) == 1.0
+    with pytest.raises(TooShort):
+        word(values, times, 0.31)
+
+
 @settings(deadline=None, derandomize=True)
 @given(signals(), spans)
 def test_at_the_end_all_of_the_last_seconds_count(signal, hold):

@@ -82,6 +82,18 @@ def test_the_robot_is_drawn_and_moves_with_the_time(opened):
     assert np.abs(picture(page) - start).max() > 40
 
 
+def test_a_page_that_shows_a_still_moment_requests_no_frames(opened):
+    page = opened.page
+    page.evaluate("""window.lastFrame = 0, window.requestAnimationFrame = ((request) => (task) => {
+      window.lastFrame = performance.now();
+      return request(task);
+    })(window.requestAnimationFrame), null""")
+    wait_for(page, "performance.now() - window.lastFrame > 1500")  # the film is drawn
+    page.click("#play")
+    wait_for(page, "performance.now() - window.lastFrame < 100")
+    page.click("#play")
+
+
 def test_playing_moves_the_time_and_stops_at_the_end(opened):
     page = opened.page
     page.select_option("#speed", "10")

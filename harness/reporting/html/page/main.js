@@ -77,10 +77,12 @@ async function start() {
   }
 
   function drawAt(time, canvas) {
-    const step = stepAt(run.steps, time);
-    scene.pose(time, step, null);
-    scene.viewer.copyTo(scene.film, canvas);
+    const { viewer } = scene;
+    const wasDirty = viewer.isDirty;
+    scene.pose(time, stepAt(run.steps, time), null);
+    viewer.copyTo(scene.film, canvas);
     scene.pose(clock.time, stepNow(clock.time), contacts);
+    viewer.isDirty = wasDirty; // the view's own canvas has not changed
   }
 
   function selectStep(index) {
@@ -160,12 +162,20 @@ async function start() {
   addEventListener("hashchange", () => goTo(location.hash));
   if (location.hash) goTo(location.hash);
   else openAtFailure();
-  const loop = (now) => {
-    clock.tick(now);
-    scene?.viewer.draw(scene.orbit, clock.isPlaying || scene.orbit.isHeld);
-    requestAnimationFrame(loop);
-  };
-  requestAnimationFrame(loop);
+  let isFrameDue = false;
+  function requestFrame() {
+    if (isFrameDue) return;
+    isFrameDue = true;
+    requestAnimationFrame((now) => {
+      isFrameDue = false;
+      clock.tick(now);
+      scene?.viewer.draw(scene.orbit, clock.isPlaying || scene.orbit.isHeld);
+      if (clock.isPlaying) requestFrame();
+    });
+  }
+  clock.onPlay(requestFrame);
+  if (scene) scene.viewer.onChange = requestFrame;
+  requestFrame();
   window.readyAfter = performance.now(); // [ms] since the page was requested
   document.documentElement.dataset.ready = "yes";
 }

@@ -86,6 +86,7 @@ export class Orbit {
     const release = (event) => {
       pointers.delete(event.pointerId);
       spread = 0;
+      this.changed();
     };
     canvas.addEventListener("pointerup", release);
     canvas.addEventListener("pointercancel", release);

@@ -38,6 +38,7 @@ export class Viewer {
    */
   constructor(host, bounds) {
     this.host = host;
+    this.onChange = () => {}; // called when draw is due
     this.canvas = document.createElement("canvas");
     const gl = this.canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error("WebGL2 is not available");
@@ -69,11 +70,13 @@ export class Viewer {
   /** Have the picture drawn at the next chance. */
   redraw() {
     this.isDirty = true;
+    this.onChange();
   }
 
   /** Have the shadows drawn anew too: something has moved. */
   moved() {
-    this.isDirty = this.hasMoved = true;
+    this.hasMoved = true;
+    this.redraw();
   }
 
   /**
