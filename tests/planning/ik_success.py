@@ -79,7 +79,6 @@ def measure(model: str, kind: str, poses: int) -> Success:
                 space,
                 goal,
                 space.part(start),
-                restarts=restarts,
                 most_restarts=restarts,
                 enough=1,
             )

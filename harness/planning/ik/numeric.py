@@ -218,7 +218,6 @@ def solve_numeric(
     goal: LinkGoal,
     seed_positions: FloatArray,
     *,
-    restarts: int = RESTARTS,
     most_restarts: int = MOST_RESTARTS,
     enough: int | None = None,
     part: TiltGoal | None = None,
@@ -229,8 +228,7 @@ def solve_numeric(
         space: The group, the rest of the robot at rest.
         goal: The goal of the link.
         seed_positions: The start of the first search, shape (dof,).
-        restarts: The number of searches from the pose table after the first.
-        most_restarts: The largest number of searches while no solution is found.
+        most_restarts: The largest number of searches after the first, if none finds a solution.
         enough: The number of solutions that ends the search; None for a spread.
         part: The part of the goal that suffices, where the rest comes as near as it can.
 
@@ -245,7 +243,7 @@ def solve_numeric(
             positions, error = LinkTask(space, part).polish(positions)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
-        if len(found) == enough or (found and number >= restarts):
+        if len(found) == enough or (found and number >= RESTARTS):
             break
     return found
 
