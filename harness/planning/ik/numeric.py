@@ -78,6 +78,11 @@ class LinkTask:
         """T_world_link at group positions."""
         return self._robot.link_pose(self.space.whole(positions), self.goal.link)
 
+    def cost(self, positions: FloatArray) -> float:
+        """The squared error at positions."""
+        error, _ = self.evaluate(positions)
+        return float(error.dot(error))
+
     def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
         error, jacobian = self._evaluate(positions)
@@ -251,6 +256,13 @@ def solve_numeric(
 def starts(
     space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, restarts: int
 ) -> Iterator[FloatArray]:
-    """Where searches start: at the seed, then at the table's positions nearest to the goal."""
-    yield np.asarray(seed_positions, dtype=float)
-    yield from pose_table(space, goal.link).nearest(goal, restarts)
+    """Where searches start: at the seed, and at the table's positions nearest to the goal.
+
+    The seed comes first, or second if the first of the others is nearer to the goal.
+    """
+    task, seed = LinkTask(space, goal), np.asarray(seed_positions, dtype=float)
+    near = list(pose_table(space, goal.link).nearest(goal, restarts))
+    if near and task.cost(near[0]) < task.cost(seed):
+        yield near.pop(0)
+    yield seed
+    yield from near
