@@ -307,14 +307,17 @@ class RemoteArm:
 
     def _refuse_stray(self, goal: ClientGoal) -> None:
         """Refuse to go on when the feedback shows a joint beyond its tolerance."""
-        tolerance = self.description.tracking.trajectory
+        tolerance, joints = self.description.tracking.trajectory, self.description.joint_by_name
         for feedback in goal.feedback:
-            errors = np.abs(feedback.error.positions)
-            if not len(errors) or errors.max() <= tolerance:
+            off = {
+                str(name): abs(float(error))
+                for name, error in zip(feedback.joint_names, feedback.error.positions, strict=False)
+                if name in joints
+            }
+            name = max(off, key=off.__getitem__, default="")
+            if not name or off[name] <= tolerance:
                 continue
-            worst = int(np.argmax(errors))
-            name, error = str(feedback.joint_names[worst]), float(errors[worst])
-            unit = self.description.joint_by_name[name].position_unit
+            error, unit = off[name], joints[name].position_unit
             raise StepFailed(
                 "CONTROL_FAILED",
                 f"{name} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"
