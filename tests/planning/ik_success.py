@@ -32,7 +32,7 @@ TEXT = """\
 
 Closed forms give every branch of a UR (up to eight) and of OpenMANIPULATOR-X (up to four) without a
 search. Every other arm, and every goal without a closed form, is solved numerically: damped least
-squares from the current joint positions, then from {restarts} others, and from up to {most} while
+squares from the current joint positions and from {restarts} others, and from up to {most} while
 there is no solution. Of a table of {size} random joint positions, always the same, these are the
 ones that bring the link nearest to the goal. The same goal and positions give the same solutions.
 
@@ -79,7 +79,6 @@ def measure(model: str, kind: str, poses: int) -> Success:
                 space,
                 goal,
                 space.part(start),
-                restarts=restarts,
                 most_restarts=restarts,
                 enough=1,
             )

@@ -39,16 +39,15 @@ def test_touches_are_the_pairs_whose_distance_is_too_small(cell):
     rng, found = np.random.default_rng(4), 0
     for padding in (0.0, 0.05) * 30:
         state = cell.with_arm(rng.uniform(-np.pi, np.pi, 6))
-        near = [
-            (touch.first, touch.second, touch.distance, padding if pair.keeps_padding else 0.0)
+        near = {
+            (touch.first, touch.second, required): touch.distance
             for touch, pair in cell.scene.distances(state)
-            if touch.distance <= (padding if pair.keeps_padding else 0.0)
-        ]
+            if touch.distance <= (required := padding if pair.keeps_padding else 0.0)
+        }
         touches = cell.scene.touches(state, padding)
-        assert [(t.first, t.second, t.required) for t in touches] == [
-            (a, b, r) for a, b, _, r in near
-        ]
-        assert [t.distance for t in touches] == pytest.approx([d for _, _, d, _ in near], abs=1e-5)
+        measured = {(t.first, t.second, t.required): t.distance for t in touches}
+        assert measured == pytest.approx(near, abs=1e-5)  # Coal's depths vary a little
+        assert list(measured.values()) == sorted(measured.values())
         found += len(near)
     assert found > 60
 
@@ -146,8 +145,8 @@ def test_a_pair_too_near_at_the_start_may_come_no_nearer(cell, gap, margin, drop
     cell.add(thing("support", at(x, y, below - 0.05 - gap - 0.01), Shape(Box((0.2, 0.2, 0.02)))))
     checker = checker_of(cell, padding=0.005)
     lowered = [entry for entry in checker.lowered if entry.pair == ("cylinder", "support")]
-    assert lowered[0].start_distance == pytest.approx(gap, abs=1e-5)
-    assert lowered[0].margin == pytest.approx(margin, abs=1e-5)
+    assert lowered[0].start_distance == pytest.approx(gap, abs=1e-6)
+    assert lowered[0].margin == pytest.approx(margin, abs=1e-6)
     assert checker.state_free(checker.space.part(cell.state))
     for drop, is_free in drops.items():
         lower = cell.kinematics.link_pose(cell.state, TCP)

@@ -78,6 +78,11 @@ class LinkTask:
         """T_world_link at group positions."""
         return self._robot.link_pose(self.space.whole(positions), self.goal.link)
 
+    def cost(self, positions: FloatArray) -> float:
+        """The squared error at positions."""
+        error, _ = self.evaluate(positions)
+        return float(error.dot(error))
+
     def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
         error, jacobian = self._evaluate(positions)
@@ -218,7 +223,6 @@ def solve_numeric(
     goal: LinkGoal,
     seed_positions: FloatArray,
     *,
-    restarts: int = RESTARTS,
     most_restarts: int = MOST_RESTARTS,
     enough: int | None = None,
     part: TiltGoal | None = None,
@@ -229,8 +233,7 @@ def solve_numeric(
         space: The group, the rest of the robot at rest.
         goal: The goal of the link.
         seed_positions: The start of the first search, shape (dof,).
-        restarts: The number of searches from the pose table after the first.
-        most_restarts: The largest number of searches while no solution is found.
+        most_restarts: The largest number of searches after the first, if none finds a solution.
         enough: The number of solutions that ends the search; None for a spread.
         part: The part of the goal that suffices, where the rest comes as near as it can.
 
@@ -245,7 +248,7 @@ def solve_numeric(
             positions, error = LinkTask(space, part).polish(positions)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
-        if len(found) == enough or (found and number >= restarts):
+        if len(found) == enough or (found and number >= RESTARTS):
             break
     return found
 
@@ -253,6 +256,13 @@ def solve_numeric(
 def starts(
     space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, restarts: int
 ) -> Iterator[FloatArray]:
-    """Where searches start: at the seed, then at the table's positions nearest to the goal."""
-    yield np.asarray(seed_positions, dtype=float)
-    yield from pose_table(space, goal.link).nearest(goal, restarts)
+    """Where searches start: at the seed, and at the table's positions nearest to the goal.
+
+    The seed comes first, or second if the first of the others is nearer to the goal.
+    """
+    task, seed = LinkTask(space, goal), np.asarray(seed_positions, dtype=float)
+    near = list(pose_table(space, goal.link).nearest(goal, restarts))
+    if near and task.cost(near[0]) < task.cost(seed):
+        yield near.pop(0)
+    yield seed
+    yield from near
