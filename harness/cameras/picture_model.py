@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from harness.cameras.meshes import mesh_parts
+from harness.cameras.meshes import MeshPart, mesh_parts
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Rgba, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
@@ -23,6 +23,12 @@ FLOOR, EYE = "floor", "eye"
 
 GHOST_ALPHA = 0.3
 """Opacity of objects that only the planning scene has."""
+
+LEAST_CORNERS = 4
+"""Fewest corners of a mesh in MuJoCo."""
+
+LEAST_AREA = 1e-9
+"""Area below which a part of a mesh is not drawn, which MuJoCo refuses [m^2]."""
 
 SKY_TOP, HORIZON = (0.80, 0.85, 0.91), (0.95, 0.96, 0.97)
 FLOOR_COLOUR, FLOOR_LINES = (0.90, 0.905, 0.91), (0.82, 0.83, 0.84)
@@ -131,14 +137,23 @@ def _pieces(spec: mujoco.MjSpec, shape: Shape) -> list[tuple[Geometry | str, Rgb
     key = f"{geometry.path}|{geometry.scale}"
     pieces: list[tuple[Geometry | str, Rgba | None]] = []
     for number, part in enumerate(mesh_parts(geometry)):
+        if _area(part) < LEAST_AREA:
+            continue
         name = f"{key}|{number}"
         if spec.mesh(name) is None:
             asset = spec.add_mesh(name=name)
-            asset.uservert = part.vertices.ravel()
+            lack = max(0, LEAST_CORNERS - len(part.vertices))
+            asset.uservert = np.pad(part.vertices, ((0, lack), (0, 0)), mode="edge").ravel()
             asset.userface = part.faces.ravel()
             asset.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
         pieces.append((name, part.rgba))
     return pieces
+
+
+def _area(part: MeshPart) -> float:
+    """Area of the triangles of a part [m^2]."""
+    a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
 def _add_geom(body: mujoco.MjsBody, geometry: Geometry | str) -> mujoco.MjsGeom:

@@ -32,10 +32,6 @@ class NotFoundError(ValueError):
     """A file does not exist, or is outside the folders that may be read."""
 
 
-class OutsideError(NotFoundError):
-    """A file is outside the folders that may be read."""
-
-
 @dataclass(frozen=True)
 class PackagePath:
     """Folders that may contain a robot's files.
@@ -122,13 +118,19 @@ class PackagePath:
         else:
             path = (folder / name.removeprefix("file://")).resolve()
         if not self.may_read(path):
-            raise OutsideError(
-                f"'{name}' lies outside the robot's folder {self.home} and the given ones; "
-                "add its folder to `packages`"
-            )
+            raise NotFoundError(self.outside(name, path))
         if not path.is_file():
             raise NotFoundError(f"'{name}' is not there: {path} does not exist")
         return path
+
+    def outside(self, name: str, path: Path) -> str:
+        """The message on a file that may not be read, with the folder that would allow it."""
+        around = Path(os.path.commonpath([self.home, path.parent]))
+        folder = path.parent if Path.home().is_relative_to(around) else around
+        return (
+            f"'{name}' lies outside the robot's folder {self.home} and the given ones; if it may "
+            f"be read, give --package-path {folder}, or add that folder to `packages` of `robot:`"
+        )
 
     def may_read(self, path: Path) -> bool:
         """Whether a file lies in a folder that may be read."""

@@ -83,10 +83,12 @@ class Candidates:
         self._kinematics = PinocchioKinematics(description)
         self._scene = CoalScene(description)
         self._samples = sample_robot_positions(description, SAMPLES, np.random.default_rng(0))
-        links = (description.base_link, description.tcp_link)
-        poses = self._kinematics.link_poses(self._samples, links)[:, :, :3]
-        self._reach = float(np.linalg.norm(poses[:, 1] - poses[:, 0], axis=1).max())
+        poses = self._kinematics.link_poses(self._samples, (_arm_base(description),))[:, 0]
+        self._tcps = self._kinematics.link_poses(self._samples, (description.tcp_link,))[:, 0]
+        self._away = self._tcps[:, :3] - poses[:, :3]
+        self._reach = float(np.linalg.norm(self._away, axis=1).max())
         self._start = self._free_start()
+        self._arm = self._kinematics.link_pose(self._start, _arm_base(description)).translation
         self._base = self._base_height()
 
     def start_state(self) -> str:
@@ -103,19 +105,19 @@ class Candidates:
         if description.gripper is None or not description.arm_group:
             return
         hand = self._kinematics.link_pose(self._start, description.tcp_link).translation
-        floor = -self._base / self._reach
+        floor = -(self._base + self._arm[2]) / self._reach
         for heights in (HEIGHTS, (floor,)):
             places = self._places(description.gripper, heights)[:MOST_PLACES]
             for heading, (distance, height) in product(HEADINGS, places):
                 level = distance * self._reach
-                x, y = round(level * math.cos(heading), 2), round(level * math.sin(heading), 2)
-                place = (x, y, round(height * self._reach, 2))
-                if np.linalg.norm(np.array(place) - hand) > CLEAR * self._reach:
+                away = level * math.cos(heading), level * math.sin(heading), height * self._reach
+                place = np.round(self._arm + away, 2)
+                if np.linalg.norm(place - hand) > CLEAR * self._reach:
                     yield self._pick(place, description.gripper)
 
-    def _pick(self, place: tuple[float, float, float], gripper: Gripper) -> dict[str, str]:
+    def _pick(self, place: FloatArray, gripper: Gripper) -> dict[str, str]:
         """What fills the template: a box of a size and weight that the gripper can hold."""
-        x, y, top = place[0], place[1], self._base + place[2]
+        x, y, top = float(place[0]), float(place[1]), self._base + float(place[2])
         width, travel = self._box_width(gripper), _travel(self._reach)
         height, friction = min(TALLEST_BOX, 2.0 * width), SLIDING if gripper.has_single_jaw else 1.0
         carried = 2.0 * friction * _grip_force(gripper, width) / GRAVITY
@@ -163,14 +165,14 @@ class Candidates:
         the more a configuration counts; likewise above the place, where the approach starts.
         """
         description = self._description
-        links = (description.base_link, description.tcp_link)
-        base, tcp = np.moveaxis(self._kinematics.link_poses(self._samples, links), 1, 0)
-        away = (tcp - base)[:, :3] / self._reach
+        away = self._away / self._reach
         opened = self._start.copy()
         opened[description.joint_index[gripper.joint]] = gripper.open_position
         opened = description.with_mimics(opened)
         axis = approach_axis(description, self._kinematics, self._scene, opened)
-        along = Rotation.from_quat(tcp[:, 3:], scalar_first=True).apply(axis / np.linalg.norm(axis))
+        along = Rotation.from_quat(self._tcps[:, 3:], scalar_first=True).apply(
+            axis / np.linalg.norm(axis)
+        )
         cosine = -along[:, 2]
         weights = np.exp(-((np.arccos(np.clip(cosine, -1.0, 1.0)) / DOWNWARD) ** 2))
         if len(description.groups[description.arm_group].joint_names) < FREE_ROTATION:
@@ -248,6 +250,14 @@ class Candidates:
             for pose in [self._kinematics.link_pose(self._start, link)]
         )
         return 0.0 if lowest > 0 else math.ceil(10 * (FLOOR_CLEARANCE - lowest)) / 10
+
+
+def _arm_base(description: RobotDescription) -> str:
+    """The link that carries the arm, which can stand far from the robot's root."""
+    if not description.arm_group:
+        return description.base_link
+    first = description.groups[description.arm_group].joint_names[0]
+    return description.joint_by_name[first].parent
 
 
 def _grip_force(gripper: Gripper, width: float) -> float:

@@ -196,6 +196,16 @@ def test_a_mesh_that_cannot_be_drawn_is_named_in_the_note(ur3e, tmp_path):
     assert stills.note == "not in the pictures: mug.dae; save them as OBJ or STL"
 
 
+def test_a_colour_of_one_triangle_or_of_none_that_can_be_seen_is_no_error(ur3e, tmp_path):
+    """MuJoCo refuses meshes of three corners, and those without an area."""
+    corners = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.2 0 0\n"
+    faces = "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 5\nusemtl c\nf 1 2 3\nf 1 2 4\n"
+    (tmp_path / "mug.obj").write_text(corners + faces)
+    mug = replace(IMAGINED, name="mug", shapes=(Shape(Mesh(tmp_path / "mug.obj")),))
+    picture = build_picture_model(ur3e, (mug,), floor_height=0.0, width=64, height=48)
+    assert picture.geoms["mug"].stop - picture.geoms["mug"].start == 2
+
+
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur10e"])
 def test_the_floor_is_not_speckled_by_its_own_shadow(robot):
     """A coarse shadow map leaves no single dark pixels on a bright floor, in any direction."""

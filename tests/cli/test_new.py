@@ -92,6 +92,19 @@ def test_what_is_in_reach_on_the_floor_alone_is_picked_there(capsys, folder):
     assert "it was run once and passed" in capsys.readouterr().out
 
 
+def test_an_arm_far_from_the_root_of_its_robot_picks_too(capsys, folder):
+    """Places for the box are measured from the link that carries the arm."""
+    cell = (
+        '<link name="cell"/><joint name="mount" type="fixed"><parent link="cell"/>'
+        '<child link="base_link"/><origin xyz="0 3 1.5"/></joint>'
+    )
+    write_arm(folder, SIX.replace("</robot>", cell + "</robot>"), SIX_SRDF)
+    scenario = new("arm.urdf", "--srdf", "arm.srdf")
+    assert scenario.steps[0].verb == "pick"
+    assert scenario.objects[1].pose.xyz[1] > 2
+    assert "it was run once and passed" in capsys.readouterr().out
+
+
 def test_the_box_is_as_heavy_as_the_fingers_can_hold(capsys, folder):
     weak = SIX.replace('effort="40"', 'effort="1.5"')
     assert weak != SIX

@@ -139,6 +139,8 @@ URDF_ROWS = (
     ),
     ignored("`<visual>` with another mesh", "is not drawn, reported", SHAPE,
              SHAPE + VISUAL.format(MESH.format("part.3ds")), "'part.3ds' is not a"),
+    ignored("`<visual>` with a mesh that is not there", "the same", SHAPE,
+             SHAPE + VISUAL.format(MESH.format("gone.stl")), "'gone.stl' is not there"),
     refused("`<collision>` with another mesh", "", CYLINDER, MESH.format("part.3ds"),
              "not a STL, OBJ, DAE, PLY or GLB file"),
     refused("any other shape", "", CYLINDER, '<cone radius="1"/>', "unknown geometry <cone>"),

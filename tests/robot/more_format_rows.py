@@ -76,6 +76,11 @@ SITE = '<site name="tcp" pos="0 0 0.08"/>'
 ELBOW = '<joint name="elbow" axis="0 1 0" range="-120 120"/>'
 WORLD = "<worldbody>"
 EQUALITY = "<equality>"
+SIX_JOINTS = "".join(
+    f'<joint name="{kind}_{axis[0]}{axis[2]}" type="{kind}" axis="{axis}"/>'
+    for kind in ("slide", "hinge")
+    for axis in ("1 0 0", "0 1 0", "0 0 1")
+)
 MJCF_ROWS = (
     read("`<body>`, its `<inertial>`, or what its geoms weigh", "",
          '<geom type="box" size="0.02 0.03 0.1"', '<geom mass="3" type="box" size="0.02 0.03 0.1"',
@@ -134,6 +139,11 @@ MJCF_ROWS = (
             "2 geoms of the world body"),
     ignored("bodies that are free or moved by hand", "reported", WORLD,
             WORLD + f'<body name="held" mocap="true">{BALL}</body>', "held, cube"),
+    ignored("bodies that no actuator moves, where one moves others", "a scene's drawers, reported",
+            "<freejoint/>", SIX_JOINTS + f'<body name="lid"><joint name="lid"/>{BALL}</body>',
+            "left out: cube, lid"),
+    ignored("a mesh that is not there, of a geom that touches nothing", "reported", "</asset>",
+            '<mesh name="look" file="gone.obj"/></asset>', "not drawn: look"),
     ignored("`<option>`, `<visual>`, `<statistic>`", "the scenario's world says them", WORLD,
             '<option gravity="0 0 -1"/>' + WORLD),
     read("`<compiler>`, `<default>`, `<include>`, `<frame>`, `<replicate>`",

@@ -160,16 +160,16 @@ CASES = {
     ],
     "a path outside": [
         (
-            "arm.urdf", SHAPE, SHAPE + MESH.format("/etc/passwd.stl"),
-            "4:267: link 'upper': mesh '/etc/passwd.stl' lies outside",
+            "arm.urdf", SHAPE, SHAPE + TOUCHED.format("/etc/passwd.stl"),
+            "4:270: link 'upper': mesh '/etc/passwd.stl' lies outside",
         ),
         (
-            "arm.urdf", SHAPE, SHAPE + MESH.format("../../a.stl"),
-            "4:267: link 'upper': mesh '../../a.stl' lies outside",
+            "arm.urdf", SHAPE, SHAPE + TOUCHED.format("../../a.stl"),
+            "4:270: link 'upper': mesh '../../a.stl' lies outside",
         ),
         (
-            "arm.xacro", SHAPE, SHAPE + MESH.format("/etc/passwd.stl"),
-            "4:267: link 'upper': mesh '/etc/passwd.stl' lies outside",
+            "arm.xacro", SHAPE, SHAPE + TOUCHED.format("/etc/passwd.stl"),
+            "4:270: link 'upper': mesh '/etc/passwd.stl' lies outside",
         ),
         (
             "arm.xacro", "</robot>", '<xacro:include filename="/etc/passwd"/></robot>',
@@ -285,8 +285,9 @@ def test_all_missing_meshes_are_reported_together(tmp_path, capsys):
 
 
 def test_all_missing_meshes_of_an_mjcf_are_reported_together(tmp_path, capsys):
-    mesh = '<mesh name="t" file="gone.obj"/><mesh name="lost" file="lost.obj"/>'
+    mesh = '<mesh name="tip" file="gone.obj"/><mesh name="lost" file="lost.obj"/>'
     mjcf = re.sub(r"<mesh [^>]*/>", mesh, FILES["arm.xml"], count=1)
+    mjcf = mjcf.replace("<geom", '<geom type="mesh" mesh="lost"/><geom', 1)
     assert main(["check", str(write(tmp_path, "arm.xml", mjcf))]) == 2
     said = capsys.readouterr().out
     assert "'gone.obj' is not there" in said

@@ -227,7 +227,7 @@ def arm_with(folder, shape):
 
 def test_a_missing_visual_mesh_is_a_note(tmp_path):
     visual = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
-    for name in ("gone.stl", "package://gone/a.stl"):
+    for name in ("gone.stl", "package://gone/a.stl", "/etc/outside.stl"):
         [note] = [each for each in arm_with(tmp_path, visual.format(name)).notes if name in each]
         assert note.startswith("link 'upper': the visual is not drawn: ")
     several = "".join(visual.format(f"gone_{number}.stl") for number in range(13))

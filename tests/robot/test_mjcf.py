@@ -1,11 +1,13 @@
 """MJCF robots: the same links, joints and masses as MuJoCo has of the file."""
 
+import re
+
 import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
 
-from harness.core.errors import SpecError
+from harness.core.errors import RobotError, SpecError
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
@@ -82,7 +84,7 @@ def test_limits_efforts_states_and_pairs_are_read(tmp_path):
     assert arm.allowed_collisions["base", "lower"] == "Excluded"
     assert arm.notes[:4] == (
         "body 'upper' has 2 joints: links are put between them",
-        "bodies that are free or outside the arm are left out: cube",
+        "bodies that are free, or that no actuator moves, are left out: cube",
         "3 actuators are not used: the program drives every joint with its own servo",
         "1 geoms of the world body are not part of the robot",
     )
@@ -190,6 +192,51 @@ def test_a_missing_texture_is_not_needed(tmp_path):
     assert (text.count("wood"), text.count('"m"')) == (2, 2)
     write(tmp_path, text)
     assert set(load(tmp_path).joint_names) == set(JOINTS)
+
+
+def test_a_missing_mesh_that_touches_nothing_is_a_note(tmp_path):
+    look = '<geom type="mesh" mesh="look" contype="0" conaffinity="0"/>'
+    assets = '<mesh name="look" file="gone.obj"/><skin name="soft" file="gone.skn"/>'
+    text = MJCF.replace("</asset>", assets + "</asset>").replace('<site name="tcp"', look + "<site")
+    write(tmp_path, text.replace("<site pos", '<site name="tcp" pos'))
+    arm = load(tmp_path)
+    [note] = [note for note in arm.notes if "gone" in note]
+    assert note.startswith("meshes that are not drawn: look; the first: mesh 'gone.obj' is not th")
+    assert len({link.name: link for link in arm.links}["wrist"].visuals) == 1
+
+
+def test_the_last_compiler_says_where_meshes_are_whatever_it_includes(tmp_path):
+    """As MuJoCo has it: the include comes first in the file, and its `meshdir` does not count."""
+    (tmp_path / "more.xml").write_text('<mujoco><compiler meshdir="elsewhere"/></mujoco>')
+    write(tmp_path, MJCF.replace("<compiler", '<include file="more.xml"/><compiler', 1))
+    assert set(load(tmp_path).joint_names) == set(JOINTS)
+
+
+def test_what_no_actuator_moves_is_not_part_of_the_robot(tmp_path):
+    """A scene's drawer, and a slider without a range; a file without actuators keeps them."""
+    drawer = (
+        '<body name="chest" pos="1 1 0"><geom size="0.1"/><body name="drawer"><geom size="0.1"/>'
+        '<joint name="pull" type="slide" range="0 0.3"/></body></body><body name="puck">'
+        '<joint name="push" type="slide"/><geom size="0.02"/></body>'
+    )
+    text = MJCF.replace("</worldbody>", drawer + "</worldbody>")
+    write(tmp_path, text)
+    arm = load(tmp_path)
+    assert set(arm.joint_names) == set(JOINTS)
+    assert any(note.endswith("left out: cube, chest, drawer, puck") for note in arm.notes)
+    passive = re.sub("(?s)<actuator>.*</actuator>", "", text).replace(
+        '"slide"/>', '"slide" range="0 1"/>'
+    )
+    write(tmp_path, passive)
+    assert {"pull", "push"} < set(load(tmp_path).joint_names)
+
+
+def test_a_file_without_joints_is_refused(tmp_path):
+    write(
+        tmp_path, '<mujoco><worldbody><body name="a"><geom size="1"/></body></worldbody></mujoco>'
+    )
+    with pytest.raises(RobotError, match="no group has a joint that moves"):
+        load_robot(RobotSpec(mjcf="arm.xml"), tmp_path)
 
 
 def test_joints_of_a_closed_linkage_follow_its_driven_joint(tmp_path):

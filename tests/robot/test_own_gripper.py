@@ -229,9 +229,18 @@ JAW = PALM.replace(
             "left_joint",
             0.07,
         ),
+        (
+            UNCOUPLED.replace(
+                '<axis xyz="0 -1 0"/><limit lower="0" upper="0.03"',
+                '<axis xyz="0 1 0"/><limit lower="-0.02" upper="0"',
+            ),
+            "left_joint",
+            0.05,
+        ),
+        (UNCOUPLED + LEFT.replace("left", "thumb"), "left_joint", 0.07),
         (JAW, "jaw_joint", 0.065),
     ],
-    ids=["coupled", "alike", "mirrored", "one jaw"],
+    ids=["coupled", "alike", "mirrored", "mirrored, of unlike ranges", "three fingers", "one jaw"],
 )
 def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     write(tmp_path, hand)
@@ -240,6 +249,16 @@ def test_a_gripper_is_found_without_an_srdf(tmp_path, hand, joint, opening):
     assert (arm.gripper.joint, arm.gripper.group) == (joint, "gripper")
     assert arm.gripper.widths[:, 1].max() == pytest.approx(opening, abs=1e-6)
     assert arm.groups["gripper"].joint_names == (joint,)
+
+
+def test_the_last_joint_of_a_robot_that_is_a_finger_is_no_jaw(tmp_path):
+    urdf = URDF
+    for name in ("turn", "bend", "reach"):
+        urdf = urdf.replace(f'name="{name}"', f'name="finger_{name}"')
+    write_arm(tmp_path, urdf)
+    arm = load_arm(tmp_path, srdf=None)
+    assert arm.groups["arm"].joint_names == ("finger_turn", "finger_bend", "finger_reach")
+    assert arm.gripper is None
 
 
 FLAT = (

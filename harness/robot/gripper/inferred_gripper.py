@@ -36,6 +36,9 @@ CLOSED_JAW = 0.01
 WIDE = 0.99
 """Share of the largest gap at which a hand counts as open: a jaw can turn on without opening."""
 
+SHARED_RANGE = 0.5
+"""Share of the larger range of two alike fingers above which they can follow each other."""
+
 MOST_CORNERS = 24
 """Largest number of corners on each side of a plane whose edges across it are cut."""
 
@@ -143,30 +146,45 @@ def is_gripper(urdf: Urdf, joints: tuple[str, ...]) -> bool:
 
 
 def _one_joint(urdf: Urdf, group: PlanningGroup) -> tuple[Urdf, Joint, list[str]]:
-    """The joint that closes the hand; of two equal joints the second mimics the first."""
+    """The joint that closes the hand; of alike joints the others mimic the first."""
     joints = {joint.name: joint for joint in urdf.joints}
-    driven = [joints[name] for name in group.joint_names]
-    if len(driven) == 1:
-        return urdf, driven[0], []
-    if len(driven) == 2:
-        first, second = driven
-        multiplier = _mirrored(first, second)
-        if multiplier:
-            follower = replace(second, mimic=Mimic(first.name, multiplier))
-            changed = tuple(follower if j.name == second.name else j for j in urdf.joints)
-            note = f"gripper '{group.name}': {second.name} is made to follow {first.name}"
-            return replace(urdf, joints=changed), first, [note]
-    names = ", ".join(group.joint_names) or "none"
-    raise NoGripperError(f"a gripper has one driven joint, and the group has {names}")
+    changed: dict[str, Joint] = {}
+    for name in group.joint_names[1:]:
+        first, other = joints[group.joint_names[0]], joints[name]
+        multiplier, lower, upper = _mirrored(first, other)
+        if not multiplier:
+            names = ", ".join(group.joint_names)
+            raise NoGripperError(f"a gripper has one driven joint, and the group has {names}")
+        joints[first.name] = changed[first.name] = replace(first, lower=lower, upper=upper)
+        changed[name] = replace(other, mimic=Mimic(first.name, multiplier))
+    if not group.joint_names:
+        raise NoGripperError("a gripper has one driven joint, and the group has none")
+    leader = joints[group.joint_names[0]]
+    if not changed:
+        return urdf, leader, []
+    coupled = tuple(changed.get(joint.name, joint) for joint in urdf.joints)
+    followers = ", ".join(group.joint_names[1:])
+    verb = "is" if len(changed) == 2 else "are"
+    note = f"gripper '{group.name}': {followers} {verb} made to follow {leader.name}"
+    return replace(urdf, joints=coupled), leader, [note]
 
 
-def _mirrored(first: Joint, second: Joint) -> float:
-    """How two alike fingers follow each other: 1 for equal limits, -1 for opposite ones, else 0."""
+def _mirrored(first: Joint, second: Joint) -> tuple[float, float, float]:
+    """How two alike fingers follow each other, 1 or -1, and the limits of both; 0 if they do not.
+
+    They turn or slide on the same link, and share most of their ranges.
+    """
     if first.kind != second.kind or first.parent != second.parent:
-        return 0.0
-    if (first.lower, first.upper) == (second.lower, second.upper):
-        return 1.0
-    return -1.0 if (first.lower, first.upper) == (-second.upper, -second.lower) else 0.0
+        return 0.0, 0.0, 0.0
+    best = 0.0, 0.0, 0.0
+    for multiplier in (1.0, -1.0):
+        ends = sorted((multiplier * second.lower, multiplier * second.upper))
+        lower, upper = max(first.lower, ends[0]), min(first.upper, ends[1])
+        largest = max(first.upper - first.lower, ends[1] - ends[0])
+        shared = upper - lower
+        if shared > best[2] - best[1] and shared >= SHARED_RANGE * largest:
+            best = multiplier, lower, upper
+    return best
 
 
 def _fingers(urdf: Urdf, joint: Joint) -> list[tuple[Joint, tuple[str, ...]]]:

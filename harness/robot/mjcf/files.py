@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from harness.core.errors import collected
+from harness.core.errors import SpecError
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.robot.mesh_file import LARGEST_FILE
 from harness.robot.packages import NotFoundError, PackagePath
 
 DEEPEST_INCLUDE = 20
 MOST_FILES = 200
-ASSETS = ("mesh", "hfield", "skin")
+ASSETS = ("mesh", "hfield")
 
 USER_DATA = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
 MOST: Mapping[str, Mapping[str, int]] = {
@@ -45,9 +45,8 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
     """The root elements of a file and of its includes, each once, the file's own first.
 
     Raises:
-        SpecError: A file cannot be read, includes itself, is not MJCF, refers to a file that does
-            not exist (but a texture) or may not be read, or needs too much memory; at line and
-            column.
+        SpecError: A file cannot be read, includes itself, is not MJCF, or needs too much memory;
+            at line and column.
     """
     roots: list[XmlElement] = []
     _include(path, packages, (), roots)
@@ -56,11 +55,28 @@ def read_tree(path: Path, packages: PackagePath) -> list[XmlElement]:
         hint = "name the file that includes this one" if top.tag == "mujocoinclude" else ""
         top.refuse(f"the root element is <{top.tag}>, an MJCF's is <mujoco>", hint)
     _refuse_unbounded(roots)
-    folder = _mesh_folder(roots, path.parent)
-    files = (item for root in roots for item in root.walk() if item.get("file"))
-    assets = (item for item in files if item.tag in ASSETS)
-    collected(lambda item: _check(item, "file", folder, packages), assets)
     return roots
+
+
+def missing_meshes(
+    roots: Sequence[XmlElement], folder: Path, packages: PackagePath
+) -> dict[str, SpecError]:
+    """Why meshes cannot be read, by their names: their file is not there, too large or outside.
+
+    Raises:
+        SpecError: A height field cannot be read; at its file.
+    """
+    found: dict[str, SpecError] = {}
+    for item in (item for root in roots for item in root.walk()):
+        if item.tag not in ASSETS or not item.get("file"):
+            continue
+        try:
+            _check(item, "file", folder, packages)
+        except SpecError as error:
+            if item.tag != "mesh":
+                raise
+            found[item.get("name") or Path(item.get("file")).stem] = error
+    return found
 
 
 def _include(
@@ -87,15 +103,6 @@ def _include(
         if len(roots) >= MOST_FILES:
             item.refuse(f"more than {MOST_FILES} files are included", at="file")
         _include(inside, packages, files, roots)
-
-
-def _mesh_folder(roots: list[XmlElement], folder: Path) -> Path:
-    """The folder of meshes, by the compiler's attribute."""
-    found = folder
-    for compiler in (item for root in roots for item in root.findall("compiler")):
-        name = compiler.get("meshdir") or compiler.get("assetdir")
-        found = folder / name if name else found
-    return found
 
 
 def _check(item: XmlElement, key: str, folder: Path, packages: PackagePath) -> None:

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Link, NamedState
-from harness.robot.mjcf.files import read_tree
+from harness.robot.mjcf.files import missing_meshes, read_tree
 from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, pulled_pairs, with_mimics
 from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
@@ -64,27 +64,47 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
         for kind in (("link",) if item.tag == "body" else ("joint",) if item.tag == "joint" else ())
         if item.get("name")
     }
+    notes: list[str] = []
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        _remove_textures(spec)
+        _remove_looks(spec)
+        folder = path.parent / (spec.meshdir or "")
+        _remove_missing(spec, missing_meshes(roots, folder, packages), notes)
         model = spec.compile()
     except ValueError as error:
         raise SpecError([_problem(str(error), roots[0], path)]) from error
-    reader = _Reader(model, spec, path.parent, elements)
+    reader = _Reader(model, spec, path.parent, elements, notes)
     links, joints = reader.tree()
     ordered = in_tree_order(links, joints, str(path), elements)
     name = model.names.split(b"\0")[0].decode()
     name = "" if name == UNNAMED else name
     urdf = Urdf(name, *ordered, tuple(reader.notes), elements)
-    return Mjcf(urdf, reader.states(), reader.excluded())
+    return Mjcf(urdf, reader.states({joint.name for joint in joints}), reader.excluded())
 
 
-def _remove_textures(spec: Any) -> None:
-    """Remove all textures: pictures show plain colours, and files may be missing."""
+def _remove_looks(spec: Any) -> None:
+    """Remove all textures and skins: pictures show plain colours, and files may be missing."""
     for material in spec.materials:
         material.textures = [""] * len(material.textures)
-    for texture in list(spec.textures):
-        spec.delete(texture)
+    for look in [*spec.textures, *spec.skins]:
+        spec.delete(look)
+
+
+def _remove_missing(spec: Any, missing: Mapping[str, SpecError], notes: list[str]) -> None:
+    """Remove meshes that cannot be read and the geoms that show them.
+
+    Raises:
+        SpecError: A geom that touches has such a mesh.
+    """
+    touching = {geom.meshname for geom in spec.geoms if geom.contype or geom.conaffinity}
+    if wrong := [missing[name] for name in missing if name in touching]:
+        raise SpecError([problem for error in wrong for problem in error.problems])
+    shown = [geom for geom in spec.geoms if geom.meshname in missing]
+    for unread in (*shown, *(mesh for mesh in spec.meshes if mesh.name in missing)):
+        spec.delete(unread)
+    if missing:
+        reason = next(iter(missing.values())).problems[0].message
+        notes.append(f"meshes that are not drawn: {', '.join(missing)}; the first: {reason}")
 
 
 def _problem(message: str, root: XmlElement, path: Path) -> Problem:
@@ -116,11 +136,17 @@ class _Reader:
         links, joints = [Link(ROOT, None)], list[Joint]()
         names = {0: ROOT}
         dropped: list[str] = []
+        passive = _passive_trees(model)
         for body in range(1, model.nbody):
             name = model.body(body).name or f"body_{body}"
             parent = int(model.body_parentid[body])
             is_mocap = model.body_mocapid[body] >= 0
-            if parent not in names or self._is_free(body) or (is_mocap and not self._carries(body)):
+            if (
+                parent not in names
+                or body in passive
+                or self._is_free(body)
+                or (is_mocap and not self._carries(body))
+            ):
                 dropped.append(name)
                 continue
             if is_mocap:
@@ -135,7 +161,9 @@ class _Reader:
             joints += chain
         if dropped:
             names_out = ", ".join(dropped)
-            self.notes.append(f"bodies that are free or outside the arm are left out: {names_out}")
+            self.notes.append(
+                f"bodies that are free, or that no actuator moves, are left out: {names_out}"
+            )
         self._sites(names, links, joints)
         self._count_ignored()
         return links, with_mimics(model, joints, self.notes)
@@ -175,18 +203,16 @@ class _Reader:
             if count:
                 self.notes.append(f"{count} {what}")
 
-    def states(self) -> tuple[NamedState, ...]:
-        """Keyframes as joint positions by name."""
+    def states(self, joints: Container[str]) -> tuple[NamedState, ...]:
+        """Keyframes as positions of the robot's joints by name."""
         model = self.model
-        hinges = [j for j in range(model.njnt) if int(model.jnt_type[j]) in (2, 3)]
+        names = {j: model.joint(j).name or f"joint_{j}" for j in range(model.njnt)}
+        at = {name: int(model.jnt_qposadr[j]) for j, name in names.items() if name in joints}
         return tuple(
             NamedState(
                 model.key(number).name or f"key_{number}",
                 "",
-                {
-                    model.joint(j).name: float(model.key_qpos[number][model.jnt_qposadr[j]])
-                    for j in hinges
-                },
+                {name: float(model.key_qpos[number][place]) for name, place in at.items()},
             )
             for number in range(model.nkey)
         )
@@ -202,7 +228,26 @@ class _Reader:
         return pairs
 
 
+def _passive_trees(model: Any) -> set[int]:
+    """Bodies on the world whose joints no actuator moves, in a file where actuators move others.
+
+    They are a scene's drawers, doors and sliding objects.
+    """
+    import mujoco
+
+    data = mujoco.MjData(model)
+    for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_transmission):
+        stage(model, data)
+    first, count = data.moment_rowadr, data.moment_rownnz
+    moved = [data.moment_colind[first[k] : first[k] + count[k]] for k in range(model.nu)]
+    trees = model.body_rootid[model.dof_bodyid]
+    driven = {int(trees[dof]) for dofs in moved for dof in dofs}
+    return {int(tree) for tree in trees} - driven if driven else set()
+
+
 def _with_own_dynamics(model: Any) -> int:
     """Number of joints with an armature or a spring."""
+    if not model.njnt:
+        return 0
     springs = np.reshape(model.jnt_stiffness, (model.njnt, -1)).any(axis=1)
     return int((springs | (model.dof_armature[model.jnt_dofadr] > 0)).sum())

@@ -71,8 +71,8 @@ def _without_fingers(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:
         end = number
     movable = [number for number in range(end) if chain[number].is_movable]
     if len(movable) > LEAST_ARM:
-        last = chain[movable[-1]]
-        if _is_jaw(last, urdf) or _is_next_to_fingers(last, inside, urdf):
+        before, last = (chain[number] for number in movable[-2:])
+        if _is_jaw(last, before, urdf) or _is_next_to_fingers(last, inside, urdf):
             end = movable[-1]
     return chain[:end]
 
@@ -92,15 +92,18 @@ def _is_next_to_fingers(joint: Joint, chain: set[str], urdf: Urdf) -> bool:
     )
 
 
-def _is_jaw(joint: Joint, urdf: Urdf) -> bool:
-    """Whether a chain's last joint is a jaw that closes on the link that carries it."""
+def _is_jaw(joint: Joint, before: Joint, urdf: Urdf) -> bool:
+    """Whether a chain's last joint is a jaw that closes on the link that carries it.
+
+    Where the joint before it has such a name too, the robot is a finger.
+    """
     carrier = carriers(urdf.joints, urdf.root)
     carried = [each for each in urdf.joints if carrier[each.parent] == carrier[joint.child]]
     if any(each.is_movable for each in carried):
         return False
     names = f"{joint.name} {joint.child}"
     if FINGER_NAMES.search(names):
-        return True
+        return not FINGER_NAMES.search(f"{before.name} {before.child}")
     if "grip" not in names.lower():
         return False
     return HAND_NAMES.search(joint.parent) is not None or is_gripper(urdf, (joint.name,))

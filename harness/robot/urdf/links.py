@@ -15,7 +15,7 @@ from harness.core.solids import TRIANGLE_SLACK
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import KINDS, SUFFIXES, decomposition_of
-from harness.robot.packages import NotFoundError, OutsideError, PackagePath
+from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.urdf.values import number, pose, positive, rgba, three
 
 DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
@@ -178,7 +178,7 @@ class LinkReader:
         try:
             path = self.packages.file(name, self.folder)
         except NotFoundError as error:
-            if is_visual and not isinstance(error, OutsideError):
+            if is_visual:
                 self.undrawn.append((link, str(error)))
                 return None
             item.refuse(f"link '{link}': mesh {error}", at="filename")

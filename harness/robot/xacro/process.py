@@ -51,14 +51,6 @@ class RefusedError(Exception):
     """A file uses a feature that no robot description needs."""
 
 
-def outside(name: str, packages: PackagePath) -> str:
-    """The message for a file that may not be read."""
-    return (
-        f"'{name}' lies outside the robot's folder {packages.home} and the given ones; "
-        "add its folder to `packages`"
-    )
-
-
 class Guard:
     """Refuses forbidden actions for the rest of the process."""
 
@@ -92,7 +84,7 @@ class Guard:
         finally:
             self.is_on = True
         if not is_fine:
-            self._refuse(outside(os.fsdecode(path), self._packages))
+            self._refuse(self._packages.outside(os.fsdecode(path), name))
 
     def _refuse(self, message: str) -> NoReturn:
         self.complaint = self.complaint or message
@@ -216,7 +208,8 @@ class _Reader:
             raise RefusedError(missing_package)
         if not self._packages.may_read(Path(filename)):
             xacro.filestack.pop()
-            raise RefusedError(outside(filename, self._packages))
+            path = Path(filename).resolve()
+            raise RefusedError(self._packages.outside(filename, path))
         if not Path(filename).is_file():
             xacro.filestack.pop()
             missing = FileNotFoundError(f"there is no file '{filename}'")
