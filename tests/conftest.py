@@ -1,5 +1,6 @@
 """Fixtures and plugins for every test."""
 
+import os
 import signal
 
 import pytest
@@ -17,3 +18,8 @@ def _signals_of_a_terminal():
     for number in (signal.SIGINT, signal.SIGHUP):
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, signal.default_int_handler)
+
+
+def pytest_xdist_auto_num_workers() -> int:
+    """One worker more than processors: tests wait for browsers, timeouts and live robots."""
+    return (os.cpu_count() or 1) + 1

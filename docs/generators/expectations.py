@@ -58,7 +58,7 @@ or what a formula awaits, holds at the first sample of its window; `placed`, `re
 at the end, where the robot never touched the object and it moved by no more than 5 mm (for \
 `placed` in the world, in the frame of `pose`, or on what carries it), or was in the container \
 since the run began |
-| premise never held | the left side of an `implies` holds at no sample of the window |
+| premise never held | P of `P implies Q`, or of `not P or Q`, holds at no sample of the window |
 | hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples \
 at most, as an object that the next step adds, over a step that takes no time, or of fewer than \
 three pictures of more than 0.2 s |

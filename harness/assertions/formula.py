@@ -42,7 +42,7 @@ from harness.language.formula.formula import (
     Signal,
     Temporal,
     comparisons_of,
-    implications_of,
+    premises_of,
     signals_of,
     text_of,
 )
@@ -283,7 +283,7 @@ class Evaluation:
         unknown = np.zeros(len(self.times), dtype=bool)
         for node in signals_of(root):
             unknown |= np.isnan(values_of(node, self.window).values)
-        premises = [self._times_true(node.operands[0]) for node in implications_of(root)]
+        premises = [self._times_true(premise) for premise in premises_of(root)]
         known = int((~unknown).sum())
         return Observed(known, int(unknown.sum()), premises=min(premises, default=None))
 
@@ -292,11 +292,10 @@ class Evaluation:
         found = [
             VerdictWarning(
                 "premise never held",
-                f"at none of {len(self.times)} samples did what stands before `implies` hold:"
-                f" {text_of(node.operands[0])}",
+                f"at none of {len(self.times)} samples did its premise hold: {text_of(premise)}",
             )
-            for node in implications_of(root)
-            if not self._times_true(node.operands[0])
+            for premise in premises_of(root)
+            if not self._times_true(premise)
         ]
         inner = _awaited(root)
         if inner is not None and self.bounds(inner).low[0] > 0:

@@ -14,7 +14,7 @@ from harness.assertions.contacts import (
 )
 from harness.assertions.facts import fact
 from harness.assertions.poses import object_poses
-from harness.assertions.temporal import TIME_RESOLUTION, bridged, episodes
+from harness.assertions.temporal import bridged, episodes, first_within
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, object_record
 from harness.core.antipodal import (
@@ -98,6 +98,7 @@ def why_not_between(run: Run, name: str, sample: int) -> str:
     return f"they press it at places {apart} apart, and it is {thickness} thick"
 
 
+@fact
 def _side_presses(run: Run, name: str) -> list[FloatArray]:
     """Contact point and force of each side over the last `DEBOUNCE` seconds, (N, 6) each.
 
@@ -125,7 +126,7 @@ def _side_presses(run: Run, name: str) -> list[FloatArray]:
 def recent_mean(run: Run, rows: FloatArray, span: float) -> FloatArray:
     """Mean over the samples of the last `span` seconds, itself included, shape (N, k)."""
     times = run.signals.times
-    first = np.searchsorted(times, times - span - TIME_RESOLUTION)
+    first = first_within(times, span)
     summed = np.concatenate([np.zeros((1, rows.shape[1])), np.cumsum(rows, axis=0)])
     counts = np.arange(1, len(times) + 1) - first
     return (summed[1:] - summed[first]) / counts[:, None]
@@ -198,8 +199,7 @@ def held_for(run: Run, held: BoolArray) -> FloatArray:
 
 def moves_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """How far an object moved [m] and turned [rad] in the hand within `HOLD_TIME`, (N,) each."""
-    times = run.signals.times
-    return moved_since(run, name, np.searchsorted(times, times - HOLD_TIME - TIME_RESOLUTION))
+    return moved_since(run, name, first_within(run.signals.times, HOLD_TIME))
 
 
 def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, FloatArray]:
@@ -213,16 +213,23 @@ def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, Floa
         name: The name of the object.
         before: The earlier sample of each sample, shape (N,).
     """
-    poses, point = object_poses(run, name), np.zeros(3)
-    if sides := _side_presses(run, name):
-        pressed = np.all([side[:, 3:].any(axis=1) for side in sides], axis=0)
-        offset = np.mean([side[:, :3] for side in sides], axis=0) - poses[:, :3]
-        point = np.where(pressed[:, None], rotate(conjugate(poses[:, 3:]), offset), 0.0)[before]
-    now = relative(run.signals.tcp_pose, poses)
-    then = now[before]
+    now, points = _poses_in_hand(run, name)
+    then, point = now[before], points[before]
     way = now[:, :3] + rotate(now[:, 3:], point) - then[:, :3] - rotate(then[:, 3:], point)
     turned = rotation_angle(quat_product(conjugate(then[:, 3:]), now[:, 3:]))
     return np.linalg.norm(way, axis=1), turned
+
+
+@fact
+def _poses_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
+    """T_tcp_object, shape (N, 7), and the object's point between the fingers, its axes, (N, 3)."""
+    poses = object_poses(run, name)
+    points = np.zeros((len(poses), 3))
+    if sides := _side_presses(run, name):
+        pressed = np.all([side[:, 3:].any(axis=1) for side in sides], axis=0)
+        offset = np.mean([side[:, :3] for side in sides], axis=0) - poses[:, :3]
+        points = np.where(pressed[:, None], rotate(conjugate(poses[:, 3:]), offset), 0.0)
+    return relative(run.signals.tcp_pose, poses), points
 
 
 def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.assertions.facts import of_times
 from harness.core.types import BoolArray, FloatArray, IntArray
 
 TIME_RESOLUTION = 1e-9
@@ -68,10 +69,21 @@ def range_min(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray
     return result
 
 
+@of_times
+def first_within(times: FloatArray, span: float) -> IntArray:
+    """The first of the samples of the last `span` seconds at each sample, itself included."""
+    return np.searchsorted(times, times - span - TIME_RESOLUTION)
+
+
+@of_times
+def last_within(times: FloatArray, span: float) -> IntArray:
+    """The last of the samples of the next `span` seconds at each sample, itself included."""
+    return np.searchsorted(times, times + span + TIME_RESOLUTION, side="right") - 1
+
+
 def trailing_max(values: FloatArray, times: FloatArray, span: float) -> FloatArray:
     """Largest value of the last `span` seconds at each sample, itself included."""
-    first = np.searchsorted(times, times - span - TIME_RESOLUTION)
-    return -range_min(-values, first, np.arange(len(times)))
+    return -range_min(-values, first_within(times, span), np.arange(len(times)))
 
 
 def without_gaps(values: FloatArray, times: FloatArray, span: float) -> FloatArray:
@@ -80,7 +92,7 @@ def without_gaps(values: FloatArray, times: FloatArray, span: float) -> FloatArr
     No value becomes smaller, and nothing lasts longer at its ends. What is not known stays so.
     """
     known, here = np.nan_to_num(values), np.arange(len(times))
-    last = np.searchsorted(times, times + span + TIME_RESOLUTION, side="right") - 1
+    last = last_within(times, span)
     lasting = range_min(trailing_max(known, times, span), here, last)
     to_come = -range_min(-known, here, last)
     return np.where(np.isnan(values), np.nan, np.minimum(lasting, to_come))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -57,6 +58,7 @@ def bridge_request(
         seed=arguments.seed,
         report_dir=folder,
         page=not arguments.no_page,
+        nodes=named_commands(arguments.nodes),
     )
     loaded = read_scenario(file, request.overrides, request.seed).loaded
     if loaded is not None and not any(isinstance(s, External) for s in loaded.scenario.steps):
@@ -72,7 +74,6 @@ def bridge_request(
         domain=domain,
         is_local=not arguments.network,
         adapter=arguments.adapter,
-        nodes=named_commands(arguments.nodes),
         factor=arguments.pace,
         say=note,
     )
@@ -80,8 +81,6 @@ def bridge_request(
 
 def run(arguments: argparse.Namespace) -> int:
     """Serve a scenario's cell until its steps have ended."""
-    from dataclasses import replace
-
     from harness.ros.bridge import run_bridge
     from harness.ros.domain import domain_of_user
 
@@ -91,7 +90,18 @@ def run(arguments: argparse.Namespace) -> int:
         complain("note: --duration ends no step `external`; each ends with its own `timeout`")
     where = "this machine" if request.is_local else "the network"
     complain(f"serving {request.run.file} in ROS domain {domain} on {where}; Ctrl-C ends it")
-    result = run_bridge(replace(request, is_interactive=True))
+    before = signal.getsignal(signal.SIGINT)
+
+    def end(*_: object) -> None:
+        """End the session at the first Ctrl-C, and the command at the second."""
+        request.stop.set()
+        signal.signal(signal.SIGINT, before)
+
+    signal.signal(signal.SIGINT, end)
+    try:
+        result = run_bridge(request)
+    finally:
+        signal.signal(signal.SIGINT, before)
     show_case(result.case, request.run)
     show_remarks(result)
     return EXIT_CODES[result.case.outcome]
@@ -120,5 +130,5 @@ def show_case(case: CaseResult, request: RunRequest) -> None:
     say(case_line(case, style))
     if case.outcome != "passed":
         say_text(failure(case, style, source=source_lines(request.file)))
-    if case.report_dir:
+    elif case.report_dir:
         say(f"report: {report_link(case, style)}")

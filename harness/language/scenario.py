@@ -17,6 +17,7 @@ from harness.language.base import (
     JointVelocity,
     Name,
     Number,
+    RosName,
     SpecModel,
     kind_of,
 )
@@ -187,12 +188,18 @@ class RobotSpec(SpecModel):
 class Ros2Names(SpecModel):
     """Names on the ROS 2 graph, where they differ from the robot's own."""
 
-    arm_controllers: tuple[Name, ...] | None = Field(
+    arm_controllers: tuple[RosName, ...] | None = Field(
         default=None, description="The arm's trajectory controller; each name leads to the same."
     )
-    gripper_controller: Name | None = Field(
+    gripper_controller: RosName | None = Field(
         default=None, description="The gripper's controller, of GripperCommand and trajectories."
     )
+
+    @model_validator(mode="after")
+    def _names_apart(self) -> Ros2Names:
+        if self.gripper_controller in (self.arm_controllers or ()):
+            raise ValueError("the controllers of arm and gripper need different names")
+        return self
 
 
 class WorldChoice(SpecModel):

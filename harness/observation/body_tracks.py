@@ -12,6 +12,7 @@ import coal
 import numpy as np
 
 from harness.core.geometry import Shape
+from harness.core.pose_arrays import times_each
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.motion import Motion
@@ -79,7 +80,8 @@ def carried_track(link: BodyTrack, pose_in_link: Sequence[float]) -> BodyTrack:
     """Track of something fixed to a link at T_link_object (xyz, quat wxyz)."""
     offset = np.asarray(pose_in_link, dtype=float)
     rotation = rotation_from_quat_wxyz(offset[3:])
-    return BodyTrack(link.rotations @ rotation, link.translations + link.rotations @ offset[:3])
+    shift = times_each(link.rotations, offset[:3])
+    return BodyTrack(times_each(link.rotations, rotation), link.translations + shift)
 
 
 def object_track(
@@ -182,8 +184,7 @@ def relative_track(first: BodyTrack, second: BodyTrack) -> BodyTrack:
 def centers_of(seen: BodyTrack, shapes: Sequence[TrackedShape]) -> FloatArray:
     """The centres of the balls about shapes of a body along its track [m], shape (N, 3, shapes)."""
     centers = np.column_stack([shape.center for shape in shapes])
-    turned = seen.rotations.reshape(-1, 3) @ centers  # many times faster than one by one
-    return seen.translations[:, :, None] + turned.reshape(len(seen.rotations), 3, -1)
+    return seen.translations[:, :, None] + times_each(seen.rotations, centers)
 
 
 def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArray:
@@ -243,7 +244,7 @@ class MovingBody:
         radius = (np.linalg.norm(centers - middle, axis=1) + self.radii[is_finite]).max(initial=0.0)
         if not is_finite.all():
             radius = np.inf
-        path = self.track.translations + self.track.rotations @ middle
+        path = self.track.translations + times_each(self.track.rotations, middle)
         turns = self.track.turns
         turned = np.multiply(turns, radius, out=np.zeros_like(turns), where=turns > 0)
         moved = np.linalg.norm(np.diff(path, axis=0), axis=1) + turned

@@ -162,6 +162,9 @@ class CoalClearance:
         only: Collection[Pair] | None = None,
     ) -> MeasuredClearance:
         """Distances at every given sample; None measures all pairs."""
+        is_of_robot = only is None or any(ROBOT in pair for pair in only)
+        if not (is_of_robot or any(_during(each, motion).any() for each in attachments)):
+            return MeasuredClearance(len(motion.times), only=only)
         links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
             record.name: object_track(record, attachments, motion, links) for record in objects

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import attrgetter
 
 import coal
 import numpy as np
@@ -23,6 +25,9 @@ from harness.observation.body_tracks import (
 
 STILL = 1e-6
 """Relative travel below which a distance is not measured again [m]."""
+
+COAL_TOLERANCE = 1e-6
+"""How far a measured distance may be above a bound of it [m]."""
 
 BLOCK = 64
 """Samples for which the pairs that may be the nearest are chosen at once."""
@@ -42,6 +47,7 @@ class ShapePair:
         travel: What `travels` says of `first`, shape (N,).
         least: A lower bound of the distance [m], shape (N,): the gap between the ball about `first`
             and the box about `second` at an earlier sample, less the travel since.
+        lowest: The smallest of these [m].
     """
 
     first: TrackedShape
@@ -49,6 +55,7 @@ class ShapePair:
     seen: BodyTrack
     travel: FloatArray
     least: FloatArray
+    lowest: float
 
     def distance(self, sample: int) -> float:
         """Signed distance at a sample [m]."""
@@ -111,12 +118,15 @@ def _pairs_of(
     seen = relative_track(first.track, second.track)
     travelled = travels(seen, centers_of(seen, first.shapes), first.radii)
     since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
+    since += first.radii
+    ends = np.concatenate([since[LOOKS - 1 :: LOOKS], since[-1:]])[: gaps.shape[1]]
+    lowest = (gaps - ends).min(axis=1)  # each bound is lowest just before the next look
     margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
-    least = np.repeat(gaps, LOOKS, axis=1)[:, : len(travelled)] - (since + first.radii)
-    is_near = least.min(axis=1) - margin < cutoff
+    which, other = np.nonzero((lowest - margin < cutoff).T)
+    least = np.repeat(gaps[other, :, which], LOOKS, axis=1)[:, : len(travelled)] - since.T[which]
     return [
-        ShapePair(first.shapes[i], second.shapes[j], seen, travelled[:, i], least[j, :, i])
-        for i, j in np.argwhere(is_near.T).tolist()
+        ShapePair(first.shapes[i], second.shapes[j], seen, travelled[:, i], bound, lowest[j, i])
+        for i, j, bound in zip(which.tolist(), other.tolist(), least, strict=True)
     ]
 
 
@@ -127,10 +137,12 @@ def largest_travel(pairs: Sequence[ShapePair], cutoff: float, count: int) -> Flo
     apart and move by s against each other are at least (d1 + d2 - s) / 2 apart.
     """
     moved = np.zeros(count)
-    for pair in pairs:
-        steps = np.diff(pair.travel)
-        is_near = pair.least[1:] + pair.least[:-1] - steps < 2 * cutoff
-        moved[1:] = np.maximum(moved[1:], np.where(is_near, steps, 0.0))
+    for _, group in groupby(pairs, key=attrgetter("seen")):
+        together = list(group)
+        least = np.array([pair.least for pair in together])
+        steps = np.diff([pair.travel for pair in together])
+        is_near = least[:, 1:] + least[:, :-1] - steps < 2 * cutoff
+        np.maximum(moved[1:], np.where(is_near, steps, 0.0).max(axis=0), out=moved[1:])
     return moved
 
 
@@ -153,12 +165,10 @@ def smallest_distances(
     """
     nearest = np.full(count, cutoff)
     which = np.full(count, -1, dtype=np.int64)
-    first = np.array([pair.distance(0) for pair in pairs])
-    total = np.array([pair.travel[-1] for pair in pairs])
-    near = np.flatnonzero(first - total < cutoff)
+    near = np.flatnonzero([pair.lowest - COAL_TOLERANCE < cutoff for pair in pairs])
     if not len(near):
         return nearest, which
-    search = _Search([pairs[index] for index in near.tolist()], first[near], cutoff)
+    search = _Search([pairs[index] for index in near.tolist()], cutoff)
     sample, best = 0, -1
     while sample < count:
         nearest[sample], best = search.smallest_at(sample, best)
@@ -177,13 +187,14 @@ def smallest_distances(
 class _Search:
     """What is known of the distances of some pairs while the samples pass."""
 
-    def __init__(self, pairs: Sequence[ShapePair], first: FloatArray, cutoff: float) -> None:
+    def __init__(self, pairs: Sequence[ShapePair], cutoff: float) -> None:
         self._pairs = pairs
         self._cutoff = cutoff
         self._travelled = np.column_stack([pair.travel for pair in pairs])  # (N, K)
-        self._known: list[float] = first.tolist()  # the distance last measured
-        self._since = [0.0] * len(pairs)  # and the travel then
-        self._key = first.copy()  # their sum: the lower bound at j is key - travelled[j]
+        self._least = np.column_stack([pair.least for pair in pairs]) - COAL_TOLERANCE
+        self._known = [-np.inf] * len(pairs)  # the distance last measured
+        self._since = [-np.inf] * len(pairs)  # and the travel then
+        self._key = np.full(len(pairs), -np.inf)  # their sum; the bound at j is key - travelled[j]
 
     def smallest_at(self, sample: int, previous: int) -> tuple[float, int]:
         """The smallest distance at a sample, and its pair; -1 where none is below the cutoff.
@@ -196,7 +207,7 @@ class _Search:
         smallest, best = self._cutoff, -1
         if previous >= 0 and self._measured(previous, sample) < smallest:
             smallest, best = self._known[previous], previous
-        bound = self._key - travelled
+        bound = np.maximum(self._key - travelled, self._least[sample])
         rivals = (bound < smallest).nonzero()[0]
         bounds = bound[rivals]
         order = bounds.argsort(kind="stable")
@@ -231,7 +242,8 @@ class _Search:
         if best >= 0:
             of_best = block[:, best] + (self._known[best] - self._since[best])
             np.minimum(largest, of_best, out=largest)
-        is_rival = self._key - block < largest[:, None]
+        least = self._least[sample : sample + BLOCK]
+        is_rival = np.maximum(self._key - block, least) < largest[:, None]
         if best >= 0:
             is_rival[:, best] = False
         if not len(block):

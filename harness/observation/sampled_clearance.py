@@ -125,7 +125,7 @@ def parts_of(samples: IntArray, dips: FloatArray) -> tuple[IntArray, FloatArray]
 def between(samples: IntArray, distances: FloatArray, count: int) -> FloatArray:
     """Distances at all samples, linear between measured ones; NaN next to a missing one."""
     everywhere = np.arange(count)
-    after = np.clip(np.searchsorted(samples, everywhere), 0, len(samples) - 1)
+    after = np.clip(_count_below(samples, count), 0, len(samples) - 1)
     before = np.where(samples[after] == everywhere, after, np.maximum(after - 1, 0))
     missing: BoolArray = np.isnan(distances[before]) | np.isnan(distances[after])
     known = np.flatnonzero(~np.isnan(distances))
@@ -140,8 +140,15 @@ def nearest_measured(
     samples: IntArray, links: IntArray, distances: FloatArray, cutoff: float
 ) -> IntArray:
     """The link found at the measured sample before each sample, or after it; -1 at the cutoff."""
-    everywhere = np.arange(len(distances))
-    before = links[np.maximum(np.searchsorted(samples, everywhere, side="right") - 1, 0)]
-    after = links[np.clip(np.searchsorted(samples, everywhere), 0, len(samples) - 1)]
+    below = _count_below(samples, len(distances) + 1)
+    before = links[np.maximum(below[1:] - 1, 0)]
+    after = links[np.clip(below[:-1], 0, len(samples) - 1)]
     found = np.where(before >= 0, before, after)
     return np.where(distances < cutoff, found, -1)
+
+
+def _count_below(samples: IntArray, count: int) -> IntArray:
+    """How many of some samples come before each of the first `count`, shape (count,)."""
+    below = np.zeros(count + 1, dtype=np.int64)
+    below[samples + 1] = 1
+    return np.cumsum(below)[:count]

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import wraps
-from typing import Generic, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
-from harness.core.details import Details
-from harness.core.errors import ErrorCode, PlanningFailed
+from harness.core.errors import PlanningFailed
 from harness.core.sharing import shared
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionRequest
@@ -24,23 +22,8 @@ P = TypeVar("P", bound=_Planner)
 Method = Callable[[P, MotionRequest], R]
 
 
-@dataclass(frozen=True)
-class _Refusal:
-    """A failure of the planner, which is as much a result as a plan."""
-
-    code: ErrorCode
-    message: str
-    details: Details
-
-
-@dataclass(frozen=True)
-class _Answer(Generic[R]):
-    result: R | None
-    refusal: _Refusal | None = None
-
-
 def sharing_plans(kind: str) -> Callable[[Method[P, R]], Method[P, R]]:
-    """Let cases share the results of a planner's method.
+    """Let cases share the results of a planner's method, of which a failure is one.
 
     Args:
         kind: What the results are called in the record of a case.
@@ -49,29 +32,17 @@ def sharing_plans(kind: str) -> Callable[[Method[P, R]], Method[P, R]]:
     def decorated(method: Method[P, R]) -> Method[P, R]:
         @wraps(method)
         def planning(self: P, request: MotionRequest) -> R:
-            answer = shared(
-                kind,
-                lambda: (method.__qualname__, self.scene.key, request),
-                lambda: _answer(method, self, request),
-            )
-            if answer.refusal is not None:
-                raise _failure(answer.refusal)
-            assert answer.result is not None
-            return answer.result
+            def result() -> R | PlanningFailed:
+                try:
+                    return method(self, request)
+                except PlanningFailed as failure:
+                    return failure
+
+            found = shared(kind, lambda: (method.__qualname__, self.scene.key, request), result)
+            if isinstance(found, PlanningFailed):
+                raise found
+            return found
 
         return planning
 
     return decorated
-
-
-def _answer(
-    method: Callable[[P, MotionRequest], R], planner: P, request: MotionRequest
-) -> _Answer[R]:
-    try:
-        return _Answer(method(planner, request))
-    except PlanningFailed as failure:
-        return _Answer(None, _Refusal(failure.code, failure.message, failure.details))
-
-
-def _failure(refusal: _Refusal) -> PlanningFailed:
-    return PlanningFailed(refusal.code, refusal.message, *refusal.details)

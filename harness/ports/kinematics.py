@@ -42,7 +42,7 @@ class Kinematics(Protocol):
             group: The name of a chain group.
             goal: What the link must do.
             seed_positions: Description order; joints outside the group stay there.
-            seed: The seed of the restarts of numeric solvers.
+            seed: The seed of solvers that draw joint positions; no built-in one does.
             enough: The number of solutions with which a numeric solver stops; None for a spread.
 
         Returns:

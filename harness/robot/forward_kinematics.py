@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from harness.core.pose_arrays import times_each
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.description import Joint, RobotDescription
@@ -38,12 +39,12 @@ class LinkPoses:
             if links is not None and joint.child not in needed:
                 continue
             R = self.rotations[joint.parent]
-            p = self.translations[joint.parent] + R @ joint.pose.translation
-            R = R @ joint.pose.rotation
+            p = self.translations[joint.parent] + times_each(R, joint.pose.translation)
+            R = times_each(R, joint.pose.rotation)
             if joint.is_movable:
                 value = samples[:, description.joint_index[joint.name]]
                 if joint.kind == "prismatic":
-                    p = p + (R @ joint.axis) * value[:, None]
+                    p = p + times_each(R, joint.axis) * value[:, None]
                 else:
                     R = R @ rotations_about(joint.axis, value)
             self.rotations[joint.child] = R

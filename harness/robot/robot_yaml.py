@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
 from harness.core.geometry import CollisionMode
-from harness.language.base import Length, Name, Rpy, SpecModel, Xyz
+from harness.language.base import Length, Name, RosName, Rpy, SpecModel, Xyz
 from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
 from harness.language.files.yaml_file import LOADER, parse_yaml, read_text
@@ -147,10 +147,10 @@ class Tracking(SpecModel):
 class Controllers(SpecModel):
     """Names of the robot's ROS 2 controllers; `GROUP_controller` where there are none."""
 
-    arm: tuple[Name, ...] = Field(
+    arm: tuple[RosName, ...] = Field(
         default=(), description="The arm's trajectory controller; several names lead to the same."
     )
-    gripper: tuple[Name, ...] = Field(default=(), description="The gripper's controller.")
+    gripper: tuple[RosName, ...] = Field(default=(), description="The gripper's controller.")
 
 
 class RobotYaml(SpecModel):

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from harness.reporting.rosbag.messages import message
-from harness.ros.graph import Graph, Reply
+from harness.ros.graph import LATCHED, Graph, Reply
 from harness.ros.interfaces import CANCEL, UUID, seconds, stamp
 
 INFO = "action_msgs/msg/GoalInfo"
+STATUSES = "action_msgs/msg/GoalStatusArray"
 MOST_ENDED = 100
 """Goals that are kept after their end, for those who request the result later."""
 
@@ -65,7 +66,6 @@ class ActionServer:
         """Serve an action from now on.
 
         Args:
-            graph: The graph that serves it.
             name: The action's name, such as `/arm_controller/follow_joint_trajectory`.
             kind: The action's type, such as `control_msgs/action/FollowJointTrajectory`.
             clock: The simulated time [s].
@@ -77,9 +77,7 @@ class ActionServer:
         self._clock, self._on_goal, self._on_cancel = clock, on_goal, on_cancel
         self._goals: dict[str, _Goal] = {}
         self._feedback = graph.advertise(f"{name}/_action/feedback", f"{kind}_FeedbackMessage")
-        self._status = graph.advertise(
-            f"{name}/_action/status", "action_msgs/msg/GoalStatusArray", latched=True, depth=1
-        )
+        self._status = graph.advertise(f"{name}/_action/status", STATUSES, LATCHED)
         graph.serve(f"{name}/_action/send_goal", f"{kind}_SendGoal", self._take_goal)
         graph.serve(f"{name}/_action/cancel_goal", CANCEL, self._take_cancel)
         graph.serve(f"{name}/_action/get_result", f"{kind}_GetResult", self._take_request)
@@ -145,30 +143,26 @@ class ActionServer:
         ]
         running = [each for each in chosen if self._goals[each].result is None]
         code = CancelCode.NONE
-        if is_named and goal not in self._goals:
-            code = CancelCode.UNKNOWN_GOAL
-        elif is_named and goal not in running:
-            code = CancelCode.TERMINATED
-        canceling: list[str] = []
+        if is_named and goal not in running:
+            code = CancelCode.TERMINATED if goal in self._goals else CancelCode.UNKNOWN_GOAL
+        canceling: list[Any] = []
         for each in running:
-            self._goals[each].entry.status = Status.CANCELING
+            entry = self._goals[each].entry
+            entry.status = Status.CANCELING
             if self._on_cancel(each):
-                canceling.append(each)
+                canceling.append(entry.goal_info)
             else:
-                self._goals[each].entry.status = Status.EXECUTING
-                code = CancelCode.REJECTED
-        infos = [self._goals[each].entry.goal_info for each in canceling]
-        reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=infos))
+                entry.status, code = Status.EXECUTING, CancelCode.REJECTED
+        reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=canceling))
 
     def _response(self, known: _Goal | None) -> Any:
         fields = {"status": known.entry.status, "result": known.result} if known else {}
         return message(f"{self.kind}_GetResult_Response", **fields)
 
     def _publish_status(self) -> None:
-        states = [
-            each.entry for each in self._goals.values() if each.entry.status != Status.UNKNOWN
-        ]
-        self._status.publish(message("action_msgs/msg/GoalStatusArray", status_list=states))
+        entries = [known.entry for known in self._goals.values()]
+        states = [entry for entry in entries if entry.status != Status.UNKNOWN]
+        self._status.publish(message(STATUSES, status_list=states))
 
 
 def uuid_of(goal: str) -> Any:
@@ -183,14 +177,12 @@ def hex_of(uuid: Any) -> str:
 
 @dataclass
 class ClientGoal:
-    """A goal that was sent, and what the server said of it.
+    """A goal that was sent, by its UUID in hex, and what the server said of it.
 
     Attributes:
-        identifier: The goal's UUID in hex.
         is_accepted: None before the server answered.
         status: How it ended; UNKNOWN before.
         result: The result; None before the end.
-        feedback: What arrived, in order.
         cancel_code: The return code of the request to cancel it; None before the answer.
     """
 
@@ -221,7 +213,7 @@ class ActionClient:
     @property
     def is_ready(self) -> bool:
         """Whether the server's three services are there."""
-        return self._send.is_ready and self._cancel.is_ready and self._result.is_ready
+        return all(each.is_ready() for each in (self._send, self._cancel, self._result))
 
     def send(self, goal: Any) -> ClientGoal:
         """Send a goal and request its result; that of a rejected goal may give the reason."""
@@ -236,15 +228,13 @@ class ActionClient:
         def ended(response: Any) -> None:
             sent.status, sent.result = Status(response.status), response.result
 
-        request = message(
-            f"{self.kind}_SendGoal_Request", goal_id=uuid_of(sent.identifier), goal=goal
-        )
-        self._send.call(request, answered)
+        kind, identifier = f"{self.kind}_SendGoal_Request", uuid_of(sent.identifier)
+        self._send.call(message(kind, goal_id=identifier, goal=goal), answered)
         return sent
 
     def cancel(self, goal: ClientGoal) -> None:
         """Request that a goal is canceled."""
-        info = message("action_msgs/msg/GoalInfo", goal_id=uuid_of(goal.identifier))
+        info = message(INFO, goal_id=uuid_of(goal.identifier))
 
         def answered(response: Any) -> None:
             goal.cancel_code = response.return_code

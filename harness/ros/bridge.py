@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import closing
 from dataclasses import dataclass, replace
 
 from harness.core.errors import Problem, SpecError
@@ -24,18 +25,10 @@ DISCOVERY = 0.5
 
 @dataclass(frozen=True)
 class BridgeResult:
-    """The judged run, and what is said of the wall around it.
-
-    Attributes:
-        case: The result, as of any run.
-        commands: Number of commands that arrived.
-        names: Sentences on names that nodes use and that are not served.
-        remarks: What is said of wall time, names and the launched program.
-    """
+    """The judged run, the number of commands, and what is said of wall time, names and programs."""
 
     case: CaseResult
     commands: int = 0
-    names: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
 
 
@@ -46,9 +39,7 @@ def open_graph(
 
     Args:
         adapter: `rtps`, or `rclpy` of a ROS 2 installation.
-        domain: The number of the ROS domain.
-        node: The name of the node.
-        is_local: Whether it talks to this machine alone.
+        is_local: Whether the node talks to this machine alone.
         say: Receives a note for each topic that cannot be published.
 
     Raises:
@@ -71,25 +62,21 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
         SpecError: Another robot is in the domain.
         NetworkError: The domain cannot be joined.
     """
-    graph = open_graph(
-        request.adapter, request.domain, node=NODE, is_local=request.is_local, say=request.say
-    )
     made: list[LiveControl] = []
 
     def session(prepared: Prepared, simulator: TimedSimulator) -> LiveControl:
         made.append(LiveControl(prepared, simulator, graph, request))
         return made[0]
 
-    try:
+    place = request.adapter, request.domain
+    graph = open_graph(*place, node=NODE, is_local=request.is_local, say=request.say)
+    with closing(graph):
         _refuse_other_robot(graph, request.domain)
         case = run_case(request.run, notify, session)
-    finally:
-        graph.close()
     if not made:
         return BridgeResult(case)
-    commands = sum(command.kind != "end" for command in made[0].commands)
     remarks = made[0].remarks(has_passed=case.outcome == "passed")
-    return BridgeResult(case, commands, made[0].names, remarks)
+    return BridgeResult(case, made[0].command_count, remarks)
 
 
 def _refuse_other_robot(graph: Graph, domain: int) -> None:
@@ -104,8 +91,7 @@ def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
     """Run a case whose steps may start the request's nodes, in a domain of its own."""
     said: list[str] = []
     with free_domain() as domain:
-        bridge = BridgeRequest(request, domain, nodes=request.nodes, say=said.append)
-        result = run_bridge(bridge, notify)
+        result = run_bridge(BridgeRequest(request, domain, say=said.append), notify)
     return replace(result.case, notes=(*result.case.notes, *said, *result.remarks))
 
 

@@ -28,9 +28,8 @@ def domain_of_user(given: int | None) -> int:
     text = str(given) if given is not None else os.environ.get(VARIABLE, "").strip() or "0"
     if not text.isdecimal() or int(text) > MOST_DOMAINS:
         where = VARIABLE if given is None else "--domain"
-        raise SpecError(
-            [Problem(where, 0, 0, f"'{text}' is no domain; they are 0 to {MOST_DOMAINS}")]
-        )
+        reason = f"'{text}' is no domain; they are 0 to {MOST_DOMAINS}"
+        raise SpecError([Problem(where, 0, 0, reason)])
     return int(text)
 
 
@@ -41,29 +40,17 @@ def free_domain() -> Generator[int]:
     Raises:
         NetworkError: All are taken.
     """
-    count = len(CHOICES)
-    folder = Path(tempfile.gettempdir())
-    for offset in range(count):
-        domain = CHOICES[(os.getpid() + offset) % count]
-        path = folder / f"armharness-{os.getuid()}-domain-{domain}.lock"
+    own = os.getpid() % len(CHOICES)
+    for domain in (*CHOICES[own:], *CHOICES[:own]):
+        path = Path(tempfile.gettempdir()) / f"armharness-{os.getuid()}-domain-{domain}.lock"
         descriptor = os.open(path, os.O_CREAT | os.O_RDWR, 0o600)
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if _is_unused(domain):
-                yield domain
-                return
-        except BlockingIOError:
-            continue
-        finally:
-            os.close(descriptor)
+        with os.fdopen(descriptor) as lock, socket.socket(type=socket.SOCK_DGRAM) as probe:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                probe.bind(("", 7410 + 250 * domain))  # the port of its first participant
+            except OSError:
+                continue
+            probe.close()
+            yield domain
+            return
     raise NetworkError("no ROS domain is free on this machine")
-
-
-def _is_unused(domain: int) -> bool:
-    """Whether no participant has the first port of a domain."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.bind(("", 7410 + 250 * domain))
-        except OSError:
-            return False
-    return True

@@ -8,24 +8,46 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from harness.ros.interfaces import encoded
-from harness.ros.names import Use
 
 Reply = Callable[[Any], None]
 """Sends the response of a service; at once or later."""
 
-OnMessage = Callable[[Any], None]
+OnMessage = Callable[[Any], object]
+
+
+@dataclass(frozen=True)
+class Qos:
+    """What decides whether a publisher and a subscriber match.
+
+    Attributes:
+        is_reliable: Lost messages are sent again.
+        is_latched: Subscribers that come later get the kept messages too (transient local).
+    """
+
+    is_reliable: bool = True
+    is_latched: bool = False
+    depth: int = 10
+
+
+DEFAULT = Qos()
+BEST_EFFORT = Qos(is_reliable=False)
+"""Of a subscription that takes messages of all publishers."""
+LATCHED = Qos(is_latched=True, depth=1)
+
+
+@dataclass(frozen=True)
+class Use:
+    """A publisher or a subscription of a topic; `kind` is a type such as std_msgs/msg/String."""
+
+    topic: str
+    kind: str
+    publishes: bool
+    qos: Qos = DEFAULT
 
 
 @dataclass(frozen=True)
 class Publisher:
-    """Publishes messages of one topic.
-
-    Attributes:
-        kind: The type of its messages.
-        send: Sends a serialised message.
-        count: The number of matched subscribers.
-        is_latched: Whether subscribers that come later get the last message.
-    """
+    """Publishes messages of one topic, by a function that sends them serialised."""
 
     kind: str
     send: Callable[[bytes], object]
@@ -43,17 +65,17 @@ class Publisher:
             self.send(encoded(message, self.kind))
 
 
-class ServiceClient(Protocol):
-    """Calls one service."""
+@dataclass(frozen=True)
+class Client:
+    """Calls one service.
 
-    @property
-    def is_ready(self) -> bool:
-        """Whether a server is there."""
-        ...
+    Attributes:
+        is_ready: Whether a server is there.
+        call: Sends a request; its response is passed on during a later `spin`.
+    """
 
-    def call(self, request: Any, on_response: OnMessage) -> None:
-        """Send a request; the response arrives during a later `spin`."""
-        ...
+    is_ready: Callable[[], bool]
+    call: Callable[[Any, OnMessage], None]
 
 
 class Graph(Protocol):
@@ -63,32 +85,19 @@ class Graph(Protocol):
     actions are made of services and topics by `harness.ros.actions`.
     """
 
-    def advertise(
-        self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
-    ) -> Publisher:
-        """A publisher of a topic; lost messages are sent again."""
+    def advertise(self, topic: str, kind: str, qos: Qos = DEFAULT) -> Publisher:
+        """A publisher of a topic."""
         ...
 
-    def subscribe(
-        self,
-        topic: str,
-        kind: str,
-        on_message: OnMessage,
-        *,
-        latched: bool = False,
-        reliable: bool = True,
-    ) -> None:
-        """Receive the messages of a topic; what cannot be read is ignored.
-
-        Only what is subscribed to without `reliable` comes from publishers of both kinds.
-        """
+    def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
+        """Receive the messages of a topic; what cannot be read is ignored."""
         ...
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
         """Answer requests of a service; `kind` is its type, such as action_msgs/srv/CancelGoal."""
         ...
 
-    def client(self, name: str, kind: str) -> ServiceClient:
+    def client(self, name: str, kind: str) -> Client:
         """A client of a service."""
         ...
 

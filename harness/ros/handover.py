@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,7 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import RESOLVED
 from harness.reporting.result import CaseResult
-from harness.ros.control.cell import ExternalCell, controller_names
+from harness.ros.control.cell import ExternalCell
 from harness.session.prepare import Prepared
 from harness.session.record import robot_record
 from harness.session.run_case import run_case
@@ -37,18 +36,12 @@ look reads the whole record. Wall time has no part in it, so that a replay ends 
 
 
 class HandOver:
-    """What commands the robot between two ticks, and what is done after each.
-
-    Attributes:
-        prepared: The scenario that is executed.
-        simulator: The physics of the run.
-    """
+    """What commands the robot between two ticks, and what is done after each."""
 
     def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
         description = prepared.program.description
         self.prepared, self.simulator = prepared, simulator
-        names = controller_names(description, prepared.loaded.scenario.ros2)
-        self.cell = ExternalCell(simulator, names)
+        self.cell = ExternalCell(simulator, prepared.loaded.scenario.ros2)
         self.robot = robot_record(description, prepared.kinematics)
 
     @property
@@ -61,7 +54,10 @@ class HandOver:
         return ""
 
     def drive(
-        self, request: ExternalRequest, feed: Callable[[], None], after: Callable[[], None]
+        self,
+        request: ExternalRequest,
+        feed: Callable[[], None],
+        after: Callable[[], None] = lambda: None,
     ) -> ExternalResult:
         """Move time tick by tick until the request's end.
 
@@ -70,16 +66,16 @@ class HandOver:
             feed: Lets commands take effect before a tick.
             after: Called after each tick.
         """
-        cell, begin = self.cell, self.simulator.time
+        cell, simulator = self.cell, self.simulator
+        begin, first = simulator.time, simulator.sample_count - 1
         before = seen = len(cell.commands)
-        cell.hold_commanded(self.simulator.commanded_positions())
-        record, look_at = self._record(request), LOOK_EVERY
+        cell.hold_commanded(simulator.commanded_positions())
+        look_at, ended_at, ended_by = LOOK_EVERY, np.inf, ""
         end: CommandRecord | None = None
-        ended_at, ended_by = np.inf, ""
         while not ended_by:
             feed()
-            arrived, seen = cell.commands[seen:], len(cell.commands)
-            end = next((each for each in arrived if each.kind == "end"), end)
+            end = next((each for each in cell.commands[seen:] if each.kind == "end"), end)
+            seen = len(cell.commands)
             if end is not None and end.content.get("reason") == "stopped":
                 ended_by = "stopped"
                 break
@@ -87,11 +83,10 @@ class HandOver:
             after()
             if end is not None and (ended_at == np.inf or not cell.is_idle):
                 ended_at = cell.time
-            elapsed, holds = cell.time - begin, False
-            if elapsed >= look_at - 1e-9:
+            elapsed, is_due = cell.time - begin, cell.time - begin >= look_at - 1e-9
+            if is_due:
                 look_at = elapsed + max(LOOK_EVERY, LOOK_SHARE * elapsed)
-                holds = self._holds(request, record)
-            if holds:
+            if is_due and self._holds(request, begin, first):
                 ended_by = "until"
             elif elapsed >= request.timeout - 1e-9:
                 ended_by = "timeout"
@@ -103,45 +98,29 @@ class HandOver:
         detail = _said(end) if end is not None and ended_by in ("timeout", "exit") else ""
         return ExternalResult(ended_by, count, detail)
 
-    def _record(self, request: ExternalRequest) -> Run:
-        """The record of a step that begins now; what its end decides is filled in by a look."""
-        step = StepRecord(
-            id=request.step,
-            path=request.step,
-            verb="",
-            summary="",
-            line=request.line,
-            status="passed",
-            start_time=self.simulator.time,
-            end_time=self.simulator.time,
-            start_index=max(0, self.simulator.sample_count - 1),
-            end_index=self.simulator.sample_count,
+    def _holds(self, request: ExternalRequest, begin: float, first: int) -> bool:
+        """Whether the expectation passes now that ends the step, which began at a sample."""
+        until, simulator, name = request.until, self.simulator, request.step
+        if not isinstance(until, ExpectationFields):
+            return False
+        times = begin, simulator.time, first, simulator.sample_count
+        step = StepRecord(name, name, "", "", request.line, "passed", *times)
+        presences = (
+            Presence(obj, obj.pose, [[0.0, np.inf]]) for obj in self.prepared.program.world.objects
         )
-        return Run(
+        run = Run(
             scenario="",
             file="",
             case="",
             seed=0,
             robot=self.robot,
-            objects=tuple(
-                object_record(Presence(obj, obj.pose, [[0.0, np.inf]]), np.inf)
-                for obj in self.prepared.program.world.objects
-            ),
+            objects=tuple(object_record(presence, np.inf) for presence in presences),
             attachments=(),
             steps=(step,),
-            signals=self.simulator.finish(),
+            signals=simulator.finish(),
             unrecorded=("clearances", "planned_clearances"),
         )
-
-    def _holds(self, request: ExternalRequest, record: Run) -> bool:
-        """Whether the expectation passes now that ends the step."""
-        until, simulator = request.until, self.simulator
-        if not isinstance(until, ExpectationFields):
-            return False
-        [step] = record.steps
-        step = replace(step, end_time=simulator.time, end_index=simulator.sample_count)
-        run = replace(record, steps=(step,), signals=simulator.finish())
-        placed = PlacedExpectation.of(until, request.step, request.line)
+        placed = PlacedExpectation.of(until, name, request.line)
         return judge(run, [placed])[0].status == "passed"
 
 
@@ -167,7 +146,7 @@ class ReplayControl(HandOver):
         Raises:
             HarnessError: A command belongs to a sample that this run does not stop at.
         """
-        return self.drive(request, self._feed, self.cell.outcomes.clear)
+        return self.drive(request, self._feed)
 
     def _feed(self) -> None:
         now = self.simulator.sample_count - 1

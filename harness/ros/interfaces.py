@@ -15,6 +15,7 @@ TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 CANCEL = "action_msgs/action/CancelGoal"
 """The service action_msgs/srv/CancelGoal; rosbags takes no messages of the folder `srv`."""
 
+COMMAND = "control_msgs/msg/GripperCommand"
 UUID = "unique_identifier_msgs/msg/UUID"
 POINT = "trajectory_msgs/msg/JointTrajectoryPoint"
 _MULTI_POINT = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
@@ -36,12 +37,12 @@ ACTIONS = {
         f"{_MULTI_POINT} multi_dof_desired\n{_MULTI_POINT} multi_dof_actual\n"
         f"{_MULTI_POINT} multi_dof_error",
     ),
-    GRIPPER: ("control_msgs/msg/GripperCommand command", _RESULT, _RESULT),
+    GRIPPER: (f"{COMMAND} command", _RESULT, _RESULT),
 }
 """Goal, result and feedback of each action (control_msgs, BSD-3-Clause, field lists)."""
 
 MESSAGES = {
-    "control_msgs/msg/GripperCommand": "float64 position\nfloat64 max_effort",
+    COMMAND: "float64 position\nfloat64 max_effort",
     "control_msgs/msg/JointTolerance": (
         "string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration"
     ),
@@ -56,20 +57,19 @@ MESSAGES = {
 
 def _register() -> None:
     """Let rosbags know the types."""
-    for name, definition in MESSAGES.items():
-        TYPESTORE.register(get_types_from_msg(definition, name))
+    definitions = dict(MESSAGES)
     for action, parts in ACTIONS.items():
         goal, result, feedback = (f"{action}_{part}" for part in ("Goal", "Result", "Feedback"))
-        for name, definition in zip((goal, result, feedback), parts, strict=True):
-            TYPESTORE.register(get_types_from_msg(definition, name))
-        for suffix, definition in {
-            "SendGoal_Request": f"{UUID} goal_id\n{goal} goal",
-            "SendGoal_Response": "bool accepted\nbuiltin_interfaces/msg/Time stamp",
-            "GetResult_Request": f"{UUID} goal_id",
-            "GetResult_Response": f"int8 status\n{result} result",
-            "FeedbackMessage": f"{UUID} goal_id\n{feedback} feedback",
-        }.items():
-            TYPESTORE.register(get_types_from_msg(definition, f"{action}_{suffix}"))
+        definitions |= zip((goal, result, feedback), parts, strict=True)
+        definitions |= {
+            f"{action}_SendGoal_Request": f"{UUID} goal_id\n{goal} goal",
+            f"{action}_SendGoal_Response": "bool accepted\nbuiltin_interfaces/msg/Time stamp",
+            f"{action}_GetResult_Request": f"{UUID} goal_id",
+            f"{action}_GetResult_Response": f"int8 status\n{result} result",
+            f"{action}_FeedbackMessage": f"{UUID} goal_id\n{feedback} feedback",
+        }
+    for name, definition in definitions.items():
+        TYPESTORE.register(get_types_from_msg(definition, name))
 
 
 _register()
@@ -85,13 +85,10 @@ def decoded(payload: bytes, kind: str) -> Any:
 
     Bytes after the message do not count: rclpy's serialisation leaves some for each list element.
     """
-    definition = TYPESTORE.get_msgdef(kind)
-    readers = {
-        b"\0\0": definition.deserialize_cdr_be,
-        b"\0\1": definition.deserialize_cdr_le,
-    }
+    known = TYPESTORE.get_msgdef(kind)
+    readers = {b"\0\0": known.deserialize_cdr_be, b"\0\1": known.deserialize_cdr_le}
     with suppress(Exception):  # no kind of error is certain
-        return readers[payload[:2]](payload[4:], 0, definition.cls, TYPESTORE)[0]
+        return readers[payload[:2]](payload[4:], 0, known.cls, TYPESTORE)[0]
     return None
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
-from harness.ros.graph import Graph
+from harness.ros.graph import BEST_EFFORT, Graph
 from harness.ros.interfaces import seconds
 
 GRID = 0.01
@@ -22,10 +22,10 @@ class JointStates:
     def __init__(self, graph: Graph, description: RobotDescription) -> None:
         self._description = description
         self._times: list[float] = []
-        self._rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
-        self._offset: float | None = None
+        self._rows: list[FloatArray] = []
+        self._begin: float | None = None
         self._arrived = wall.monotonic()
-        graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take, reliable=False)
+        graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take, BEST_EFFORT)
 
     @property
     def time(self) -> float:
@@ -52,13 +52,12 @@ class JointStates:
         """The largest speed of a joint in the last message [rad/s or m/s]."""
         return float(np.abs(self._rows[-1][1]).max())
 
-    def record(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Times (N,) on the grid, and positions, velocities and efforts at them, (N, n) each."""
+    def record(self) -> tuple[FloatArray, FloatArray]:
+        """Times (N,) on the grid, and positions, velocities and efforts at them, (3, N, n)."""
         times = np.arange(self.sample_count, dtype=np.float64) * GRID
         columns = np.array(self._rows).reshape(len(self._rows), -1).T
         even = np.array([np.interp(times, self._times, column) for column in columns])
-        positions, velocities, efforts = np.swapaxes(even.reshape(3, -1, len(times)), 1, 2)
-        return times, positions, velocities, efforts
+        return times, even.reshape(3, -1, len(times)).swapaxes(1, 2)
 
     def _take(self, state: Any) -> None:
         self._arrived = wall.monotonic()
@@ -67,15 +66,13 @@ class JointStates:
         if any(joint.mimic is None and joint.name not in place for joint in joints):
             return
         stamp = seconds(state.header.stamp) or wall.monotonic()
-        self._offset = stamp if self._offset is None else self._offset
-        if stamp - self._offset <= self.time:
+        self._begin = stamp if self._begin is None else self._begin
+        if stamp - self._begin <= self.time:
             return
-
-        def column(values: FloatArray) -> FloatArray:
-            if len(values) < len(place):
-                return np.zeros(len(joints))
-            return np.array([values[place[j.name]] if j.name in place else 0.0 for j in joints])
-
-        positions = self._description.with_mimics(column(state.position))
-        self._times.append(stamp - self._offset)
-        self._rows.append((positions, column(state.velocity), column(state.effort)))
+        row = np.zeros((3, len(joints)))
+        for part, values in zip(row, (state.position, state.velocity, state.effort), strict=True):
+            if len(values) >= len(place):
+                part[:] = [values[place[j.name]] if j.name in place else 0.0 for j in joints]
+        row[0] = self._description.with_mimics(row[0])
+        self._times.append(stamp - self._begin)
+        self._rows.append(row)

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
-from typing import NoReturn
 
 from harness.core.errors import Problem, SpecError, StepFailed
 
@@ -43,14 +42,15 @@ def start_program(commands: Mapping[str, str], name: str, domain: int) -> Progra
     Raises:
         StepFailed: COMMUNICATION_FAILURE; the user gave no such command, or it cannot start.
     """
-    known = ", ".join(commands)
+    known, reason = ", ".join(commands), ""
     if not name and len(commands) > 1:
-        _refuse(f"several commands are allowed ({known}); name one with `launch`")
-    if name and name not in commands:
+        reason = f"several commands are allowed ({known}); name one with `launch`"
+    elif name and name not in commands:
         allowed = f"; allowed: {known}" if commands else ""
-        _refuse(
-            f"the command '{name}' is not allowed: give it with --node '{name}=COMMAND'{allowed}"
-        )
+        reason = f"the command '{name}' is not allowed: give it with --node '{name}=COMMAND'"
+        reason += allowed
+    if reason:
+        raise StepFailed("COMMUNICATION_FAILURE", reason)
     return Program(commands[name or known], domain) if commands else None
 
 
@@ -82,7 +82,8 @@ class Program:
         except (OSError, ValueError) as error:
             self._output.close()
             reason = error.strerror if isinstance(error, OSError) else error
-            _refuse(f"`{command}` cannot be started: {reason}", error)
+            said = f"`{command}` cannot be started: {reason}"
+            raise StepFailed("COMMUNICATION_FAILURE", said) from error
 
     @property
     def exit_code(self) -> int | None:
@@ -96,17 +97,15 @@ class Program:
         return self._output.read().decode("utf-8", "replace").strip()
 
     def stop(self) -> None:
-        """End the program and what it started: interrupt, then kill."""
-        for number, patience in ((signal.SIGINT, 2.0), (signal.SIGKILL, 5.0)):
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, number)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(patience)
-                break
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)  # what it started and left running
+        """End the program and what it started: interrupt, then kill what goes on."""
+        self._signal(signal.SIGINT)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(2.0)
+        self._signal(signal.SIGKILL)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(5.0)
         self._output.close()
 
-
-def _refuse(why: str, cause: Exception | None = None) -> NoReturn:
-    raise StepFailed("COMMUNICATION_FAILURE", why) from cause
+    def _signal(self, number: int) -> None:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, number)

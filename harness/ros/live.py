@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Callable, Generator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from textwrap import indent
-from types import FrameType
+from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,40 +42,30 @@ class BridgeRequest:
     """A scenario, and how nodes reach its cell.
 
     Attributes:
-        run: The case, and what is written of it.
-        domain: The number of the ROS domain.
         is_local: Whether nodes of other machines are kept out.
         adapter: `rtps`, or `rclpy` of a ROS 2 installation.
-        nodes: Commands that steps may start, by name.
         factor: Simulated seconds in a wall second.
-        is_interactive: Whether the first Ctrl-C ends the session and not the command.
         say: Receives notes for the user while it runs.
-        should_end: Called a hundred times a second; whether the session ends now.
+        stop: Ends the session when it is set.
     """
 
     run: RunRequest
     domain: int
     is_local: bool = True
     adapter: str = "rtps"
-    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     factor: float = 1.0
-    is_interactive: bool = False
     say: Say = lambda _: None
-    should_end: Callable[[], bool] = lambda: False
+    stop: Event = field(default_factory=Event)
 
 
 class LiveControl(HandOver):
-    """Serves the robot on a graph while a step hands it over.
-
-    Attributes:
-        names: Sentences on names that are not served, where the last step did not end with `until`.
-    """
+    """Serves the robot on a graph while a step hands it over."""
 
     def __init__(
         self, prepared: Prepared, simulator: MujocoSimulator, graph: Graph, request: BridgeRequest
     ) -> None:
         super().__init__(prepared, simulator)
-        self.names: tuple[str, ...] = ()
+        self._names: tuple[str, ...] = ()
         self._graph, self._request = graph, request
         self._pace = Pace(request.factor)
         program = prepared.program
@@ -89,20 +77,19 @@ class LiveControl(HandOver):
         self._program: Program | None = None
         self._exit_code: int | None = None
         self._output = ""
-        self._is_stopped = False
         self._said: set[str] = set()
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Serve the robot until the request's end; start the program that it names."""
-        self._program = start_program(self._request.nodes, request.launch, self._request.domain)
+        nodes, domain = self._request.run.nodes, self._request.domain
+        self._program = start_program(nodes, request.launch, domain)
         self._wiring.is_open = True
         self._pace.start()
         try:
-            with self._interruptible():
-                result = self.drive(request, self._feed, self._after)
+            result = self.drive(request, self._feed, self._after)
             self._look_at_names()
             if result.ended_by == "until":
-                self.names = ()
+                self._names = ()
             return result
         finally:
             self._wiring.is_open = False
@@ -114,10 +101,14 @@ class LiveControl(HandOver):
         slow = f"this machine is too slow to judge the nodes: {self._pace.text()}"
         return slow if self._pace.is_slow else ""
 
+    @property
+    def command_count(self) -> int:
+        """The number of commands that arrived."""
+        return sum(command.kind != "end" for command in self.cell.commands)
+
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """What is said of wall time, names and the launched program; nothing of it is judged."""
-        count = sum(command.kind != "end" for command in self.cell.commands)
-        said = [f"{counted(count, 'command')}; {self._pace.text()}", *self.names]
+        said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
         if self._exit_code and has_passed:
             said.append(f"the launched program ended with exit code {self._exit_code}")
         if self._output and (self._exit_code or not has_passed):
@@ -130,8 +121,7 @@ class LiveControl(HandOver):
         self._pace.tick()
         if self._pace.ticks % LOOK_EVERY == 0:
             self._look_at_names()
-        if self._is_stopped or self._request.should_end():
-            self._is_stopped = False
+        if self._request.stop.is_set():
             self.cell.receive("end", content={"reason": "stopped"})
         if self._program is not None and self._program.exit_code is not None:
             self._exit_code = self._program.exit_code
@@ -162,7 +152,7 @@ class LiveControl(HandOver):
         uses = self._graph.uses()
         for note in mismatched(*uses):
             self._say_once(note, note)
-        self.names = tuple(unserved(*uses)) or self.names
+        self._names = tuple(unserved(*uses)) or self._names
 
     def _note(self, record: CommandRecord) -> None:
         """A command took effect; say it, where it did not."""
@@ -170,26 +160,8 @@ class LiveControl(HandOver):
         if record.answer != "accepted":
             what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
             self._say_once(record.answer, what)
-        self._wiring.report()
 
     def _say_once(self, key: str, note: str) -> None:
         if key not in self._said and len(self._said) < MOST_NOTES:
             self._said.add(key)
             self._request.say(note)
-
-    @contextmanager
-    def _interruptible(self) -> Generator[None]:
-        """Let the first Ctrl-C end an interactive session in order."""
-        if not self._request.is_interactive:
-            yield
-            return
-
-        def stop(_number: int, _frame: FrameType | None) -> None:
-            self._is_stopped = True
-            signal.signal(signal.SIGINT, before)
-
-        before = signal.signal(signal.SIGINT, stop)
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGINT, before)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from difflib import get_close_matches
+
+from harness.ros.graph import Use
 
 IGNORED = {"/rosout", "/parameter_events", "/clock"}
 """Topics that every node of rclpy has."""
@@ -12,115 +13,82 @@ IGNORED = {"/rosout", "/parameter_events", "/clock"}
 HIDDEN, FEEDBACK, MESSAGE = "/_action/", "/_action/feedback", "_FeedbackMessage"
 """Parts of the topics of actions, of those with feedback, and of their types."""
 
-
-@dataclass(frozen=True)
-class Use:
-    """A publisher or a subscription of a topic.
-
-    Attributes:
-        topic: The name of the topic.
-        kind: The type of its messages, such as std_msgs/msg/String.
-        publishes: Whether it is a publisher.
-        is_reliable: Whether it offers or requests that lost messages are sent again.
-        is_latched: Whether it offers or requests kept messages (transient local).
-    """
-
-    topic: str
-    kind: str
-    publishes: bool
-    is_reliable: bool = True
-    is_latched: bool = False
+WHY = {
+    "calls the action": "is not served",
+    "publishes": "has no subscriber",
+    "subscribes to": "is not published",
+}
+"""What a node does with a name, and why nothing comes of it."""
 
 
 def actions(uses: Iterable[Use]) -> list[str]:
     """The actions that are served: their feedback is published."""
-    return sorted(_topics(uses, FEEDBACK, publishes=True))
+    return sorted({_name(use) for use in uses if use.publishes and _is_action(use)})
 
 
 def unserved(own: Sequence[Use], others: Sequence[Use]) -> list[str]:
     """A sentence on each name of other nodes that neither they nor this one serves."""
-    every = [*own, *others]
-    used = {(use.topic, use.publishes) for use in every}
-    lost = [use for use in others if (use.topic, not use.publishes) not in used]
-    found = [
-        *(
-            (name, "calls the action", "is not served", actions(own))
-            for name in _topics(lost, FEEDBACK, publishes=False)
-        ),
-        *(
-            (name, does, why, _topics(own, publishes=not publishes))
-            for publishes, does, why in (
-                (True, "publishes", "has no subscriber"),
-                (False, "subscribes to", "is not published"),
-            )
-            for name in _topics(lost, publishes=publishes)
-        ),
-    ]
-    return [
-        f"a node {does} {name}, which {why}{_nearest(name, known)}"
-        for name, does, why, known in found
-    ]
+    used = {(use.topic, use.publishes) for use in (*own, *others)}
+    notes: set[str] = set()
+    for use in others:
+        name, does = _name(use), _does(use)
+        is_lost = (use.topic, not use.publishes) not in used and use.topic not in IGNORED
+        if is_lost and name and not (use.publishes and _is_action(use)):
+            fits = [mine for mine in own if mine.publishes is not use.publishes]
+            known = [_name(mine) for mine in fits if _is_action(mine) is _is_action(use)]
+            close = get_close_matches(name, known, 1)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            notes.add(f"a node {does} {name}, which {WHY[does]}{hint}")
+    return sorted(notes)
 
 
 def mismatched(own: Sequence[Use], others: Sequence[Use]) -> list[str]:
     """A sentence on each use by another node that does not fit this node's, and what to change."""
-    notes = (
-        _mismatch(mine, use)
+    ends = [
+        (mine, use)
         for use in others
         for mine in own
-        if (mine.topic, mine.publishes) == (use.topic, not use.publishes)
-        and (HIDDEN not in use.topic or use.topic.endswith(FEEDBACK))
-    )
-    return sorted(set(filter(None, notes)))
+        if (mine.topic, mine.publishes) == (use.topic, not use.publishes) and _name(use)
+    ]
+    return sorted({note for mine, use in ends if (note := _mismatch(mine, use))})
 
 
 def _mismatch(mine: Use, use: Use) -> str:
     """What does not fit between two uses of a topic; empty where nothing is lost."""
-    does = "publishes" if use.publishes else "subscribes to"
+    said = f"a node {_does(use)} {_name(use)} with"
     if mine.kind != use.kind:
-        topic, kind, right = use.topic, use.kind, mine.kind
-        if topic.endswith(FEEDBACK):
-            topic, does = topic.removesuffix(FEEDBACK), "calls the action"
-            kind, right = kind.removesuffix(MESSAGE), right.removesuffix(MESSAGE)
+        kind, right = (each.kind.removesuffix(MESSAGE) for each in (use, mine))
+        *package, name = right.split("/")
         return (
-            f"a node {does} {topic} with the type {kind}, but its type is {right}: no message"
-            f" arrives; import {right.rpartition('/')[2]} from"
-            f" {'.'.join(right.split('/')[:-1])} in the node"
+            f"{said} the type {kind}, but its type is {right}: no message arrives; import {name}"
+            f" from {'.'.join(package)} in the node"
         )
-    if HIDDEN in use.topic:
+    writer, reader = (use.qos, mine.qos) if use.publishes else (mine.qos, use.qos)
+    lost = "which does not fit the other end: no message arrives"
+    if _is_action(use):
         return ""
-    writer, reader = (use, mine) if use.publishes else (mine, use)
     if reader.is_reliable and not writer.is_reliable:
-        how, setting = "with best-effort reliability", "reliability=ReliabilityPolicy.RELIABLE"
+        how, setting = "best-effort reliability", "reliability=ReliabilityPolicy.RELIABLE"
     elif reader.is_latched and not writer.is_latched:
-        how, setting = "with transient-local durability", "durability=DurabilityPolicy.VOLATILE"
-    elif writer.is_latched and not reader.is_latched and reader is use:
-        return (
-            f"a node subscribes to {use.topic} with volatile durability, so what was published"
-            " before it came does not arrive; set durability=DurabilityPolicy.TRANSIENT_LOCAL in"
-            " its QoSProfile"
-        )
+        how, setting = "transient-local durability", "durability=DurabilityPolicy.VOLATILE"
+    elif writer.is_latched and not reader.is_latched and not use.publishes:
+        how, setting = "volatile durability", "durability=DurabilityPolicy.TRANSIENT_LOCAL"
+        lost = "so what was published before it came does not arrive"
     else:
         return ""
-    return (
-        f"a node {does} {use.topic} {how}, which does not fit the other end: no message arrives;"
-        f" set {setting} in its QoSProfile"
-    )
+    return f"{said} {how}, {lost}; set {setting} in its QoSProfile"
 
 
-def _topics(uses: Iterable[Use], ending: str = "", *, publishes: bool) -> list[str]:
-    """Names of the topics that are published or subscribed to, or of actions by their ending."""
-    return sorted(
-        {
-            use.topic.removesuffix(ending)
-            for use in uses
-            if use.publishes is publishes
-            and use.topic not in IGNORED
-            and (use.topic.endswith(ending) if ending else HIDDEN not in use.topic)
-        }
-    )
+def _is_action(use: Use) -> bool:
+    return use.topic.endswith(FEEDBACK)
 
 
-def _nearest(name: str, known: Sequence[str]) -> str:
-    close = get_close_matches(name, known, 1)
-    return f"; did you mean {close[0]}?" if close else ""
+def _name(use: Use) -> str:
+    """The topic or the action of its feedback; empty for what else belongs to an action."""
+    name = use.topic.removesuffix(FEEDBACK)
+    return "" if HIDDEN in name else name
+
+
+def _does(use: Use) -> str:
+    topic = "publishes" if use.publishes else "subscribes to"
+    return "calls the action" if _is_action(use) else topic

@@ -23,8 +23,6 @@ class Pace:
 
     Attributes:
         factor: Simulated seconds in a wall second.
-        ticks: The number of ticks so far.
-        late: Ticks that began late.
         late_commands: Commands that arrived while a tick was late.
         worst: The largest lag of a tick [s].
         lost: Wall time that was given up [s].
@@ -72,6 +70,6 @@ class Pace:
         said = (
             f"{self.ticks * TICK:.1f} s of simulated time at {self.factor:g} times wall time:"
             f" {self.late} of {self.ticks} updates and {self.late_commands} commands were more than"
-            f" {1e3 * LATE:.0f} ms late (at most {1e3 * max(self.worst, 0):.0f} ms)"
+            f" {1e3 * LATE:.0f} ms late (at most {1e3 * self.worst:.0f} ms)"
         )
         return f"{said}; {self.lost:.1f} s were lost" if self.lost else said

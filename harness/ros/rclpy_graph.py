@@ -7,30 +7,11 @@ import importlib.util
 import os
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from harness.core.errors import Problem, SpecError
-from harness.ros.graph import OnMessage, Publisher, Reply
+from harness.ros.graph import DEFAULT, Client, OnMessage, Publisher, Qos, Reply, Use
 from harness.ros.interfaces import CANCEL, decoded, encoded
-from harness.ros.names import Use
-
-
-@dataclass
-class _Client:
-    client: Any
-    kind: str
-
-    @property
-    def is_ready(self) -> bool:
-        return self.client.service_is_ready()
-
-    def call(self, request: Any, on_response: OnMessage) -> None:
-        ros_type = self.client.srv_type.Request
-        future = self.client.call_async(_to_ros(request, f"{self.kind}_Request", ros_type))
-        future.add_done_callback(
-            lambda done: on_response(_from_ros(done.result(), f"{self.kind}_Response"))
-        )
 
 
 class RclpyGraph:
@@ -43,80 +24,71 @@ class RclpyGraph:
         if is_local:
             os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         try:
-            rclpy = importlib.import_module("rclpy")
-            self._qos = importlib.import_module("rclpy.qos")
-            executors = importlib.import_module("rclpy.executors")
-            self._future: Any = importlib.import_module("rclpy.task").Future
+            self._rclpy: Any = importlib.import_module("rclpy")
+            for part in ("executors", "qos", "serialization", "task"):
+                importlib.import_module(f"rclpy.{part}")
         except ImportError as error:
             said = f"rclpy cannot be imported: {error}"
             raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
-        self._say = say
-        self._context = rclpy.Context()
-        rclpy.init(context=self._context, domain_id=domain)
-        self._node = rclpy.create_node(node, context=self._context)
-        self._executor = executors.SingleThreadedExecutor(context=self._context)
+        self._say, self._context = say, self._rclpy.Context()
+        self._rclpy.init(context=self._context, domain_id=domain)
+        self._node = self._rclpy.create_node(node, context=self._context)
+        self._executor = self._rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
 
-    def advertise(
-        self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
-    ) -> Publisher:
+    def advertise(self, topic: str, kind: str, qos: Qos = DEFAULT) -> Publisher:
         package, folder, _ = kind.split("/")
         if folder == "msg" and importlib.util.find_spec(package) is None:
             self._say(f"--adapter rclpy: {topic} is not published: {_advice(package)}")
             return Publisher(kind, lambda _: None, lambda: 0)
-        profile = self._profile(latched, True, depth)
-        made = self._node.create_publisher(_message_type(kind), topic, profile)
-        return Publisher(kind, made.publish, made.get_subscription_count, latched)
+        made = self._node.create_publisher(_message_type(kind), topic, self._profile(qos))
+        return Publisher(kind, made.publish, made.get_subscription_count, qos.is_latched)
 
-    def subscribe(
-        self,
-        topic: str,
-        kind: str,
-        on_message: OnMessage,
-        *,
-        latched: bool = False,
-        reliable: bool = True,
-    ) -> None:
+    def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
         def take(payload: bytes) -> None:
             content = decoded(payload, kind)
             if content is not None:
                 on_message(content)
 
-        profile = self._profile(latched, reliable, 10)
-        self._node.create_subscription(_message_type(kind), topic, take, profile, raw=True)
+        ros_type, profile = _message_type(kind), self._profile(qos)
+        self._node.create_subscription(ros_type, topic, take, profile, raw=True)
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
         service = _service_type(kind)
 
         async def answer(content: Any, _: Any) -> Any:
-            replied = self._future(executor=self._executor)
-            on_request(_from_ros(content, f"{kind}_Request"), replied.set_result)
-            return _to_ros(await replied, f"{kind}_Response", service.Response)
+            replied = self._rclpy.task.Future(executor=self._executor)
+            on_request(self._from_ros(content, f"{kind}_Request"), replied.set_result)
+            return self._to_ros(await replied, f"{kind}_Response", service.Response)
 
         self._node.create_service(service, name, answer)
 
-    def client(self, name: str, kind: str) -> _Client:
-        return _Client(self._node.create_client(_service_type(kind), name), kind)
+    def client(self, name: str, kind: str) -> Client:
+        service = _service_type(kind)
+        client = self._node.create_client(service, name)
+
+        def call(request: Any, on_response: OnMessage) -> None:
+            def answered(done: Any) -> None:
+                on_response(self._from_ros(done.result(), f"{kind}_Response"))
+
+            content = self._to_ros(request, f"{kind}_Request", service.Request)
+            client.call_async(content).add_done_callback(answered)
+
+        return Client(client.service_is_ready, call)
 
     def uses(self) -> tuple[list[Use], list[Use]]:
-        node, qos = self._node, self._qos
+        node, qos = self._node, self._rclpy.qos
         own: list[Use] = []
         others: list[Use] = []
         for topic, _ in node.get_topic_names_and_types():
-            for publishes, known in (
-                (True, node.get_publishers_info_by_topic(topic)),
-                (False, node.get_subscriptions_info_by_topic(topic)),
-            ):
-                for each in known:
-                    profile = each.qos_profile
-                    use = Use(
-                        topic,
-                        each.topic_type,
-                        publishes,
-                        profile.reliability == qos.ReliabilityPolicy.RELIABLE,
-                        profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL,
-                    )
-                    (own if each.node_name == node.get_name() else others).append(use)
+            writers = node.get_publishers_info_by_topic(topic)
+            for each in (*writers, *node.get_subscriptions_info_by_topic(topic)):
+                found = Qos(
+                    each.qos_profile.reliability == qos.ReliabilityPolicy.RELIABLE,
+                    each.qos_profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL,
+                )
+                use = Use(topic, each.topic_type, each in writers, found)
+                (own if each.node_name == node.get_name() else others).append(use)
         return own, others
 
     def spin(self, until: float) -> None:
@@ -129,14 +101,20 @@ class RclpyGraph:
         self._node.destroy_node()
         self._context.try_shutdown()
 
-    def _profile(self, latched: bool, reliable: bool, depth: int) -> Any:
-        qos = self._qos
+    def _profile(self, requested: Qos) -> Any:
+        qos = self._rclpy.qos
         reliability, durability = qos.ReliabilityPolicy, qos.DurabilityPolicy
         return qos.QoSProfile(
-            depth=depth,
-            reliability=reliability.RELIABLE if reliable else reliability.BEST_EFFORT,
-            durability=durability.TRANSIENT_LOCAL if latched else durability.VOLATILE,
+            depth=requested.depth,
+            reliability=reliability.RELIABLE if requested.is_reliable else reliability.BEST_EFFORT,
+            durability=durability.TRANSIENT_LOCAL if requested.is_latched else durability.VOLATILE,
         )
+
+    def _to_ros(self, content: Any, kind: str, ros_type: Any) -> Any:
+        return self._rclpy.serialization.deserialize_message(encoded(content, kind), ros_type)
+
+    def _from_ros(self, content: Any, kind: str) -> Any:
+        return decoded(self._rclpy.serialization.serialize_message(content), kind)
 
 
 def _message_type(kind: str) -> Any:
@@ -152,15 +130,6 @@ def _service_type(kind: str) -> Any:
     if kind == CANCEL:
         return _imported("action_msgs.srv").CancelGoal
     return _message_type(f"{kind}Service")
-
-
-def _to_ros(content: Any, kind: str, ros_type: Any) -> Any:
-    serialization = importlib.import_module("rclpy.serialization")
-    return serialization.deserialize_message(encoded(content, kind), ros_type)
-
-
-def _from_ros(content: Any, kind: str) -> Any:
-    return decoded(importlib.import_module("rclpy.serialization").serialize_message(content), kind)
 
 
 def _imported(module: str) -> Any:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time as wall
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn, cast
+from typing import TYPE_CHECKING, NoReturn, cast
 
 import numpy as np
 
@@ -17,12 +16,12 @@ from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import Signals
 from harness.reporting.result import CaseResult
-from harness.reporting.rosbag.messages import message
+from harness.reporting.rosbag.messages import message, trajectory_message
 from harness.ros.actions import ActionClient, ClientGoal, Status
 from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
-from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, stamp
+from harness.ros.interfaces import COMMAND, FOLLOW, GRIPPER
 from harness.ros.joint_states import GRID, JointStates
 from harness.ros.names import actions
 from harness.session.prepare import Prepared, prepare
@@ -53,6 +52,9 @@ PATIENCE = 10.0
 SILENCE = 3.0
 """Wall time without joint states after which a robot in motion counts as lost [s]."""
 
+UNKNOWN = np.full(7, np.nan)
+"""The pose of an object that is not measured."""
+
 REASON = 1.0
 """Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""
 
@@ -60,25 +62,20 @@ START_TOLERANCE = 0.01
 """Largest distance of the arm from where a trajectory begins [rad or m], as MoveIt allows."""
 
 
-@dataclass(frozen=True)
-class RemoteOptions:
-    """How a robot is moved.
-
-    Attributes:
-        velocity_scaling: Share of the planned speed, (0, 1].
-        confirm: Called with each trajectory before it is sent; whether the arm may move.
-    """
-
-    velocity_scaling: float = 1.0
-    confirm: Callable[[JointTrajectory], bool] = lambda _: True
-
-
 def run_on_robot(
-    request: RunRequest, graph: Graph, options: RemoteOptions, notify: Notify = lambda _: None
+    request: RunRequest,
+    graph: Graph,
+    velocity_scaling: float,
+    confirm: Callable[[JointTrajectory], bool],
+    notify: Notify,
 ) -> CaseResult:
     """Run a case on the robot of a ROS 2 domain.
 
     What its topics do not show, such as contacts and the poses of objects, is not observable.
+
+    Args:
+        velocity_scaling: Share of the planned speed, (0, 1].
+        confirm: Called with each trajectory before it is sent; whether the arm may move.
 
     Raises:
         StepFailed: COMMUNICATION_FAILURE; the robot cannot be reached.
@@ -86,7 +83,8 @@ def run_on_robot(
 
     def start(request: RunRequest, _: Clock) -> Start:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
-        return Start(prepared, cast("TimedSimulator", RemoteArm(graph, prepared, options)), 0)
+        robot = RemoteArm(graph, prepared, velocity_scaling, confirm)
+        return Start(prepared, cast("TimedSimulator", robot), 0)
 
     return run_case(request, notify, start=start)
 
@@ -105,27 +103,30 @@ class RemoteArm:
     unrecorded = UNRECORDED
     timestep = GRID
 
-    def __init__(self, graph: Graph, prepared: Prepared, options: RemoteOptions) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        prepared: Prepared,
+        velocity_scaling: float,
+        confirm: Callable[[JointTrajectory], bool],
+    ) -> None:
         """Find the robot's controllers and its joints.
 
         Raises:
             StepFailed: COMMUNICATION_FAILURE; a server or a joint is missing.
         """
-        self._graph, self._options = graph, options
+        self._graph, self._share, self._confirm = graph, velocity_scaling, confirm
         self._kinematics, self._program = prepared.kinematics, prepared.program
         self.description = self._program.description
-        self._frames = self.description.tcp_link, *prepared.observed_links
+        self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
         self._command: FloatArray | None = None
-        names = controller_names(self.description, prepared.loaded.scenario.ros2)
         self._states = JointStates(graph, self.description)
-        actions_of_arm = [f"/{name}/follow_joint_trajectory" for name in names.arm]
-        arms = [ActionClient(graph, name, FOLLOW) for name in actions_of_arm]
-        self._gripper = None
-        if names.gripper:
-            self._gripper = ActionClient(graph, f"/{names.gripper}/gripper_cmd", GRIPPER)
+        names, gripper = controller_names(self.description, prepared.loaded.scenario.ros2)
+        arms = [ActionClient(graph, f"/{name}/follow_joint_trajectory", FOLLOW) for name in names]
+        self._gripper = ActionClient(graph, f"/{gripper}/gripper_cmd", GRIPPER) if gripper else None
         if not self._wait(lambda: any(arm.is_ready for arm in arms), PATIENCE):
             served = ", ".join(actions(graph.uses()[1])) or "no action"
-            required = " or ".join(actions_of_arm)
+            required = " or ".join(arm.name for arm in arms)
             _unreachable(f"{required} is not served in this domain; served are: {served}")
         self._arm = next(arm for arm in arms if arm.is_ready)
         if not self._wait(lambda: self._states.time >= 0, PATIENCE):
@@ -172,11 +173,11 @@ class RemoteArm:
                 does not confirm.
         """
         self._refuse_other_start(trajectory)
-        if not self._options.confirm(trajectory):
+        if not self._confirm(trajectory):
             raise StepFailed("PREEMPTED", "the motion was not confirmed, so nothing moved")
-        share, client = self._options.velocity_scaling, self._arm
-        goal = client.send(_goal(trajectory, share))
-        self._follow(client, goal, 10.0 * trajectory.duration / share + PATIENCE)
+        client, slowed = self._arm, _slowed(trajectory, self._share)
+        goal = client.send(message(f"{FOLLOW}_Goal", trajectory=trajectory_message(slowed)))
+        self._follow(client, goal, 10.0 * slowed.duration + PATIENCE)
         self._refuse_failure(goal, client)
         end = self.commanded_positions()
         for name, position in zip(trajectory.joint_names, trajectory.positions[-1], strict=True):
@@ -190,21 +191,18 @@ class RemoteArm:
         client, gripper = self._gripper, self.description.gripper
         if client is None or gripper is None or not self._wait(lambda: client.is_ready, PATIENCE):
             _unreachable("no server of GripperCommand answers in this domain")
-        command = message(
-            "control_msgs/msg/GripperCommand", position=position, max_effort=max_effort
-        )
+        command = message(COMMAND, position=position, max_effort=max_effort)
         goal = client.send(message(f"{GRIPPER}_Goal", command=command))
         self._follow(client, goal, 3.0 * timeout + PATIENCE)
         if goal.is_accepted is False:
             raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
-        objects = [obj for obj in self._program.all_objects() if obj.in_simulation]
-        result = goal.result
-        held = tuple(o.name for o in objects if result.stalled and not o.is_static)
+        loose = [o for o in self._program.all_objects() if o.in_simulation and not o.is_static]
+        held = tuple(each.name for each in loose) if goal.result.stalled else ()
         return GripperResult(
-            position=result.position,
-            effort=result.effort,
-            stalled=result.stalled,
-            reached_goal=result.reached_goal,
+            position=goal.result.position,
+            effort=goal.result.effort,
+            stalled=goal.result.stalled,
+            reached_goal=goal.result.reached_goal,
             contacts=dict.fromkeys(gripper.sides, held),
             between=held,
         )
@@ -243,17 +241,15 @@ class RemoteArm:
 
     def finish(self) -> Signals:
         """What `/joint_states` brought, on an even grid; poses follow from the joints."""
-        times, positions, velocities, efforts = self._states.record()
+        times, (positions, velocities, efforts) = self._states.record()
         nothing = np.full_like(positions, np.nan)
-        missing = np.full((len(times), 7), np.nan)
-        objects: dict[str, FloatArray] = {}
-        for obj in self._program.all_objects():
-            if obj.in_simulation:
-                known = np.tile(obj.pose.as_vector(), (len(times), 1))
-                objects[obj.name] = known if obj.is_static else missing
-        poses = {
-            link: np.array([self._kinematics.link_pose(q, link).as_vector() for q in positions])
-            for link in dict.fromkeys(self._frames)
+        poses = self._kinematics.link_poses(positions, self._frames)
+        objects = {
+            each.name: np.tile(
+                each.pose.as_vector() if each.is_static else UNKNOWN, (len(times), 1)
+            )
+            for each in self._program.all_objects()
+            if each.in_simulation
         }
         return Signals(
             times=times,
@@ -262,8 +258,8 @@ class RemoteArm:
             joint_efforts=efforts,
             joint_commands=nothing,
             joint_command_velocities=nothing,
-            tcp_pose=poses[self.description.tcp_link],
-            frames=poses,
+            tcp_pose=poses[:, 0],
+            frames={link: poses[:, place] for place, link in enumerate(self._frames)},
             object_poses=objects,
         )
 
@@ -311,14 +307,17 @@ class RemoteArm:
 
     def _refuse_stray(self, goal: ClientGoal) -> None:
         """Refuse to go on when the feedback shows a joint beyond its tolerance."""
-        tolerance = self.description.tracking.trajectory
+        tolerance, joints = self.description.tracking.trajectory, self.description.joint_by_name
         for feedback in goal.feedback:
-            errors = np.abs(feedback.error.positions)
-            if not len(errors) or errors.max() <= tolerance:
+            off = {
+                str(name): abs(float(error))
+                for name, error in zip(feedback.joint_names, feedback.error.positions, strict=False)
+                if name in joints
+            }
+            name = max(off, key=off.__getitem__, default="")
+            if not name or off[name] <= tolerance:
                 continue
-            worst = int(np.argmax(errors))
-            name, error = str(feedback.joint_names[worst]), float(errors[worst])
-            unit = self.description.joint_by_name[name].position_unit
+            error, unit = off[name], joints[name].position_unit
             raise StepFailed(
                 "CONTROL_FAILED",
                 f"{name} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"
@@ -333,32 +332,20 @@ class RemoteArm:
         code = goal.result.error_code if goal.result else Code.SUCCESSFUL
         if goal.is_accepted and goal.status is Status.SUCCEEDED and code == Code.SUCCESSFUL:
             return
-        how = f"ended with {goal.status.name}" if goal.is_accepted else "rejected the trajectory"
-        name = Code(code).name if code in list(Code) else str(code)
-        reason = f", {name}" if code or goal.is_accepted else ""
+        said = f"ended with {goal.status.name}" if goal.is_accepted else "rejected the trajectory"
+        if code or goal.is_accepted:
+            said += f", {Code(code).name if code in list(Code) else code}"
         if goal.result and goal.result.error_string:
-            reason += f": {goal.result.error_string}"
-        raise StepFailed("CONTROL_FAILED", f"{client.name} {how}{reason}")
+            said += f": {goal.result.error_string}"
+        raise StepFailed("CONTROL_FAILED", f"{client.name} {said}")
 
 
-def _goal(trajectory: JointTrajectory, share: float) -> Any:
-    """The goal of a trajectory at a share of its speed, which ends at rest."""
-    rows = zip(
-        trajectory.times / share,
-        trajectory.positions,
-        trajectory.velocities * share,
-        trajectory.accelerations * share**2,
-        strict=True,
-    )
-    points = [
-        message(
-            POINT, positions=p, velocities=v, accelerations=a, time_from_start=stamp(t, "Duration")
-        )
-        for t, p, v, a in rows
-    ]
-    points[-1].velocities = np.zeros_like(points[-1].velocities)
-    content = message(TRAJECTORY, joint_names=list(trajectory.joint_names), points=points)
-    return message(f"{FOLLOW}_Goal", trajectory=content)
+def _slowed(plan: JointTrajectory, share: float) -> JointTrajectory:
+    """A trajectory at a share of its speed, which ends at rest."""
+    velocities, accelerations = plan.velocities * share, plan.accelerations * share**2
+    velocities[-1] = 0.0
+    times = plan.times / share
+    return JointTrajectory(plan.joint_names, times, plan.positions, velocities, accelerations)
 
 
 def _unreachable(why: str) -> NoReturn:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from harness.core.types import FloatArray
 from harness.recording.link_poses import placement_poses
 from harness.recording.robot_record import RobotRecord
-from harness.reporting.rosbag.frames import Edge, robot_edges
+from harness.reporting.rosbag.frames import Edge, robot_edges, transform_stamped
 from harness.reporting.rosbag.messages import message
-from harness.ros.graph import Graph
-from harness.ros.interfaces import stamp
+from harness.ros.graph import LATCHED, Graph, Qos
+from harness.ros.interfaces import header, stamp
 
 TF = "tf2_msgs/msg/TFMessage"
 TF_EVERY = 2
@@ -21,38 +21,28 @@ class StateTopics:
     """Publishes the state of the robot after every tick."""
 
     def __init__(self, graph: Graph, robot: RobotRecord, cameras: Iterable[Edge]) -> None:
-        """Advertise the topics, and publish what does not change.
-
-        Args:
-            cameras: Where the optical frames of the cameras hang.
-        """
+        """Advertise the topics, and publish what does not change, with the frames of cameras."""
         names = [joint.name for joint in robot.joints]
         self._moved = [placement for placement in robot.placements if placement.joint]
         self._columns = [names.index(placement.joint) for placement in self._moved]
-        self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", depth=1)
+        self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", Qos(depth=1))
         self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
         self._state = message("sensor_msgs/msg/JointState", name=names)
-        self._tf = graph.advertise("/tf", TF, depth=100)
-        static = graph.advertise("/tf_static", TF, latched=True, depth=1)
-        edges = [*robot_edges(robot), *cameras]
-        static.publish(message(TF, transforms=[edge.stamped(0.0) for edge in edges]))
-        description = graph.advertise(
-            "/robot_description", "std_msgs/msg/String", latched=True, depth=1
-        )
+        self._tf = graph.advertise("/tf", TF, Qos(depth=100))
+        static = graph.advertise("/tf_static", TF, LATCHED)
+        fixed = [
+            transform_stamped(header(0.0, edge.parent), edge.child, edge.pose)
+            for edge in (*robot_edges(robot), *cameras)
+        ]
+        static.publish(message(TF, transforms=fixed))
+        description = graph.advertise("/robot_description", "std_msgs/msg/String", LATCHED)
         description.publish(message("std_msgs/msg/String", data=robot.urdf))
         self._ticks = 0
 
     def publish(
         self, time: float, positions: FloatArray, velocities: FloatArray, efforts: FloatArray
     ) -> None:
-        """Publish the state at a simulated time.
-
-        Args:
-            time: The present simulated time [s].
-            positions: Joint positions in description order, shape (n,).
-            velocities: Joint velocities, shape (n,).
-            efforts: Joint efforts, shape (n,); 0 for joints without a motor.
-        """
+        """Publish the state of the joints, description order, at a simulated time [s]."""
         moment = stamp(time)
         self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))
         state = self._state
@@ -61,11 +51,11 @@ class StateTopics:
         self._joints.publish(state)
         self._ticks += 1
         if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
-            self._publish_frames(time, positions)
-
-    def _publish_frames(self, time: float, positions: FloatArray) -> None:
-        transforms = [
-            Edge(each.parent, each.link, placement_poses(each, position)[0]).stamped(time)
-            for each, position in zip(self._moved, positions[self._columns, None], strict=True)
-        ]
-        self._tf.publish(message(TF, transforms=transforms))
+            moved = zip(self._moved, positions[self._columns, None], strict=True)
+            transforms = [
+                transform_stamped(
+                    header(time, each.parent), each.link, placement_poses(each, position)[0]
+                )
+                for each, position in moved
+            ]
+            self._tf.publish(message(TF, transforms=transforms))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -13,7 +13,8 @@ from harness.recording.commands import CommandKind, CommandRecord
 from harness.reporting.rosbag.messages import message
 from harness.ros.actions import ActionServer
 from harness.ros.control.cell import ExternalCell
-from harness.ros.control.controller import Window
+from harness.ros.control.controller import Outcome, Window
+from harness.ros.control.goals import MOTION
 from harness.ros.graph import Graph
 from harness.ros.interfaces import FOLLOW, GRIPPER, POINT, TRAJECTORY, header, seconds
 
@@ -36,63 +37,56 @@ class Wiring:
     ) -> None:
         self.is_open = False
         self._cell, self._on_command, self._ticks = cell, on_command, 0
-        serve = partial(self._serve, graph)
         self._servers: list[ActionServer] = []
-        for name in cell.trajectories:
-            action = f"/{name}/follow_joint_trajectory"
-            self._servers.append(serve("trajectory", name, action, FOLLOW, follow_content))
-            graph.subscribe(f"/{name}/joint_trajectory", TRAJECTORY, partial(self._topic, name))
-        if cell.gripper is not None:
-            name = cell.gripper.name
-            action = f"/{name}/gripper_cmd"
-            self._servers.append(serve("gripper", name, action, GRIPPER, grip_content))
+        cell.on_outcome = self._report
+        actions = {
+            "trajectory": ("follow_joint_trajectory", FOLLOW, follow_content),
+            "gripper": ("gripper_cmd", GRIPPER, grip_content),
+        }
+        for name, controller in cell.controllers.items():
+            on_message = partial(self._take, "trajectory", name, trajectory_content, "")
+            graph.subscribe(f"/{name}/joint_trajectory", TRAJECTORY, on_message)
+            for kind in controller.start:
+                action, action_type, content = actions[kind]
+                server = ActionServer(
+                    graph,
+                    f"/{name}/{action}",
+                    action_type,
+                    clock=lambda: cell.time,
+                    on_goal=partial(self._take, kind, name, content),
+                    on_cancel=partial(self._take, "cancel", name, dict),
+                )
+                self._servers.append(server)
 
     def after_tick(self) -> None:
-        """Report what ended, and how far the others are."""
-        self.report()
+        """Say now and then how far goals are."""
         self._ticks += 1
         if self._ticks % FEEDBACK_EVERY:
             return
         for controller, window in self._cell.tracking():
             for server in self._servers:
-                if server.owns(controller.goal):
+                if server.kind == FOLLOW and server.owns(controller.goal):
                     content = follow_feedback(controller.joint_names, window)
                     server.feedback(controller.goal, content)
 
-    def report(self) -> None:
-        """Send the results of goals that ended; a trajectory from a topic has none."""
-        outcomes, self._cell.outcomes = self._cell.outcomes, []
-        for outcome in outcomes:
-            for server in self._servers:
-                if server.owns(outcome.goal):
-                    server.finish(outcome.goal, outcome.has_succeeded, outcome.result)
+    def _report(self, outcome: Outcome) -> None:
+        """Send the result of a goal that ended; a trajectory from a topic has none."""
+        for server in self._servers:
+            if server.owns(outcome.goal):
+                server.finish(outcome.goal, outcome.has_succeeded, outcome.result)
 
-    def _serve(
+    def _take(
         self,
-        graph: Graph,
         kind: CommandKind,
-        controller: str,
-        action: str,
-        action_type: str,
+        name: str,
         content: Callable[[Any], Content],
-    ) -> ActionServer:
-        return ActionServer(
-            graph,
-            action,
-            action_type,
-            clock=lambda: self._cell.time,
-            on_goal=lambda goal, sent: self._take(kind, controller, goal, content(sent)),
-            on_cancel=lambda goal: self._take("cancel", controller, goal, {}),
-        )
-
-    def _topic(self, name: str, sent: Any) -> None:
-        self._take("trajectory", name, "", trajectory_content(sent))
-
-    def _take(self, kind: CommandKind, name: str, goal: str, content: Content) -> bool:
+        goal: str,
+        sent: Any = (),
+    ) -> bool:
         """Let a command take effect; whether it was accepted."""
         if not self.is_open:
             return False
-        record = self._cell.receive(kind, name, goal, content)
+        record = self._cell.receive(kind, name, goal, content(sent))
         self._on_command(record)
         return record.answer == "accepted"
 
@@ -105,9 +99,7 @@ def trajectory_content(trajectory: Any) -> Content:
         "points": [
             {
                 "time": seconds(point.time_from_start),
-                "positions": point.positions.tolist(),
-                "velocities": point.velocities.tolist(),
-                "accelerations": point.accelerations.tolist(),
+                **{key: getattr(point, key).tolist() for key in MOTION},
             }
             for point in trajectory.points
         ],
@@ -133,7 +125,7 @@ def grip_content(goal: Any) -> Content:
     return {"position": goal.command.position, "max_effort": goal.command.max_effort}
 
 
-def follow_feedback(names: tuple[str, ...], window: Window) -> Any:
+def follow_feedback(names: Sequence[str], window: Window) -> Any:
     """Feedback of a trajectory that is followed."""
 
     def point(motion: FloatArray) -> Any:

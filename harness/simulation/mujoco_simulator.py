@@ -314,11 +314,6 @@ class MujocoSimulator:
         """Time between samples [s]."""
         return self._timestep
 
-    @property
-    def actuated_joints(self) -> tuple[str, ...]:
-        """Names of the joints with a servo, in the order of set points."""
-        return tuple(self.description.joint_names[place] for place in self.physics.actuated)
-
     def stream(self, rows: FloatArray) -> None:
         """Advance along set points of all actuated joints, one physics step from row to row.
 

@@ -73,7 +73,7 @@ class Recording:
         self._sensors = np.empty((ROWS, model.nsensordata))
         self._commands = np.empty((ROWS, model.nu))
         self._command_velocities = np.empty((ROWS, model.nu))
-        self._contacts = ContactRecord(physics)
+        self._contacts = ContactRecord(physics, data)
         self.count = 0
 
     def start(self, command: FloatArray) -> None:
@@ -114,7 +114,7 @@ class Recording:
             step(model, data)
             if row > first:
                 sensed[row - 1] = sensors
-                keep_contacts(data, row - 1)
+                keep_contacts(row - 1)
             positions[row] = qpos
             velocities[row] = qvel
         control[:] = controls[-1]
@@ -194,7 +194,7 @@ class Recording:
         """Record the forces of the current state without changing the physics state."""
         refresh(self._physics.model, self._data)
         self._sensors[self.count - 1] = self._data.sensordata
-        self._contacts.keep(self._data, self.count - 1)
+        self._contacts.keep(self.count - 1)
 
     def _refuse_divergence(self, first: int) -> None:
         warned = any(self._data.warning[kind].number for kind in _DIVERGED)

@@ -182,9 +182,9 @@ def check_travel(travel: Travel | None, at: At, key: str) -> None:
 def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
     """The free motion to where the approach begins, and the straight one to the grasp."""
     goals = grasp_goals(step, cell)
-    group = group_of(cell, step.group)
+    group, axis = group_of(cell, step.group), gripper_axes(cell)[0]
     approaches = [
-        Approach(as_reached(back_off(goal, length, step, cell), group, cell), goal, number)
+        Approach(as_reached(back_off(goal, length, step, axis, cell), group, cell), goal, number)
         for length in travel_lengths(step.approach)
         for number, goal in enumerate(goals)
     ]
@@ -379,15 +379,15 @@ def as_reached(goal: TcpGoal, group: str, cell: Cell) -> TcpGoal:
     return goal
 
 
-def back_off(target: TcpGoal, distance: float, step: Pick, cell: Cell) -> TcpGoal:
-    """The goal moved back against the approach direction [m]."""
+def back_off(target: TcpGoal, distance: float, step: Pick, axis: FloatArray, cell: Cell) -> TcpGoal:
+    """The goal moved back against the approach direction [m]; `axis` is the gripper's, (3,)."""
     along = None
     if step.approach is not None and step.approach.direction is not None:
         along = cell.world_direction(step.approach.direction)
     if isinstance(target.target, Pose):
         at = target.target.se3()
         if along is None:
-            along = at.rotation @ gripper_axes(cell)[0]
+            along = at.rotation @ axis
         return TcpGoal(world_pose_spec(SE3(at.rotation, at.translation - distance * along)))
     point, pitch = np.array(target.target.xyz), float(target.pitch or 0.0)
     if along is None:

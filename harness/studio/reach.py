@@ -115,7 +115,7 @@ class ReachStudy:
         try:
             find_goals(self._kinematics, self._checker, start, goal, 0)
         except PlanningFailed as failure:
-            nearest = nearest_pose(self._space, goal, self._space.part(start), 0)
+            nearest = nearest_pose(self._space, goal, self._space.part(start))
             return Reach(ways, failure.message, self._space.whole(nearest.positions))
         return Reach(ways, "")
 

@@ -17,7 +17,8 @@ from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
 from harness.suite.environment import prepare_process
 from harness.suite.leftovers import clean_leftovers, remove_abandoned
-from harness.suite.warm import Ended, Heard, WarmServer
+from harness.suite.server import preload
+from harness.suite.warm import REPORT_MODULES, Ended, Heard, WarmServer
 
 HARD_CAP_SECONDS = 600.0
 """Wall time after which a case ends as an error, whatever it is doing; HARNESS_HARD_CAP sets it."""
@@ -153,6 +154,8 @@ def run_isolated(
     if function is run_job:
         some = jobs[:1] if len(jobs) > 1 else []
         server.prepare(read_ahead, _words(jobs), some)
+        if len(jobs) > 1:
+            server.prepare(preload, REPORT_MODULES)
         if len({job.file for job in jobs}) < len(jobs):
             server.prepare(share_results)
         if min(workers, len(jobs)) >= len(os.sched_getaffinity(0)):

@@ -10,6 +10,7 @@ from typing import Any, cast
 from harness.language.files.source import Place, Source, located
 from harness.language.files.yaml_text import yaml_text
 from harness.language.world import WorldSpec
+from harness.world.sdf.round_meshes import FOLDER
 
 
 def world_text(world: WorldSpec, folder: Path, comment: str = "") -> str:
@@ -17,7 +18,8 @@ def world_text(world: WorldSpec, folder: Path, comment: str = "") -> str:
 
     Args:
         world: The world to be written.
-        folder: Folder of the file; paths of mesh files are relative to it.
+        folder: Folder of the file; paths of mesh files are relative to it. Those of this package
+            are to be copied there.
         comment: Comment at the top.
     """
     plain = world.model_dump(mode="json", by_alias=True, exclude_defaults=True)
@@ -34,6 +36,8 @@ def _from_folder(value: Any, folder: Path, key: str = "") -> Any:
     if not isinstance(value, Mapping):
         return value
     entries = cast("Mapping[str, Any]", value)
+    if key == "mesh" and Path(entries["file"]).parent == FOLDER:
+        return {**entries, "file": Path(entries["file"]).name}
     if key == "mesh" and Path(entries["file"]).is_absolute():
         return {**entries, "file": os.path.relpath(entries["file"], folder.resolve())}
     return {name: _from_folder(item, folder, name) for name, item in entries.items()}

@@ -152,7 +152,10 @@ WINDOW_SCENES = (
         lambda run: not rose(run, "cube", 0.1),
         (),
         ("formula: always (z(cube) > 1 cm implies tilt(cube) < 5 deg)",),
-        warned=("formula: always (z(cube) > 10 cm implies force(gripper, cube) > 0.1 N)",),
+        warned=(
+            "formula: always (z(cube) > 10 cm implies force(gripper, cube) > 0.1 N)",
+            "formula: always (not z(cube) > 10 cm or force(gripper, cube) > 0.1 N)",
+        ),
     ),
     Scene(
         "until that comes at its first sample",

@@ -127,3 +127,13 @@ def test_a_world_file_is_called_yaml_and_a_missing_file_reported(tmp_path, capsy
     write(tmp_path, text_with(), "a.sdf")
     assert main(["import", "sdf", str(tmp_path / name), *output]) == 2
     assert ("ends in .yaml" if output else "none.sdf") in capsys.readouterr().err
+
+
+def test_an_imported_cone_has_its_mesh_next_to_the_world_file(tmp_path):
+    shape = "<cone><radius>0.1</radius><length>0.5</length></cone>"
+    source = write(tmp_path, text_with("geometry", shape), "a.sdf")
+    target = tmp_path / "out" / "a.yaml"
+    assert main(["import", "sdf", str(source), "-o", str(target)]) == 0
+    assert (target.parent / "cone.stl").is_file()
+    assert "file: cone.stl" in target.read_text(encoding="utf-8")
+    prepare(a_scenario(tmp_path / "out", "a.yaml"))

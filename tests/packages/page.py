@@ -29,9 +29,10 @@ robot:
 
 Each arm is loaded with its own SRDF, where that matches the URDF. The positions of all links at
 random joint positions, and the masses, agree between MuJoCo and Pinocchio's own reading of the file
-to 1e-9 m and 1e-9 kg. Then one `move_to` to a random collision-free state is planned and executed
-within the limits: the first of at most ten states that can be reached. (Not every state can be
-reached: with joints of two turns, some free regions are not connected.)
+to 1e-9 m and 1e-9 kg; masses that a file lacks are estimated from volumes. Then one `move_to` to a
+random collision-free state is planned and executed within the limits: the first of at most ten
+states that can be reached. (Not every state can be reached: with joints of two turns, some free
+regions are not connected.)
 
 ```sh
 pip install 'armharness[packages]'
@@ -53,6 +54,7 @@ does not.
 def row(arm: PackageArm, trial: Trial) -> str:
     """The arm's line of the table."""
     mass = "" if trial.mass != trial.mass else f"{trial.mass:.3f}"
+    mass += " (estimated)" if trial.is_mass_estimated else ""
     joints = trial.joints or ""
     moved = "yes" if trial.moved else "no"
     reason = trial.reason.replace("|", "/")

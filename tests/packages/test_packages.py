@@ -1,6 +1,6 @@
 """Robots of packages that anyone can install; their page is what is found here."""
 
-import sysconfig
+from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
@@ -42,7 +42,7 @@ def test_a_generated_scenario_picks_a_box_or_the_page_says_why_not(arm, tmp_path
 
 @pytest.mark.parametrize("name", PACKAGES)
 def test_every_description_in_a_package_is_an_arm_or_said_to_be_none(name):
-    folder = Path(sysconfig.get_path("purelib")) / PACKAGES[name].folder
+    folder = Path(str(distribution(name).locate_file(PACKAGES[name].folder)))
     files = {
         path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix in SUFFIXES
     }

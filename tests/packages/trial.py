@@ -34,7 +34,8 @@ class Trial:
     Attributes:
         joints: Of its group.
         mass: Of the whole robot in physics [kg].
-        mass_difference: Between planner and physics [kg].
+        is_mass_estimated: Whether the file lacks masses, so that some follow from volumes.
+        mass_difference: Between physics and the file [kg]; 0 where the file lacks masses.
         position_difference: The largest of any link at random states [m].
         srdf: What became of the SRDF it came with.
         moved: How many random free states were tried until one was reached; 0 if none was.
@@ -43,6 +44,7 @@ class Trial:
 
     joints: int = 0
     mass: float = float("nan")
+    is_mass_estimated: bool = False
     mass_difference: float = float("nan")
     position_difference: float = float("nan")
     srdf: str = "none"
@@ -133,8 +135,9 @@ def compare(arm: PackageArm, description: RobotDescription, trial: Trial) -> Non
     else:
         planner = pin.buildModelFromXML(description.urdf)
     trial.mass = float(physics.body_mass.sum())
+    trial.is_mass_estimated = any(note.startswith("no mass is given") for note in description.notes)
     total = pin.computeTotalMass(planner) + float(planner.inertias[0].mass)
-    trial.mass_difference = abs(total - trial.mass)
+    trial.mass_difference = 0.0 if trial.is_mass_estimated else abs(total - trial.mass)
     rng, worst = np.random.default_rng(1), 0.0
     for _ in range(5):
         positions = description.with_mimics(random_positions(description, rng))

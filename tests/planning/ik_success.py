@@ -15,6 +15,7 @@ from harness.planning.ik.numeric import (
     sample_group_positions,
 )
 from harness.planning.ik.numeric import solve_numeric as solve
+from harness.planning.ik.pose_table import SIZE
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import gripper_names, load_robot, robot_names
@@ -31,8 +32,9 @@ TEXT = """\
 
 Closed forms give every branch of a UR (up to eight) and of OpenMANIPULATOR-X (up to four) without a
 search. Every other arm, and every goal without a closed form, is solved numerically: damped least
-squares from the current joint positions, then from {restarts} random ones, and from up to {most}
-while there is no solution. The same seed gives the same solutions.
+squares from the current joint positions and from {restarts} others, and from up to {most} while
+there is no solution. Of a table of {size} random joint positions, always the same, these are the
+ones that bring the link nearest to the goal. The same goal and positions give the same solutions.
 
 The table shows how often the numeric solver finds a random reachable goal, measured on the bundled
 arms as if they had no closed form: {poses} goals each, at joint positions drawn uniformly in the
@@ -70,15 +72,13 @@ def measure(model: str, kind: str, poses: int) -> Success:
     rng = np.random.default_rng(2024)
     found = [0] * len(ATTEMPTS)
     residual = 0.0
-    for number in range(poses):
+    for _ in range(poses):
         goal = _goal(kind, space, description.tcp_link, sample_group_positions(space, rng))
         for place, restarts in enumerate(ATTEMPTS):
             solutions = solve(
                 space,
                 goal,
                 space.part(start),
-                number,
-                restarts=restarts,
                 most_restarts=restarts,
                 enough=1,
             )
@@ -109,6 +109,7 @@ def page() -> str:
     return TEXT.format(
         poses=POSES,
         restarts=RESTARTS,
+        size=SIZE,
         most=MOST_RESTARTS,
         renew=RENEW,
         rows="\n".join(rows),

@@ -57,7 +57,7 @@ def test_no_random_state_comes_nearer_than_the_nearest_pose(make, group, goal):
     """Against 4000 states drawn from the whole joint space, and the best of them improved."""
     cell = Cell(make())
     space = GroupSpace(cell.kinematics.robot, group, cell.state)
-    found = nearest_pose(space, goal, space.part(cell.state), 0)
+    found = nearest_pose(space, goal, space.part(cell.state))
     assert np.all((found.positions >= space.lower) & (found.positions <= space.upper))
     pose = cell.kinematics.link_pose(space.whole(found.positions), TCP)
     assert distance_to_goal(goal, pose) == pytest.approx((found.shift, found.turn), abs=1e-9)
@@ -94,7 +94,7 @@ def test_a_turn_that_is_kept_is_kept():
     cell = Cell(ur("ur3e"))
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
     found = nearest_pose(
-        space, grasp_goal(0.5, -0.1, 0.3), space.part(cell.state), 0, metres_per_radian=KEEP_TURN
+        space, grasp_goal(0.5, -0.1, 0.3), space.part(cell.state), metres_per_radian=KEEP_TURN
     )
     assert found.turn < 1e-4
     assert found.shift == pytest.approx(0.0884, abs=0.001)

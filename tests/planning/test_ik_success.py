@@ -9,6 +9,8 @@ import pytest
 from harness.core.spatial import pitch_of
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.pose_table import pose_table
+from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.load import load_robot
 from tests.planning.ik_success import ARMS, ATTEMPTS, KINDS, PAGE, POSES, measure
@@ -47,6 +49,27 @@ def test_the_rates_are_those_of_the_page(arm, kind):
     measured = [100 * count / success.poses for count in success.found]
     assert len(measured) == len(ATTEMPTS)
     assert measured == pytest.approx(stated()[arm, kind], abs=0.5)
+
+
+def test_searches_start_nearest_to_the_goal_wherever_the_gripper_is():
+    spec = RobotSpec.model_validate({"model": "ur5e", "gripper": "rh_p12_rn_a"})
+    description = load_robot(spec)
+    robot, start = RobotModel(description), description.start_positions()
+    group, link = description.arm_group, description.tcp_link
+    goal = PoseGoal(link, robot.link_pose(start, link))
+    spaces = [GroupSpace(robot, group, state) for state in (start, start + 0.1)]
+    tables = [pose_table(space, link) for space in spaces]
+    assert tables[0] is tables[1]  # joints that do not carry the link make no difference
+    found = tables[0].nearest(goal, 1024)
+    away = [
+        goal.pose.distance_to(robot.link_pose(spaces[0].whole(row), link))
+        for row in found[[*range(20), *range(-20, 0)]]
+    ]
+    shifts, turns = np.array(away).T
+    assert shifts[:20].mean() < 0.4 * shifts[20:].mean()
+    assert turns[:20].mean() < 0.6 * turns[20:].mean()
+    again = pose_table(GroupSpace(RobotModel(description), group, start), link)
+    assert np.array_equal(again.nearest(goal, 1024), found)
 
 
 SINGULAR = {

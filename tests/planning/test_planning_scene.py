@@ -33,6 +33,25 @@ def test_an_object_at_the_gripper_touches_it_with_its_depth(cell):
     assert [t.distance for t in touches] == sorted(t.distance for t in touches)
 
 
+def test_touches_are_the_pairs_whose_distance_is_too_small(cell):
+    for index, x in enumerate((-0.5, 0.3, 0.6)):
+        cell.add(thing(f"post {index}", at(x, 0.3, 1.2), Shape(Box((0.05, 0.2, 0.4)))))
+    rng, found = np.random.default_rng(4), 0
+    for padding in (0.0, 0.05) * 30:
+        state = cell.with_arm(rng.uniform(-np.pi, np.pi, 6))
+        near = {
+            (touch.first, touch.second, required): touch.distance
+            for touch, pair in cell.scene.distances(state)
+            if touch.distance <= (required := padding if pair.keeps_padding else 0.0)
+        }
+        touches = cell.scene.touches(state, padding)
+        measured = {(t.first, t.second, t.required): t.distance for t in touches}
+        assert measured == pytest.approx(near, abs=1e-5)  # Coal's depths vary a little
+        assert list(measured.values()) == sorted(measured.values())
+        found += len(near)
+    assert found > 60
+
+
 @pytest.mark.parametrize("shape", [Box((0.1, 0.1, 0.1)), Cylinder(0.05, 0.1)])
 def test_padding_is_kept_from_objects_but_not_between_links(cell, shape):
     palm = cell.kinematics.link_pose(cell.state, TCP).translation

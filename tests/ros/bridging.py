@@ -47,7 +47,7 @@ def bridge(file, *, waits=False, **options):
     with free_domain() as domain:
         run = RunRequest(Path(file), page=False, stills=False, **options.pop("run", {}))
         results = []
-        request = BridgeRequest(run, domain, should_end=ended.is_set, **options)
+        request = BridgeRequest(run, domain, stop=ended, **options)
         thread = Thread(target=lambda: results.append(run_bridge(request)))
         thread.start()
         node = Node(domain)

@@ -22,9 +22,9 @@ class Node:
         self.gripper = ActionClient(self.graph, f"/{gripper}/gripper_cmd", GRIPPER)
         self.received = {}
 
-    def listen(self, topic, kind, **options):
+    def listen(self, topic, kind, *qos):
         messages = self.received.setdefault(topic, [])
-        self.graph.subscribe(topic, kind, messages.append, **options)
+        self.graph.subscribe(topic, kind, messages.append, *qos)
         return messages
 
     def wait(self, holds=lambda: False, timeout=20.0):

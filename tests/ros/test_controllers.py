@@ -5,9 +5,11 @@ import pytest
 from scipy.interpolate import BPoly
 
 from harness.core.spatial import SE3
-from harness.robot.description import Joint
-from harness.ros.control.controller import Command, Window
-from harness.ros.control.goals import Code, Defaults, GoalRefused
+from harness.recording.commands import CommandRecord
+from harness.robot.description import Joint, TrackingTolerances
+from harness.ros.control.cell import UNBOUNDED
+from harness.ros.control.controller import Window
+from harness.ros.control.goals import Code, GoalRefused
 from harness.ros.control.trajectory import Spline, start_trajectory
 
 JOINTS = [
@@ -24,10 +26,10 @@ def content(*points, names=("first", "second"), **fields):
     return {"joint_names": list(names), "points": rows, **fields}
 
 
-def followed(sent, now=0.0, **tolerances):
+def followed(sent, now=0.0, tolerances=UNBOUNDED):
     """The motion of a goal from rest at zero."""
-    command = Command("g", sent, now, REST, HERE)
-    return start_trajectory(JOINTS, Defaults(**tolerances), command)
+    command = CommandRecord(0, now, "trajectory", goal="g", content=sent)
+    return start_trajectory(JOINTS, tolerances, command, REST, HERE)
 
 
 def refused(**fields):
@@ -101,7 +103,7 @@ def test_each_mistake_has_its_error_code():
 
 
 def test_the_first_sample_beyond_the_path_tolerance_decides():
-    arm = followed(content((2.0, [1, 0], [0, 0])), path=0.05)
+    arm = followed(content((2.0, [1, 0], [0, 0])), tolerances=TrackingTolerances(0.05))
     desired = arm.at(TIMES)
     lagging = desired[:2].copy()
     lagging[0, 50:, 0] -= 0.06
@@ -117,7 +119,8 @@ def test_the_first_sample_beyond_the_path_tolerance_decides():
 )
 def test_a_goal_s_own_tolerance_replaces_the_default(bound, code):
     own = [{"name": "first", "position": bound, "velocity": 0.0}]
-    arm = followed(content((2.0, [1, 0], [0, 0]), goal_tolerance=own), goal=0.01, goal_time=0.5)
+    sent = content((2.0, [1, 0], [0, 0]), goal_tolerance=own)
+    arm = followed(sent, tolerances=TrackingTolerances(np.inf, 0.01, 0.5))
     desired = arm.at(TIMES)
     off = desired[:2] + np.array([[[0.1, 0.0]], [[0.0, 0.0]]])
     ended = arm.judge(Window(TIMES, desired, off, HERE))

@@ -3,14 +3,18 @@
 import json
 import re
 import shutil
+import signal
 import sys
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
 from harness.cli.main import main
+from harness.ros.domain import free_domain
 from tests.engine.front_door import problems
 from tests.ros.bridging import scenario
+from tests.ros.nodes import Node
 
 HERE = Path(__file__).parent
 BOX = "ros2/01_lift_the_red_box"
@@ -135,6 +139,23 @@ def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
     assert main(["run", str(folder / "scenario.resolved.yaml"), "--no-report"]) == 0
     shutil.rmtree(folder)
     assert main(["replay", str(folder)]) == 2
+
+
+def test_ctrl_c_ends_a_served_session_which_is_then_judged(tmp_path, capsys):
+    file = scenario(tmp_path, "- external: {}")
+    with free_domain() as domain:
+        node = Node(domain)
+
+        def press_ctrl_c():
+            node.ready()
+            signal.raise_signal(signal.SIGINT)
+
+        person = Thread(target=press_ctrl_c)
+        person.start()
+        assert main(["bridge", str(file), "--domain", str(domain), "--no-report"]) == 0
+        person.join(20)
+        node.graph.close()
+    assert "1 of 1 expectation hold" in capsys.readouterr().out
 
 
 def test_nodes_that_commanded_nothing_are_replayed(tmp_path, capsys):

@@ -8,11 +8,12 @@ from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.ros.actions import ActionClient
 from harness.ros.bridge import BridgeRequest, run_bridge
+from harness.ros.graph import BEST_EFFORT, LATCHED, Use
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
-from harness.ros.names import Use, unserved
-from harness.ros.rtps.discovery import Qos
+from harness.ros.names import unserved
 from harness.ros.rtps.graph import dds_type
 from harness.session.run_request import RunRequest
+from tests.engine.front_door import problems
 from tests.ros.bridging import bridge, scenario
 
 HOLD = "- external: {}"
@@ -39,7 +40,7 @@ def test_misspelt_actions_and_topics_are_named_when_nothing_arrived(tmp_path):
         node.graph.advertise("/arm_controler/joint_trajectory", TRAJECTORY)
         ActionClient(node.graph, "/gripper_controller/gripper_command", GRIPPER)
         node.sleep(1.0)
-    assert results[0].names == (
+    assert results[0].remarks[1:] == (
         "a node calls the action /gripper_controller/gripper_command, which is not served; did you"
         " mean /gripper_controller/gripper_cmd?",
         "a node publishes /arm_controler/joint_trajectory, which has no subscriber; did you mean"
@@ -52,9 +53,9 @@ def test_wrong_types_and_qualities_are_noted_once_with_what_to_change(tmp_path):
     with bridge(scenario(tmp_path, HOLD), say=said.append) as (node, _):
         node.ready()
         node.graph.advertise(command, "std_msgs/msg/String")
-        node.graph.participant.writer(f"rt{command}", dds_type(TRAJECTORY), Qos(is_reliable=False))
+        node.graph.participant.writer(f"rt{command}", dds_type(TRAJECTORY), BEST_EFFORT)
         ActionClient(node.graph, "/gripper_controller/gripper_cmd", FOLLOW)
-        node.listen("/joint_states", "sensor_msgs/msg/JointState", latched=True)
+        node.listen("/joint_states", "sensor_msgs/msg/JointState", LATCHED)
         node.listen("/robot_description", "std_msgs/msg/String")
         node.sleep(2.5)
     assert said == [
@@ -83,6 +84,20 @@ def test_a_second_robot_in_a_domain_is_refused(tmp_path):
         request = BridgeRequest(RunRequest(Path(file)), node.graph.participant.domain)
         with pytest.raises(SpecError, match="another robot or simulator publishes /joint_states"):
             run_bridge(request)
+
+
+@pytest.mark.parametrize(
+    ("names", "reason"),
+    [
+        ("{arm_controllers: [/my/arm]}", "no digit first, and `/` in between"),
+        ("{gripper_controller: two words}", "ROS 2 takes letters, digits and `_`"),
+        ("{arm_controllers: [a, b], gripper_controller: b}", "need different names"),
+    ],
+)
+def test_names_that_ros_does_not_take_are_reported_at_their_place(tmp_path, names, reason):
+    [(line, message)] = problems(tmp_path, HOLD, rest=f"ros2: {names}")
+    assert reason in message
+    assert line == 6
 
 
 @pytest.mark.parametrize("text", ["233", "-1", "abc"])

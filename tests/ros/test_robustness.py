@@ -12,9 +12,12 @@ import numpy as np
 import rosless
 
 from harness.ros.actions import Status
+from harness.ros.domain import free_domain
+from harness.ros.graph import DEFAULT, LATCHED, Qos
 from harness.ros.interfaces import decoded, encoded
 from harness.ros.rtps import wire
-from harness.ros.rtps.discovery import Qos
+from harness.ros.rtps.participant import Participant
+from harness.ros.rtps.sockets import Sockets
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, Node, follow, point
 
@@ -37,7 +40,7 @@ def test_garbage_on_the_ports_and_topics_is_ignored(tmp_path):
         trajectory = node.graph.participant.writer(
             "rt/arm_controller/joint_trajectory",
             "trajectory_msgs::msg::dds_::JointTrajectory_",
-            Qos(),
+            DEFAULT,
         )
         node.ready()
         node.wait(lambda: trajectory.matched)
@@ -50,6 +53,31 @@ def test_garbage_on_the_ports_and_topics_is_ignored(tmp_path):
             trajectory.write(b"\0\1\0\0" + rng.bytes(size))
             trajectory.write(b"\0\1\0\0" + struct.pack("<I", 2**31) * 5)
         assert node.send(follow(point(0.1, END))).status is Status.SUCCEEDED
+
+
+def test_datagrams_that_get_lost_are_sent_again(monkeypatch):
+    """A fifth of everything is lost, discovery and fragments of large samples included."""
+    rng, send, arrived = np.random.default_rng(0), Sockets.send, []
+
+    def lossy(sockets, datagram, address):
+        if rng.random() > 0.2:
+            send(sockets, datagram, address)
+
+    monkeypatch.setattr(Sockets, "send", lossy)
+    sent = [rng.bytes(4 * int(size)) for size in rng.choice([1, 100, 60_000], 60)]
+    with free_domain() as domain:
+        one, other = (Participant(domain, name=name) for name in ("one", "other"))
+        other.reader("rt/data", "Data_", DEFAULT, lambda sample: arrived.append(sample.payload))
+        writer = one.writer("rt/data", "Data_", Qos(depth=100))
+        end, left = time.monotonic() + 30, list(sent)
+        while len(arrived) < len(sent) and time.monotonic() < end:
+            if writer.matched and left:
+                writer.write(left.pop(0))
+            one.spin(time.monotonic() + 0.002)
+            other.spin(time.monotonic() + 0.002)
+        one.close()
+        other.close()
+    assert [payload[4:] for payload in arrived] == [payload[4:] for payload in sent]
 
 
 def test_bytes_after_a_message_do_not_count():
@@ -91,9 +119,10 @@ def test_two_bridges_side_by_side_do_not_hear_each_other(tmp_path):
     assert (one[0].commands, two[0].commands) == (1, 0)
 
 
-def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
+def test_another_implementation_of_the_protocol_reads_the_joints_and_commands_them(tmp_path):
     """rosless is written in Rust on RustDDS; like rclpy, it is not of this program."""
-    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+    last = {"positions": END, "time_from_start": {"sec": 0, "nanosec": 10**8}}
+    with bridge(scenario(tmp_path), waits=True) as (node, results):
         other = rosless.Node(node.graph.participant.domain)
         topic = other.subscribe("/joint_states", "sensor_msgs/msg/JointState")
         message, end = None, time.monotonic() + 20
@@ -101,23 +130,33 @@ def test_another_implementation_of_the_protocol_reads_the_joints(tmp_path):
             node.sleep(0.05)
             message = topic.read(timeout=0.2)
         topic.close()
+        command = "/arm_controller/joint_trajectory"
+        publisher = other.advertise(command, "trajectory_msgs/msg/JointTrajectory")
+        while not results and time.monotonic() < end:
+            publisher.send({"joint_names": ARM, "points": [last]})
+            node.sleep(0.5)
+    assert results[0].case.outcome == "passed"
     assert message.name[:4] == list(ARM)
     assert len(message.position) == len(message.velocity) == len(message.name)
 
 
 def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
-    camera = "cameras: [{name: top, pose: {xyz: [0.5, 0, 0.5]}, look_at: [0, 0, 0]}]"
+    camera = "cameras: [{name: 2nd view, pose: {xyz: [0.5, 0, 0.5]}, look_at: [0, 0, 0]}]"
     with bridge(scenario(tmp_path, HOLD, camera)) as (node, _):
         node.ready()
         late = Node(node.graph.participant.domain)
-        description = late.listen("/robot_description", "std_msgs/msg/String", latched=True)
-        static = late.listen("/tf_static", "tf2_msgs/msg/TFMessage", latched=True)
+        description = late.listen("/robot_description", "std_msgs/msg/String", LATCHED)
+        static = late.listen("/tf_static", "tf2_msgs/msg/TFMessage", LATCHED)
         moving = late.listen("/tf", "tf2_msgs/msg/TFMessage")
         late.wait(lambda: description and static and moving)
+        served = {use.topic for use in late.graph.uses()[1]}
         late.graph.close()
+    assert "/_2nd_view/image" in served, "ROS takes no spaces and no digit first"
     assert description[0].data.startswith("<?xml")
     edges = {each.child_frame_id: each.header.frame_id for each in moving[0].transforms}
     assert edges["link2"] == "link1"
+    stamps = [each.header.stamp.sec for each in (*static[0].transforms, *moving[0].transforms)]
+    assert max(stamps) < 60, "frames have the time of /clock, which begins at 0"
     fixed = {each.child_frame_id: each.header.frame_id for each in static[0].transforms}
-    assert fixed["top_optical_frame"] == "world"
+    assert fixed["2nd view_optical_frame"] == "world"
     assert {fixed[name] for name in fixed} <= {"world", *fixed, *edges}, "one tree"

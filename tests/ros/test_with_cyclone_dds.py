@@ -52,7 +52,7 @@ def test_a_server_on_cyclone_dds_answers_our_client():
         next_call = 0.0
         while not responses and time.monotonic() < end:
             graph.spin(time.monotonic() + 0.02)
-            if client.is_ready and time.monotonic() > next_call:
+            if client.is_ready() and time.monotonic() > next_call:
                 # the first response is lost where the server has not discovered the reader yet
                 client.call(message(f"{CANCEL}_Request"), responses.append)
                 next_call = time.monotonic() + 3

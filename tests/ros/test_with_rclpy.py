@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from harness.ros.domain import free_domain
 from harness.ros.handover import replay
 from tests.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
 
@@ -101,6 +102,27 @@ def test_a_student_s_node_lifts_the_red_box_and_replays(tmp_path, capsys):
     assert (code, grade["earned"]) == (0, 10), grade["rows"]
     [record] = tmp_path.rglob("run.json")
     assert replay(record.parent).digest == json.loads(record.read_text())["digest"]
+
+
+@pytest.mark.usefixtures("_control_msgs")
+@pytest.mark.parametrize("strays", [False, True])
+def test_a_driver_on_rclpy_executes_a_plan_and_is_stopped_where_it_strays(tmp_path, capsys, strays):
+    steps = "- ptp: {joints: {joint1: 0.2}}\n- ptp: {joints: {joint1: 0.0}}"
+    file = scenario(tmp_path, steps, "expect: [{eventually: {joints: {positions: {joint1: 0.2}}}}]")
+    with free_domain() as domain:
+        driver = subprocess.Popen(
+            [PYTHON, STUDENT / "driver.py", *["--strays"] * strays],
+            env={**os.environ, "ROS_DOMAIN_ID": str(domain)},
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        options = ["--robot", "ros2", "--yes", "--no-report", "--domain", str(domain)]
+        code = main(["run", str(file), *options])
+        driver.terminate()
+        executed = driver.communicate(timeout=20)[0].split()
+    said = " ".join(capsys.readouterr().out.split())
+    assert (code, executed) == ((1, ["canceled"]) if strays else (0, ["executed"] * 2)), said
+    assert ("CONTROL_FAILED: joint1 is 0.5 rad off its trajectory" in said) is strays
 
 
 def test_joint_angles_that_are_sent_ten_times_a_second_arrive(tmp_path):

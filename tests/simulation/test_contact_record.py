@@ -67,8 +67,8 @@ def test_a_contact_that_only_touches_does_not_take_the_force_of_another_constrai
     data = mujoco.MjData(physics.model)
     mujoco.mj_forward(physics.model, data)
     data.efc_force[0] = 123.0
-    record = ContactRecord(physics)
-    record.keep(data, 0)
+    record = ContactRecord(physics, data)
+    record.keep(0)
     forces = record.forces(0, 1)
     expected, wrench = dict.fromkeys(forces, 0.0), np.zeros(6)
     for index in range(data.ncon):
@@ -107,11 +107,11 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
         timestep=0.001,
     )
     data, samples = mujoco.MjData(physics.model), 20
-    record, wrench = ContactRecord(physics), np.zeros(6)
+    record, wrench = ContactRecord(physics, data), np.zeros(6)
     total, carried, pushed, rubbed = {}, {}, {}, {}
     for row in range(samples):
         mujoco.mj_step(physics.model, data)
-        record.keep(data, row)
+        record.keep(row)
         for index in range(data.ncon):
             mujoco.mj_contactForce(physics.model, data, index, wrench)
             bodies = physics.model.geom_bodyid[data.contact.geom[index]].tolist()

@@ -1,18 +1,22 @@
 """SDF worlds as a scenario's: run, checked, reported in report and check."""
 
 import json
+import math
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from harness.cli.main import main
 from harness.core.errors import SpecError
-from harness.core.geometry import Box
+from harness.core.geometry import Box, Mesh
 from harness.language.reading.load import parse_scenario
 from harness.recording.read_run import read_run
-from harness.robot.mesh_file import hull_points
+from harness.robot.mesh_file import hull_points, hull_solid, read_triangles
 from harness.session.prepare import prepare
+from harness.world.sdf.round_meshes import CONE, SPHERE
+from harness.world.stl import cone, stl_bytes
 from tests.running import run_case
 from tests.world.sdf_files import ASCII_STL, COLLADA, CRATE, load, text_with, write
 
@@ -178,3 +182,38 @@ def test_a_missing_visual_mesh_is_a_note(tmp_path):
     gone = "<visual name='gone'><geometry><mesh><uri>gone.stl</uri></mesh></geometry></visual>"
     found = load(tmp_path, text_with("link", gone))
     assert any("a visual is not drawn: " in str(note) for note in found.notes)
+
+
+ROUND = """<?xml version="1.0"?>
+<sdf version="1.12"><world name="w"><include><uri>model://ground_plane</uri></include>
+ <model name="egg"><pose>1 0 0.0515 0 0 0</pose><link name="l">
+  <inertial><mass>0.2</mass><inertia><ixx>3e-4</ixx><iyy>3e-4</iyy><izz>3e-4</izz></inertia></inertial>
+  <collision name="c"><geometry><ellipsoid><radii>0.1 0.08 0.05</radii></ellipsoid></geometry>
+  </collision></link></model>
+ <model name="hat"><pose>1 1 0.1005 0 0 0</pose><link name="l">
+  <inertial><mass>0.2</mass><pose>0 0 -0.05 0 0 0</pose>
+   <inertia><ixx>4e-4</ixx><iyy>4e-4</iyy><izz>4e-4</izz></inertia></inertial>
+  <collision name="c"><geometry><cone><radius>0.1</radius><length>0.2</length></cone></geometry>
+  </collision></link></model>
+</world></sdf>
+"""
+
+
+def test_an_ellipsoid_and_a_cone_come_to_rest_where_their_shapes_say(tmp_path):
+    (tmp_path / "round.sdf").write_text(ROUND, encoding="utf-8")
+    path = tmp_path / "round.scenario.yaml"
+    path.write_text("scenario: x\nrobot: ur3e\nworld: round.sdf\nsteps: [settle: {}]\n")
+    result = run_case(path, report_dir=tmp_path / "report", stills=False)
+    assert result.outcome == "passed"
+    poses = read_run(tmp_path / "report").run.signals.object_poses
+    heights = [float(poses[name][-1, 2]) for name in ("egg", "hat")]
+    assert heights == pytest.approx([0.05, 0.1], abs=4e-4)
+
+
+def test_the_round_meshes_are_what_their_formulas_give():
+    solids = [(CONE, math.pi / 3), (SPHERE, 4 / 3 * math.pi)]
+    for file, volume in solids:
+        assert hull_solid(Mesh(file))[0] == pytest.approx(volume, rel=0.01)
+    corners = read_triangles(Mesh(SPHERE)).vertices
+    assert np.linalg.norm(corners, axis=1) == pytest.approx(np.ones(len(corners)), abs=1e-6)
+    assert CONE.read_bytes() == stl_bytes(cone(1.0, 1.0))

@@ -53,7 +53,11 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
             10,
             "no rigid body has this inertia",
         ),
-        (text_with("geometry", "\n<box><size>1 1 0</size></box>"), 12, "sizes above 0, not 1 1 0"),
+        (
+            text_with("geometry", "\n<box><size>1 1 0</size></box>"),
+            12,
+            "<size> of a <box> is above 0, not 1 1 0",
+        ),
         (text_with("geometry", "\n<sphere/>"), 12, "<sphere> lacks its <radius>"),
         (text_with("geometry", "\n<ball/>"), 12, "the shape <ball> is not known"),
         (

@@ -156,6 +156,14 @@ READ = {
         "<sphere><radius>0.7</radius></sphere>",
         lambda w: shape(w).sphere.radius == 0.7,
     ),
+    ("geometry", "cone"): (
+        "<cone><radius>0.1</radius><length>0.5</length></cone>",
+        lambda w: shape(w).mesh.scale == (0.1, 0.1, 0.5),
+    ),
+    ("geometry", "ellipsoid"): (
+        "<ellipsoid><radii>0.1 0.2 0.5</radii></ellipsoid>",
+        lambda w: shape(w).mesh.scale == (0.1, 0.2, 0.5),
+    ),
     ("geometry", "capsule"): (
         "<capsule><radius>0.1</radius><length>0.5</length></capsule>",
         lambda w: (shape(w).capsule.radius, shape(w).capsule.length) == (0.1, 0.5),

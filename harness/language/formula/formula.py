@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeGuard
 
 from harness.language.units import COMMON
 
@@ -174,12 +174,21 @@ def comparisons_of(node: Node) -> list[Comparison]:
     return [found for operand in node.operands for found in comparisons_of(operand)]
 
 
-def implications_of(node: Node) -> list[Logic]:
-    """Every `implies` of a formula, the outermost first."""
+def premises_of(node: Node) -> list[Node]:
+    """The premise P of every `P implies Q`, `not P or Q` and `Q or not P`, the outermost first."""
     if isinstance(node, Comparison):
         return []
-    here = [node] if isinstance(node, Logic) and node.operator == "implies" else []
-    return here + [found for operand in node.operands for found in implications_of(operand)]
+    here: list[Node] = []
+    if isinstance(node, Logic) and node.operator == "implies":
+        here = [node.operands[0]]
+    if isinstance(node, Logic) and node.operator == "or":
+        negated = [part.operands[0] for part in node.operands if _is_negation(part)]
+        here = negated if len(negated) == 1 else []  # two are a choice, and no implication
+    return here + [found for operand in node.operands for found in premises_of(operand)]
+
+
+def _is_negation(node: Node) -> TypeGuard[Logic]:
+    return isinstance(node, Logic) and node.operator == "not"
 
 
 def text_of(node: Node) -> str:

@@ -28,8 +28,6 @@ from harness.recording.goal_failures import CollisionFailure, TouchRecord
 DEEPEST_START = 0.002
 """Penetration at the start above which a motion is rejected [m]."""
 
-_MEASURED = 1e-4  # [m] extra margin within which found pairs are measured
-
 TOUCHING = 0.0001
 """Distance at the start below which a pair is in contact, like an object and its table [m]."""
 
@@ -83,8 +81,10 @@ class MotionChecker:
             (pair.first, pair.second): self.padding if pair.keeps_padding else 0.0
             for pair in self._pairs
         }
-        self._margins = margins
-        near = self._near(start, MARGIN_SLACK)
+        widened = [margin + MARGIN_SLACK for margin in margins.values()]
+        configuration = self.space.configuration(start)
+        found = self._scene_model.near(configuration, widened)
+        near = [replace(touch, required=0.0) for touch in found]
         deep = [touch for touch in near if touch.distance < -DEEPEST_START]
         if deep:
             raise PlanningFailed(
@@ -101,32 +101,8 @@ class MotionChecker:
             self.lowered.append(LoweredMargin((touch.first, touch.second), touch.distance, lowered))
         return margins
 
-    def _set_margins(self, more: float) -> None:
-        margins = [self._margins[pair.first, pair.second] + more for pair in self._pairs]
-        found = self._scene_model.margin_map(margins)
-        self._geometry_data.setSecurityMargins(self._geometry, found, True, False)
-        self._scene_model.shared.holder = self._key if more == 0 else None
-
-    def _near(self, positions: FloatArray, slack: float) -> list[Touch]:
-        """Pairs nearer than margin plus slack, nearest first; only those are measured."""
-        geometry, found = self._geometry, self._geometry_data
-        self._set_margins(slack + _MEASURED)
-        configuration = self.space.configuration(positions)
-        if not pin.computeCollisions(
-            self._robot, self._data, geometry, found, configuration, False
-        ):
-            return []
-        results = found.collisionResults
-        near: list[Touch] = []
-        for pair in self._pairs:
-            if any(results[row].isCollision() for row in pair.rows):
-                distances = (
-                    pin.computeDistance(geometry, found, row).min_distance for row in pair.rows
-                )
-                touch = Touch(pair.first, pair.second, float(min(distances)))
-                if touch.distance < self._margins[pair.first, pair.second] + slack:
-                    near.append(touch)
-        return sorted(near, key=lambda touch: (touch.distance, touch.first, touch.second))
+    def _set_margins(self) -> None:
+        self._scene_model.set_margins(list(self._margins.values()), self._key)
 
     def state_free(self, positions: FloatArray) -> bool:
         """Whether every pair keeps its margin at group positions."""
@@ -184,7 +160,7 @@ class MotionChecker:
     @cached_property
     def _manager(self) -> Any:
         """Coal's broad phase with this checker's margins; it holds no reference to its model."""
-        self._set_margins(0.0)
+        self._set_margins()
         return pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
             self._robot, self._geometry, self._geometry_data
         )
@@ -192,7 +168,7 @@ class MotionChecker:
     def _exact(self, positions: FloatArray) -> bool:
         manager = self._manager
         if self._scene_model.shared.holder is not self._key:
-            self._set_margins(0.0)
+            self._set_margins()
         configuration = self.space.configuration(positions)
         return not pin.computeCollisions(self._robot, self._data, manager, configuration, True)
 
@@ -204,11 +180,8 @@ class MotionChecker:
 
     def touches(self, positions: FloatArray) -> list[Touch]:
         """Pairs nearer than their margin at group positions, nearest first."""
-        required = (
-            replace(touch, required=self._margins[pair.first, pair.second])
-            for touch, pair in self.scene.distances(self.space.whole(positions))
-        )
-        return [touch for touch in required if touch.distance <= touch.required]
+        configuration = self.space.configuration(positions)
+        return self._scene_model.near(configuration, list(self._margins.values()))
 
     def first_block(
         self, first: FloatArray, second: FloatArray, resolution: float

@@ -16,7 +16,10 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.convex_tree import ConvexTree, shapes_tree
 from harness.planning.model.robot_model import RobotModel, pin_from_se3
+from harness.ports.scene import Touch
 from harness.robot.solids import coal_geometry
+
+_MEASURED = 1e-4  # [m] extra margin within which found pairs are measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,3 +192,35 @@ class CollisionModel:
             of_row[pair.rows] = margin
         found[self.rows[:, 0], self.rows[:, 1]] = of_row
         return found
+
+    def set_margins(self, margins: Sequence[float], holder: object = None) -> None:
+        """Let checks of collisions find pairs that are nearer than their margins [m]."""
+        found = self.margin_map(margins)
+        self.shared.geometry_data.setSecurityMargins(self.geometry, found, True, False)
+        self.shared.holder = holder
+
+    def near(self, configuration: FloatArray, margins: Sequence[float]) -> list[Touch]:
+        """Pairs that are not farther apart than their margins, nearest first.
+
+        Only pairs that a check of collisions finds are measured, which takes half of the time.
+
+        Args:
+            configuration: The whole robot's, as Pinocchio has it.
+            margins: The margin of each pair of bodies [m].
+        """
+        self.set_margins([margin + _MEASURED for margin in margins])
+        robot, geometry, found = self.robot, self.geometry, self.shared.geometry_data
+        if not pin.computeCollisions(
+            robot.model, robot.data, geometry, found, configuration, False
+        ):
+            return []
+        results, near = found.collisionResults, list[Touch]()
+        for pair, margin in zip(self.pairs, margins, strict=True):
+            if any(results[row].isCollision() for row in pair.rows):
+                distance = min(
+                    float(pin.computeDistance(geometry, found, row).min_distance)
+                    for row in pair.rows
+                )
+                if distance <= margin:
+                    near.append(Touch(pair.first, pair.second, distance, margin))
+        return sorted(near, key=lambda touch: (touch.distance, touch.first, touch.second))

@@ -201,11 +201,10 @@ class CoalScene:
         """Pairs closer than allowed at a state, nearest first."""
 
         def found() -> tuple[Touch, ...]:
-            required = (
-                replace(touch, required=padding if pair.keeps_padding else 0.0)
-                for touch, pair in self.distances(joint_positions)
-            )
-            return tuple(touch for touch in required if touch.distance <= touch.required)
+            model = self.collision_model()
+            margins = [padding if pair.keeps_padding else 0.0 for pair in model.pairs]
+            configuration = self.robot.configuration(np.asarray(joint_positions, dtype=float))
+            return tuple(model.near(configuration, margins))
 
         return shared("state checks", lambda: (self.key, joint_positions, padding), found)
 

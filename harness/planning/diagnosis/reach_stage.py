@@ -38,9 +38,7 @@ def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> St
         return StageFinding(Stage("reach", "passed", text))
     if study.answer.missed:
         return _too_few_joints(request, goal, study)
-    nearest = nearest_pose(
-        request.space, goal, request.space.part(request.start), request.options.seed
-    )
+    nearest = nearest_pose(request.space, goal, request.space.part(request.start))
     if nearest.is_reached:
         return StageFinding(Stage("reach", "passed", f"{goal.link} reaches {target} as requested"))
     others = dict(_alternatives(request, goal, nearest))
@@ -82,19 +80,19 @@ def _alternatives(
     request: StageRequest, goal: LinkGoal, nearest: NearestPose
 ) -> Iterator[tuple[str, NearestPose]]:
     """The nearest poses with the requested orientation, any orientation, the requested position."""
-    space, seed = request.space, request.options.seed
+    space = request.space
     if isinstance(goal, PositionGoal) and goal.pitch is None:
         return
     here = nearest.positions
-    kept = nearest_pose(space, goal, here, seed, metres_per_radian=KEEP_TURN)
+    kept = nearest_pose(space, goal, here, metres_per_radian=KEEP_TURN)
     if kept.turn < _KEPT:
         yield _SAME_ORIENTATION, kept
     alone = PositionGoal(goal.link, target_of(goal))
-    free = nearest_pose(space, alone, here, seed)
+    free = nearest_pose(space, alone, here)
     if free.shift > _KEPT:
         yield _ANY_ORIENTATION, free
         return
-    there = nearest_pose(space, goal, free.positions, seed, metres_per_radian=KEEP_POINT)
+    there = nearest_pose(space, goal, free.positions, metres_per_radian=KEEP_POINT)
     if there.shift < _KEPT:
         yield _SAME_POSITION, there
 

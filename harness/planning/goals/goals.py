@@ -56,7 +56,7 @@ def find_goals(
         checker: The checker of the planned motion.
         start: The start positions in description order.
         goal: The goal that was requested.
-        seed: The seed of numeric restarts.
+        seed: The seed of solvers that draw joint positions.
 
     Raises:
         PlanningFailed: GOAL_STATE_INVALID (joints outside their limits), NO_IK_SOLUTION,
@@ -71,7 +71,7 @@ def find_goals(
 
     study = study_goal(kinematics, checker.space, find_touches, start, goal, seed)
     if not study.answer.solutions:
-        raise _no_solution(checker.space, study, start, goal, seed)
+        raise _no_solution(checker.space, study, start, goal)
     free = tuple(branch.positions for branch in study.branches if not branch.touches)
     if not free:
         ways = counted_noun(study.branches, "way")
@@ -111,7 +111,7 @@ def _joint_goal(checker: MotionChecker, goal: JointGoal) -> GoalCandidates:
 
 
 def _no_solution(
-    space: GroupSpace, study: GoalStudy, start: FloatArray, goal: PoseGoal | PositionGoal, seed: int
+    space: GroupSpace, study: GoalStudy, start: FloatArray, goal: PoseGoal | PositionGoal
 ) -> PlanningFailed:
     """Explain why no solution reaches the goal, with the nearest pose."""
     missed = study.answer.missed
@@ -122,9 +122,9 @@ def _no_solution(
     target = target_of(goal)
     reference = space.part(start)
     alone = PositionGoal(goal.link, target)
-    nearest_point = nearest_pose(space, alone, reference, seed)
+    nearest_point = nearest_pose(space, alone, reference)
     too_far = 0.0 if nearest_point.shift < _REACHED else nearest_point.shift
-    nearest = nearest_pose(space, goal, nearest_point.positions, seed)
+    nearest = nearest_pose(space, goal, nearest_point.positions)
     failure = IkFailure(
         position_error=nearest.shift,
         orientation_error=nearest.turn,

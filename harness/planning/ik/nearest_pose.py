@@ -9,12 +9,12 @@ import numpy as np
 
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
-from harness.planning.ik.numeric import LinkGoal, LinkTask, sample_group_positions
+from harness.planning.ik.numeric import LinkGoal, LinkTask, starts
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 
 RESTARTS = 12
-"""Number of searches from random positions, in addition to the one from the seed."""
+"""Number of searches from the pose table, in addition to the one from the seed."""
 
 EVEN, KEEP_TURN, KEEP_POINT = 0.1, 100.0, 1e-3
 """Metres that a radian counts: as a hand's breadth, above all, nearly nothing."""
@@ -71,27 +71,24 @@ def nearest_pose(
     space: GroupSpace,
     goal: LinkGoal,
     seed_positions: FloatArray,
-    seed: int,
     *,
     metres_per_radian: float = EVEN,
 ) -> NearestPose:
     """The pose inside the joint limits that comes nearest to a goal; collisions are ignored.
 
-    Damped least squares from the seed and from random positions: what it says can be reached is
+    Damped least squares from the seed and from near the goal: what it says can be reached is
     reached; that nothing is nearer is not proved.
 
     Args:
         space: The group, the rest of the robot at rest.
         goal: What the link should do.
         seed_positions: Where the first search starts, shape (dof,).
-        seed: The seed of the restarts; the same seed gives the same answer.
         metres_per_radian: What a turn counts: `EVEN`, `KEEP_TURN` or `KEEP_POINT`.
     """
     task = LinkTask(space, goal, metres_per_radian=metres_per_radian)
-    rng = np.random.default_rng(seed)
-    starts = [np.asarray(seed_positions, dtype=float)]
-    starts += [sample_group_positions(space, rng) for _ in range(RESTARTS)]
-    attempts = [task.least_squares(start) for start in starts]
+    attempts = [
+        task.least_squares(start) for start in starts(space, goal, seed_positions, RESTARTS)
+    ]
     best = min(range(len(attempts)), key=lambda index: (round(attempts[index][1], 9), index))
     positions = attempts[best][0]
     pose = task.link_pose(positions)

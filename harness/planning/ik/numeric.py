@@ -1,9 +1,10 @@
-"""Numeric inverse kinematics of any chain: damped least squares with seeded restarts."""
+"""Numeric inverse kinematics of any chain: damped least squares from many joint positions."""
 
 # pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import eigenpy
@@ -12,17 +13,18 @@ import pinocchio as pin
 
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
+from harness.planning.ik.pose_table import pose_table
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 
 LinkGoal = PoseGoal | PositionGoal
 
-RESTARTS, MOST_RESTARTS = 24, 64
-"""Searches from random positions after the one from the seed, and the limit while none succeeds.
+RESTARTS, MOST_RESTARTS = 18, 64
+"""Searches from the pose table after the one from the seed, and the limit while none succeeds.
 Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."""
 
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
-_WINDOW = 8  # iterations over which progress is measured
+_WINDOW = 6  # iterations over which progress is measured
 _CONVERGES = 0.8
 """Share of the squared error that remains after a window, above which a restart is cheaper."""
 _MINIMUM = 1 - 1e-9
@@ -75,6 +77,11 @@ class LinkTask:
     def link_pose(self, positions: FloatArray) -> SE3:
         """T_world_link at group positions."""
         return self._robot.link_pose(self.space.whole(positions), self.goal.link)
+
+    def cost(self, positions: FloatArray) -> float:
+        """The squared error at positions."""
+        error, _ = self.evaluate(positions)
+        return float(error.dot(error))
 
     def evaluate(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Error (m,) and Jacobian (m, dof) at positions; a step `pinv(J) @ error` closes in."""
@@ -215,22 +222,18 @@ def solve_numeric(
     space: GroupSpace,
     goal: LinkGoal,
     seed_positions: FloatArray,
-    seed: int,
     *,
-    restarts: int = RESTARTS,
     most_restarts: int = MOST_RESTARTS,
     enough: int | None = None,
     part: TiltGoal | None = None,
 ) -> list[FloatArray]:
-    """Find joint positions that bring a link to its goal, from the seed and from random restarts.
+    """Find joint positions that bring a link to its goal: from the seed, then from near the goal.
 
     Args:
         space: The group, the rest of the robot at rest.
         goal: The goal of the link.
         seed_positions: The start of the first search, shape (dof,).
-        seed: The seed of the restarts; the same seed gives the same result.
-        restarts: The number of searches from random positions after the first.
-        most_restarts: The largest number of searches while no solution is found.
+        most_restarts: The largest number of searches after the first, if none finds a solution.
         enough: The number of solutions that ends the search; None for a spread.
         part: The part of the goal that suffices, where the rest comes as near as it can.
 
@@ -238,16 +241,28 @@ def solve_numeric(
         Distinct solutions in order of finding, exact to 1e-9, inside the limits; may be empty.
     """
     task = LinkTask(space, goal)
-    rng = np.random.default_rng(seed)
     found: list[FloatArray] = []
-    start = np.asarray(seed_positions, dtype=float)
-    for number in range(1 + max(restarts, most_restarts)):
-        if len(found) == enough or (found and number > restarts):
-            break
+    for number, start in enumerate(starts(space, goal, seed_positions, most_restarts)):
         positions, error = task.least_squares(start, remaining=_CONVERGES)
         if part is not None:
             positions, error = LinkTask(space, part).polish(positions)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
             found.append(positions)
-        start = sample_group_positions(space, rng)
+        if len(found) == enough or (found and number >= RESTARTS):
+            break
     return found
+
+
+def starts(
+    space: GroupSpace, goal: LinkGoal, seed_positions: FloatArray, restarts: int
+) -> Iterator[FloatArray]:
+    """Where searches start: at the seed, and at the table's positions nearest to the goal.
+
+    The seed comes first, or second if the first of the others is nearer to the goal.
+    """
+    task, seed = LinkTask(space, goal), np.asarray(seed_positions, dtype=float)
+    near = list(pose_table(space, goal.link).nearest(goal, restarts))
+    if near and task.cost(near[0]) < task.cost(seed):
+        yield near.pop(0)
+    yield seed
+    yield from near

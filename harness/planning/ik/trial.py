@@ -40,7 +40,7 @@ def try_ik(kinematics: PinocchioKinematics, positions: FloatArray, seed: int) ->
     Args:
         kinematics: The kinematics of a robot with an arm group.
         positions: Joint positions in description order, shape (N, n).
-        seed: The seed of the restarts of numeric solvers.
+        seed: The seed of solvers that draw joint positions.
     """
     description = kinematics.description
     start = description.start_positions()

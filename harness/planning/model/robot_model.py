@@ -123,7 +123,7 @@ class GroupSpace:
         self._drive[robot.velocity_columns] = self.matrix
         self._has_followers = bool(np.delete(self.matrix, self.indices, axis=0).any())
         self._rows, self._columns = robot.rows[self.indices], robot.velocity_columns[self.indices]
-        self._has_circular = bool(robot.is_circular[self.indices].any())
+        self._circular = np.flatnonzero(robot.is_circular[self.indices])
 
     def _embedding(self, reference: FloatArray) -> tuple[FloatArray, FloatArray]:
         description = self.robot.description
@@ -149,10 +149,13 @@ class GroupSpace:
 
     def configuration(self, positions: FloatArray) -> FloatArray:
         """Pinocchio's configuration of the whole robot at group positions, shape (nq,)."""
-        if self._has_followers or self._has_circular:
+        if self._has_followers:
             return self.robot.configuration(self.whole(positions))
         configuration = self._at_rest.copy()
         configuration[self._rows] = positions
+        if len(self._circular):
+            angles, cosines = positions[self._circular], self._rows[self._circular]
+            configuration[cosines], configuration[cosines + 1] = np.cos(angles), np.sin(angles)
         return configuration
 
     def jacobian(self, whole: FloatArray) -> FloatArray:

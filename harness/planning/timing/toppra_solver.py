@@ -138,17 +138,34 @@ def _solve(
         def waypoints(self) -> None:
             return None
 
-    solver = ta.algorithm.TOPPRA(
-        constraints, Geometry(), gridpoints=grid, parametrizer="ParametrizeConstAccel"
-    )
-    result = solver.compute_trajectory(0, 0)
-    if result is None:
+    solver = ta.algorithm.TOPPRA(constraints, Geometry(), gridpoints=grid)
+    _, rates, _ = solver.compute_parameterization(0, 0)
+    if rates is None or not np.isfinite(rates).all():
         raise TimingError("TOPP-RA found no times under the limits")
+    return _timed(path, grid, rates)
+
+
+def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
+    """The path with constant acceleration of its parameter between grid points, and its duration.
+
+    Args:
+        path: The curve that gets its times.
+        grid: The parameter at each grid point, shape (N + 1,).
+        rates: Its rate at each grid point [1/s], shape (N + 1,).
+    """
+    steps = np.diff(grid)
+    growths = 0.5 * np.diff(rates**2) / steps
+    ends = np.concatenate([[0.0], np.cumsum(2 * steps / (rates[:-1] + rates[1:]))])
 
     def timed(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        return result(times, 0), result(times, 1), result(times, 2)
+        step = np.minimum(np.searchsorted(ends, times, side="right") - 1, len(steps) - 1)
+        since, growth = times - ends[step], growths[step]
+        parameter = grid[step] + since * rates[step] + 0.5 * since**2 * growth
+        rate = (rates[step] + since * growth)[:, None]
+        positions, first, second = path.evaluate(parameter)
+        return positions, first * rate, second * rate**2 + first * growth[:, None]
 
-    return timed, float(result.duration)
+    return timed, float(ends[-1])
 
 
 def _toppra() -> Any:

@@ -33,10 +33,6 @@ class Edge:
     child: str
     pose: FloatArray
 
-    def stamped(self, time: float) -> Any:
-        """The edge as a geometry_msgs/TransformStamped."""
-        return _stamped(time, self.parent, self.child, self.pose.tolist())
-
 
 def static_edges(run: Run) -> list[Edge]:
     """The root in the world, fixed joints, objects that stayed where they were, cameras."""
@@ -92,7 +88,10 @@ def optical_frames(cameras: Sequence[Camera], objects: Collection[str]) -> dict[
 def static_tf(run: Run) -> Message:
     """All that never moves, once."""
     start = float(run.signals.times[0])
-    transforms = [edge.stamped(start) for edge in static_edges(run)]
+    transforms = [
+        transform_stamped(header(start, edge.parent), edge.child, edge.pose)
+        for edge in static_edges(run)
+    ]
     return Message(start, TF_STATIC, message(TF.msgtype, transforms=transforms))
 
 
@@ -113,7 +112,7 @@ def moving_tf(run: Run, indices: IntArray) -> Iterator[Message]:
         for number, index in enumerate(block):
             time = float(run.signals.times[index])
             transforms = [
-                _stamped(time, parent, child, rows[number, place].tolist())
+                transform_stamped(header(time, parent), child, rows[number, place])
                 for place, (parent, child) in enumerate(edges)
                 if there[number, place]
             ]
@@ -124,10 +123,7 @@ def _stays(poses: FloatArray) -> bool:
     return bool((poses == poses[0]).all())
 
 
-def _stamped(time: float, parent: str, child: str, pose: list[float]) -> Any:
-    return message(
-        "geometry_msgs/msg/TransformStamped",
-        header=header(time, parent),
-        child_frame_id=child,
-        transform=transform(pose),
-    )
+def transform_stamped(head: Any, child: str, pose: FloatArray) -> Any:
+    """The transform of a child frame in the frame of a header, shape (7,)."""
+    kind, content = "geometry_msgs/msg/TransformStamped", transform(pose.tolist())
+    return message(kind, header=head, child_frame_id=child, transform=content)

@@ -14,6 +14,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 
 EPOCH = 1_800_000_000 * 10**9
@@ -136,6 +137,25 @@ def vector(xyz: Sequence[float]) -> Any:
 
 def _turn(pose: Sequence[float]) -> dict[str, float]:
     return dict(zip("wxyz", pose[3:], strict=True))
+
+
+def trajectory_message(plan: JointTrajectory, **fields: Any) -> Any:
+    """A trajectory_msgs/JointTrajectory, with other fields such as its header."""
+    rows = zip(plan.times, plan.positions, plan.velocities, plan.accelerations, strict=True)
+    points = [
+        message(
+            "trajectory_msgs/msg/JointTrajectoryPoint",
+            positions=positions,
+            velocities=velocities,
+            accelerations=accelerations,
+            time_from_start=duration(float(time)),
+        )
+        for time, positions, velocities, accelerations in rows
+    ]
+    names = list(plan.joint_names)
+    return message(
+        "trajectory_msgs/msg/JointTrajectory", joint_names=names, points=points, **fields
+    )
 
 
 def joint_state(time: float, names: list[str], positions: FloatArray, **others: FloatArray) -> Any:

@@ -7,17 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD
 from harness.reporting.rosbag.messages import (
-    duration,
     header,
     joint_state,
     message,
     pose_message,
+    trajectory_message,
 )
 from harness.reporting.rosbag.samples import Message, samples_at
 from harness.reporting.rosbag.topics import DISPLAY_PLANNED_PATH, PLANNED_TRAJECTORY, TCP_PATH
@@ -35,7 +34,7 @@ def planned(run: Run) -> Iterator[Message]:
     """Each motion's trajectory when it begins, as such and as MoveIt shows it."""
     for step in run.steps:
         if step.trajectory is not None and step.status != "not reached":
-            trajectory = _trajectory(step.start_time, step.trajectory)
+            trajectory = trajectory_message(step.trajectory, header=header(step.start_time))
             yield Message(step.start_time, PLANNED_TRAJECTORY, trajectory)
             yield Message(step.start_time, DISPLAY_PLANNED_PATH, _display(run, step, trajectory))
 
@@ -64,24 +63,6 @@ def tcp_path(run: Run) -> Iterator[Message]:
             published = number
             path = message(TCP_PATH.msgtype, header=header(time, WORLD), poses=list(kept))
             yield Message(time, TCP_PATH, path)
-
-
-def _trajectory(start: float, plan: JointTrajectory) -> Any:
-    rows = zip(plan.times, plan.positions, plan.velocities, plan.accelerations, strict=True)
-    points = [
-        message(
-            "trajectory_msgs/msg/JointTrajectoryPoint",
-            positions=positions,
-            velocities=velocities,
-            accelerations=accelerations,
-            time_from_start=duration(float(time - plan.times[0])),
-        )
-        for time, positions, velocities, accelerations in rows
-    ]
-    names = list(plan.joint_names)
-    return message(
-        PLANNED_TRAJECTORY.msgtype, header=header(start), joint_names=names, points=points
-    )
 
 
 def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:

@@ -80,9 +80,14 @@ class CameraTopics:
     depth: Topic
 
 
+def topic_word(name: str) -> str:
+    """A name as a part of a topic's; what no topic may hold becomes an underscore."""
+    return re.sub(r"[^A-Za-z0-9_]|^(?=\d)", "_", name)
+
+
 def camera_topics(camera: str) -> CameraTopics:
-    """Topics below `/camera/<name>`; what no topic may hold becomes an underscore."""
-    base = f"/camera/{re.sub(r'[^A-Za-z0-9_]', '_', camera)}"
+    """Topics below `/camera/<name>`."""
+    base = f"/camera/{topic_word(camera)}"
     return CameraTopics(
         image=Topic(f"{base}/image_raw", "sensor_msgs/msg/Image", is_reliable=False),
         compressed=Topic(

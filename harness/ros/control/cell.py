@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +12,9 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
-from harness.robot.description import RobotDescription
-from harness.ros.control.controller import Command, Controller, Outcome, Rows, Window
-from harness.ros.control.goals import Code, Defaults, GoalRefused
+from harness.robot.description import RobotDescription, TrackingTolerances
+from harness.ros.control.controller import Controller, Outcome, Rows, Window
+from harness.ros.control.goals import Code, GoalRefused
 from harness.ros.control.gripper import GripperMotion
 from harness.ros.control.trajectory import follow_result, start_trajectory
 
@@ -26,29 +26,24 @@ TICK = 0.01
 
 PREEMPTED = "a newer command replaced this goal"
 STOPPED = "the session ended while this goal was active"
+UNBOUNDED = TrackingTolerances(np.inf, np.inf)
 
 
-@dataclass(frozen=True)
-class ControllerNames:
-    """What controllers are called on the graph.
+def controller_names(
+    description: RobotDescription, names: Ros2Names
+) -> tuple[tuple[str, ...], str]:
+    """The scenario's names, else the robot's, else `<group>_controller` as MoveIt's assistant.
 
-    Attributes:
-        arm: Names of the arm's trajectory controller; all lead to the same one.
-        gripper: The name of the gripper's controller; empty where there is no gripper.
+    Returns:
+        The names of the arm's controller, which all lead to the same one, and the name of the
+        gripper's; empty where there is none.
     """
-
-    arm: tuple[str, ...]
-    gripper: str = ""
-
-
-def controller_names(description: RobotDescription, names: Ros2Names) -> ControllerNames:
-    """The scenario's names, else the robot's, else `<group>_controller` as MoveIt's assistant."""
     own, group, gripper = description.controllers, description.arm_group, description.gripper
     arm = names.arm_controllers or own.get("arm") or (f"{group}_controller",)
     if gripper is None:
-        return ControllerNames(arm if group else ())
+        return arm if group else (), ""
     default = next(iter(own.get("gripper", ())), f"{gripper.group}_controller")
-    return ControllerNames(arm if group else (), names.gripper_controller or default)
+    return arm if group else (), names.gripper_controller or default
 
 
 class ExternalCell:
@@ -56,41 +51,40 @@ class ExternalCell:
 
     Attributes:
         commands: Everything that was received.
-        outcomes: What ended since it was last taken; in order.
-        trajectories: The controllers that follow trajectories, by each of their names.
-        gripper: The controller of GripperCommand; None without a gripper.
+        on_outcome: Called with each goal that ended.
+        controllers: The controllers, by each of their names.
     """
 
-    def __init__(self, servos: MujocoSimulator, names: ControllerNames) -> None:
+    def __init__(self, servos: MujocoSimulator, names: Ros2Names) -> None:
         self._servos = servos
         self.description = description = servos.description
         self.commands: list[CommandRecord] = []
-        self.outcomes: list[Outcome] = []
+        self.on_outcome: Callable[[Outcome], None] = lambda _: None
         self._rows = max(1, round(TICK / servos.timestep))
-        self.trajectories: dict[str, Controller] = {}
-        self.gripper: Controller | None = None
-        if names.arm:
-            group, tracking = description.groups[description.arm_group], description.tracking
-            joints = [description.joint_by_name[name] for name in group.joint_names]
-            bounds = Defaults(tracking.trajectory, tracking.goal, tracking.goal_time)
-            arm = Controller(names.arm[0], joints, partial(start_trajectory, joints, bounds))
-            self.trajectories.update(dict.fromkeys(names.arm, arm))
-        if names.gripper and description.gripper is not None:
-            name, joints = names.gripper, [description.joint_by_name[description.gripper.joint]]
-            start = partial(GripperMotion, description, servos.timestep)
-            self.gripper = Controller(name, joints, start)
-            finger = partial(start_trajectory, joints, Defaults())
-            self.trajectories[name] = Controller(name, joints, finger)
-        controllers = (*dict.fromkeys(self.trajectories.values()), self.gripper)
-        self._controllers = tuple(each for each in controllers if each is not None)
-        place, actuated = description.joint_index, servos.actuated_joints
-        self._actuated = np.array([place[name] for name in actuated], dtype=np.int64)
-        for each in self._controllers:
-            each.columns = np.array([actuated.index(name) for name in each.joint_names])
-            each.places = np.array([place[name] for name in each.joint_names])
+        self.controllers: dict[str, Controller] = {}
+        arm, finger = controller_names(description, names)
+        if arm:
+            joints = description.groups[description.arm_group].joint_names
+            group = self._controller(joints, description.tracking)
+            self.controllers.update(dict.fromkeys(arm, group))
+        if finger and description.gripper is not None:
+            grip = self.controllers[finger] = self._controller(
+                [description.gripper.joint], UNBOUNDED
+            )
+            grip.start["gripper"] = partial(GripperMotion, description, servos.timestep)
+        self._each = tuple(dict.fromkeys(self.controllers.values()))
         self.hold_commanded(
             description.start_positions() if servos.sample_count == 1 else servos.joint_positions()
         )
+
+    def _controller(self, names: Sequence[str], bounds: TrackingTolerances) -> Controller:
+        """A controller of some joints, which follows trajectories within bounds."""
+        description, actuated = self.description, self._servos.physics.actuated
+        joints = [description.joint_by_name[name] for name in names]
+        places = np.array([description.joint_index[name] for name in names])
+        follow = partial(start_trajectory, joints, bounds)
+        columns = np.searchsorted(actuated, places)
+        return Controller(names, columns, places, {"trajectory": follow})
 
     @property
     def time(self) -> float:
@@ -100,11 +94,11 @@ class ExternalCell:
     @property
     def is_idle(self) -> bool:
         """Whether no controller follows anything."""
-        return all(controller.motion is None for controller in self._controllers)
+        return all(controller.motion is None for controller in self._each)
 
     def hold_commanded(self, positions: FloatArray) -> None:
         """Start from set points in description order, such as a planned motion left them."""
-        held = positions[self._actuated][None]
+        held = positions[self._servos.physics.actuated][None]
         self._last: Rows = np.array([held, np.zeros_like(held), np.zeros_like(held)])
 
     # -- commands -----------------------------------------------------------------------------
@@ -117,37 +111,29 @@ class ExternalCell:
         content: Mapping[str, Any] | None = None,
     ) -> CommandRecord:
         """Let a command take effect now, and record it with what became of it."""
-        content = content or {}
-        code, answer = Code.SUCCESSFUL, "accepted"
+        sample, content = self._servos.sample_count - 1, content or {}
+        record = CommandRecord(sample, self.time, kind, controller, goal, content, "accepted")
         try:
-            if kind == "trajectory":
-                self._begin(self.trajectories[controller], goal, content)
-            elif kind == "gripper":
-                self._begin(self.gripper, goal, content)
-            elif kind == "cancel":
+            if kind == "cancel":
                 self._cancel(goal)
+            elif kind != "end":
+                self._begin(self.controllers[controller], record)
         except GoalRefused as refused:
-            code, answer = refused.code, str(refused)
-        record = CommandRecord(
-            self._servos.sample_count - 1, self.time, kind, controller, goal, content, answer
-        )
+            record = replace(record, answer=str(refused))
+            if kind == "trajectory" and goal:
+                result = follow_result(refused.code, record.answer)
+                self.on_outcome(Outcome(goal, False, result))
         self.commands.append(record)
-        if code != Code.SUCCESSFUL and kind == "trajectory" and goal:
-            self.outcomes.append(Outcome(goal, False, follow_result(code, answer)))
         return record
 
-    def _begin(self, controller: Controller | None, goal: str, content: Mapping[str, Any]) -> None:
-        """Let a controller follow a goal; what its joints followed before ends."""
-        if controller is None:
-            raise GoalRefused(Code.INVALID_GOAL, "the robot has no gripper")
+    def _begin(self, controller: Controller, command: CommandRecord) -> None:
+        """Let a controller follow a goal; what it followed before ends."""
         start = self._last[:, :, controller.columns]
         measured = self._servos.joint_positions()[controller.places]
-        motion = controller.start(Command(goal, content, self.time, start, measured))
-        for other in self._controllers:
-            if other.joint_names == controller.joint_names:
-                self._interrupt(other, Code.INVALID_GOAL, PREEMPTED)
+        motion = controller.start[command.kind](command, start, measured)
+        self._interrupt(controller, Code.INVALID_GOAL, PREEMPTED)
         controller.motion, gripper = motion, self.description.gripper
-        if gripper is not None and controller.joint_names == (gripper.joint,):
+        if gripper is not None and "gripper" in controller.start:
             self._servos.limit_gripper(motion.effort or gripper.grip_effort)
 
     def _interrupt(self, controller: Controller, code: Code, reason: str) -> None:
@@ -155,16 +141,16 @@ class ExternalCell:
         motion, controller.motion = controller.motion, None
         if motion is not None and motion.goal:  # what came from a topic has no result
             now = self._window(controller, np.array([self.time]), self._last)
-            self.outcomes.append(motion.interrupted(code, reason, now))
+            self.on_outcome(motion.interrupted(code, reason, now))
 
     def _cancel(self, goal: str) -> None:
         """Hold the joints of a goal where they are."""
-        for controller in self._controllers:
+        for controller in self._each:
             if controller.goal == goal:
                 self._hold(controller, self._servos.joint_positions()[controller.places])
                 self._interrupt(controller, Code.SUCCESSFUL, "canceled")
                 return
-        raise GoalRefused(Code.INVALID_GOAL, "no such goal is active")
+        raise GoalRefused("no such goal is active")
 
     # -- time ---------------------------------------------------------------------------------
 
@@ -176,28 +162,23 @@ class ExternalCell:
         rows = self._set_points(times)
         servos.stream(np.concatenate([self._last, rows], axis=1))
         self._last = rows[:, -1:]
-        for controller in self._controllers:
+        for controller in self._each:
             motion = controller.motion
-            if motion is None:
-                continue
-            ended = motion.judge(self._window(controller, times, rows))
+            ended = motion.judge(self._window(controller, times, rows)) if motion else None
             if ended is not None:
                 controller.motion = None
                 if ended.hold is not None:
                     self._hold(controller, ended.hold)
-                self.outcomes.append(ended)
+                self.on_outcome(ended)
 
     def tracking(self) -> list[tuple[Controller, Window]]:
-        """Desired and measured motion of every trajectory with a goal, at this moment."""
-        return [
-            (each, self._window(each, np.array([self.time]), self._last))
-            for each in dict.fromkeys(self.trajectories.values())
-            if each.goal
-        ]
+        """Desired and measured motion of every controller with a goal, at this moment."""
+        now = np.array([self.time])
+        return [(each, self._window(each, now, self._last)) for each in self._each if each.goal]
 
     def finish(self) -> None:
         """End what is still active; the arm holds its last set point."""
-        for controller in self._controllers:
+        for controller in self._each:
             self._interrupt(controller, Code.INVALID_GOAL, STOPPED)
         self._servos.command(self._last[0, -1])
 
@@ -218,7 +199,7 @@ class ExternalCell:
         """Set points of all actuated joints at some times."""
         whole = np.zeros((3, len(times), self._last.shape[2]))
         whole[0] = self._last[0, -1]
-        for controller in self._controllers:
+        for controller in self._each:
             if controller.motion is not None:
                 whole[:, :, controller.columns] = controller.motion.at(times)
         return whole

@@ -1,13 +1,13 @@
-"""What the controllers of a cell have in common: they follow one motion, until it ends."""
+"""What a controller follows: one motion at a time, from a command to its outcome."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from harness.core.types import FloatArray, IntArray
-from harness.robot.description import Joint
+from harness.recording.commands import CommandKind, CommandRecord
 from harness.ros.control.goals import Code
 
 Rows = FloatArray
@@ -16,12 +16,9 @@ Rows = FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """How a goal ended.
+    """How a goal ended, with the result message of its action.
 
     Attributes:
-        goal: The identifier of the goal; empty for one from a topic.
-        has_succeeded: Whether the goal was reached.
-        result: The result message of its action.
         hold: Positions that are commanded from now on; None where the last set point is kept.
     """
 
@@ -48,30 +45,11 @@ class Window:
     efforts: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
-class Command:
-    """What a controller is requested to follow, and from where.
-
-    Attributes:
-        goal: The identifier of the goal; empty for one from a topic.
-        content: The values of its message.
-        now: The present simulated time [s].
-        start: The last set point, shape (3, 1, dof).
-        measured: The measured positions, shape (dof,).
-    """
-
-    goal: str
-    content: Mapping[str, Any]
-    now: float
-    start: Rows
-    measured: FloatArray
-
-
 class Motion(Protocol):
     """What a controller follows.
 
     Attributes:
-        goal: The identifier of its goal; empty for one from a topic.
+        goal: The identifier of its goal; empty for a trajectory from a topic.
         effort: The effort limit that it sets [N or N m]; 0 for the gripper's own.
     """
 
@@ -91,26 +69,27 @@ class Motion(Protocol):
         ...
 
 
+Start = Callable[[CommandRecord, Rows, FloatArray], Motion]
+"""Makes the motion of a command from the last set point, shape (3, 1, dof), and the measured
+positions, shape (dof,); raises GoalRefused where it cannot be followed."""
+
+
+@dataclass(eq=False)
 class Controller:
     """Moves some joints along one motion at a time.
 
     Attributes:
         columns: Where its joints are among the actuated ones.
         places: Where they are in the description.
-        start: Makes the motion of a command.
-            GoalRefused is raised where it cannot be followed.
+        start: Make the motion of a command, by its kind.
         motion: What it follows; None while it follows nothing.
     """
 
+    joint_names: Sequence[str]
     columns: IntArray
     places: IntArray
-
-    def __init__(
-        self, name: str, joints: Sequence[Joint], start: Callable[[Command], Motion]
-    ) -> None:
-        self.name, self.start = name, start
-        self.joint_names = tuple(joint.name for joint in joints)
-        self.motion: Motion | None = None
+    start: dict[CommandKind, Start]
+    motion: Motion | None = None
 
     @property
     def goal(self) -> str:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.robot.description import Joint
+from harness.recording.commands import CommandRecord
+from harness.robot.description import Joint, TrackingTolerances
 
 LIMIT_SLACK = 1e-4
 """Excess of a position limit that is rounding of a decimal number [rad or m]."""
@@ -25,6 +27,10 @@ OTHER_CLOCK = 1e6
 """Stamps that differ from the simulated time by more are those of another clock [s]."""
 
 
+MOTION = ("positions", "velocities", "accelerations")
+"""What points have; accelerations count where there are velocities too."""
+
+
 class Code(IntEnum):
     """Error codes of FollowJointTrajectory's result."""
 
@@ -37,24 +43,11 @@ class Code(IntEnum):
 
 
 class GoalRefused(Exception):
-    """A trajectory that cannot be followed.
+    """A goal that cannot be followed, and the error code of its result."""
 
-    Attributes:
-        code: The error code of the result.
-    """
-
-    def __init__(self, code: Code, message: str) -> None:
+    def __init__(self, message: str, code: Code = Code.INVALID_GOAL) -> None:
         self.code = code
         super().__init__(message)
-
-
-@dataclass(frozen=True)
-class Defaults:
-    """Tolerances that goals have which name none [rad, m, s]."""
-
-    path: float = np.inf
-    goal: float = np.inf
-    goal_time: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +56,8 @@ class TrajectoryGoal:
 
     Attributes:
         times: Time from start of each point [s], shape (N,).
-        motion: The positions, velocities and accelerations at the points, shape (N, dof) each; None
-            for what the points do not have.
+        motion: The positions and, where the points have them, the velocities and accelerations,
+            shape (N, dof) each.
         stamp: Simulated time at which it starts [s]; 0 for at once.
         path: Largest errors of position and velocity on the way, shape (2, dof).
         goal: Largest errors at the end, shape (2, dof).
@@ -72,7 +65,7 @@ class TrajectoryGoal:
     """
 
     times: FloatArray
-    motion: tuple[FloatArray, FloatArray | None, FloatArray | None]
+    motion: Sequence[FloatArray]
     stamp: float
     path: FloatArray
     goal: FloatArray
@@ -80,50 +73,46 @@ class TrajectoryGoal:
 
 
 def checked_goal(
-    content: Mapping[str, Any], joints: Sequence[Joint], now: float, defaults: Defaults
+    command: CommandRecord, joints: Sequence[Joint], defaults: TrackingTolerances
 ) -> TrajectoryGoal:
-    """The goal that a recorded message holds.
+    """The goal that a command holds for a controller of these joints.
 
     Args:
-        content: `joint_names`, `points` (lists of time, positions, velocities, accelerations),
-            `stamp`, and the tolerances of an action.
-        joints: The joints of the controller.
-        now: The present simulated time [s].
+        command: Its content has `joint_names`, `points` (lists of time, positions, velocities,
+            accelerations), `stamp`, and the tolerances of an action.
         defaults: Tolerances where the goal has none of its own.
 
     Raises:
         GoalRefused: With the error code that the message's own result has for it.
     """
+    content, now = command.content, command.time
     order = _order(content["joint_names"], [joint.name for joint in joints])
     points = content["points"]
     if not points:
-        raise GoalRefused(Code.INVALID_GOAL, "the trajectory has no points")
+        raise GoalRefused("the trajectory has no points")
     times = np.array([point["time"] for point in points], dtype=float)
     _check_times(times)
-    positions = _column(points, "positions", order)
-    if positions is None:
-        raise GoalRefused(Code.INVALID_GOAL, "the points have no positions")
-    velocities = _column(points, "velocities", order)
-    accelerations = _column(points, "accelerations", order) if velocities is not None else None
-    _check_limits(positions, joints)
-    if velocities is not None and np.abs(velocities[-1]).max() > 1e-6:
-        raise GoalRefused(
-            Code.INVALID_GOAL, "the last point has a velocity; a trajectory must end at rest"
-        )
+    columns = (_column(points, key, order) for key in MOTION)
+    motion = [*takewhile(lambda column: column.size, columns)]
+    if not motion:
+        raise GoalRefused("the points have no positions")
+    _check_limits(motion[0], joints)
+    if len(motion) > 1 and np.abs(motion[1][-1]).max() > 1e-6:
+        raise GoalRefused("the last point has a velocity; a trajectory must end at rest")
     stamp = float(content.get("stamp", 0.0))
-    if stamp and abs(stamp - now) > OTHER_CLOCK:
+    if abs(stamp - now) > OTHER_CLOCK:
         stamp = 0.0
     if stamp and stamp + times[-1] < now:
         raise GoalRefused(
-            Code.OLD_HEADER_TIMESTAMP,
             f"the trajectory ends at t={stamp + times[-1]:.3f} s, and it is t={now:.3f} s",
+            Code.OLD_HEADER_TIMESTAMP,
         )
     limit = float(content.get("goal_time", 0.0)) or defaults.goal_time
     return TrajectoryGoal(
         times,
-        (positions, velocities, accelerations),
+        motion,
         stamp,
-        _bounds(content.get("path_tolerance", ()), joints, defaults.path),
+        _bounds(content.get("path_tolerance", ()), joints, defaults.trajectory),
         _bounds(content.get("goal_tolerance", ()), joints, defaults.goal),
         np.inf if limit < 0 else limit,
     )
@@ -131,21 +120,20 @@ def checked_goal(
 
 def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
     """Columns of the message for the controller's joints."""
-    if not given:
-        raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names no joints")
     unknown = [_quoted(name) for name in given if name not in names]
     missing = [name for name in names if name not in given]
-    if unknown:
-        raise GoalRefused(
-            Code.INVALID_JOINTS,
-            f"this controller has no joint {', '.join(unknown[:6])}; it has {', '.join(names)}",
-        )
-    if len(set(given)) < len(given):
-        raise GoalRefused(Code.INVALID_JOINTS, "the trajectory names a joint twice")
-    if missing:
-        raise GoalRefused(
-            Code.INVALID_JOINTS, f"the trajectory lacks {', '.join(map(repr, missing))}"
-        )
+    reason = ""
+    if not given:
+        reason = "the trajectory names no joints"
+    elif unknown:
+        said = ", ".join(unknown[:6])
+        reason = f"this controller has no joint {said}; it has {', '.join(names)}"
+    elif len(set(given)) < len(given):
+        reason = "the trajectory names a joint twice"
+    elif missing:
+        reason = f"the trajectory lacks {', '.join(map(repr, missing))}"
+    if reason:
+        raise GoalRefused(reason, Code.INVALID_JOINTS)
     return [list(given).index(name) for name in names]
 
 
@@ -154,49 +142,43 @@ def _quoted(name: str) -> str:
 
 
 def _check_times(times: FloatArray) -> None:
-    steps = np.flatnonzero(~(np.diff(times) > 0))
-    if len(steps):
-        place = int(steps[0])
+    falls = ~(np.diff(times) > 0)
+    if falls.any():
+        place = int(np.argmax(falls))
         raise GoalRefused(
-            Code.INVALID_GOAL,
             f"time_from_start must rise: point {place + 1} is at {times[place + 1]:.6g} s, the one"
-            f" before at {times[place]:.6g} s",
+            f" before at {times[place]:.6g} s"
         )
     if times[0] < 0:
-        raise GoalRefused(Code.INVALID_GOAL, f"the first point is at {times[0]:.6g} s, before 0")
+        raise GoalRefused(f"the first point is at {times[0]:.6g} s, before 0")
 
 
-def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray | None:
-    """Positions, velocities or accelerations of all points; None where the points have none."""
-    lengths = {len(point[key]) for point in points}
-    if lengths == {0}:
-        return None
-    if lengths != {len(order)}:
-        wrong = next(i for i, point in enumerate(points) if len(point[key]) != len(order))
-        raise GoalRefused(
-            Code.INVALID_GOAL,
-            f"point {wrong} has {len(points[wrong][key])} {key}, and there are {len(order)} joints",
-        )
+def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray:
+    """Positions, velocities or accelerations of all points; empty where the points have none."""
+    lengths = [len(point[key]) for point in points]
+    if not any(lengths):
+        return np.empty(0)
+    for place, length in enumerate(lengths):
+        if length != len(order):
+            said = f"point {place} has {length} {key}, and there are {len(order)} joints"
+            raise GoalRefused(said)
     values = np.array([point[key] for point in points], dtype=float)[:, order]
     is_bad = ~(np.abs(values) < LARGEST).all(axis=1)  # which is also true of NaN
     if is_bad.any():
-        place = int(np.argmax(is_bad))
-        said = f"point {place} has {key} that are not numbers below {LARGEST:g}"
-        raise GoalRefused(Code.INVALID_GOAL, said)
+        said = f"point {np.argmax(is_bad)} has {key} that are not numbers below {LARGEST:g}"
+        raise GoalRefused(said)
     return values
 
 
 def _check_limits(positions: FloatArray, joints: Sequence[Joint]) -> None:
-    lower = np.array([joint.lower for joint in joints])
-    upper = np.array([joint.upper for joint in joints])
+    lower, upper = np.array([(joint.lower, joint.upper) for joint in joints]).T
     excess = np.maximum(lower - positions, positions - upper)
     if (excess > LIMIT_SLACK).any():
         row, column = map(int, np.argwhere(excess > LIMIT_SLACK)[0])
         joint = joints[column]
         raise GoalRefused(
-            Code.INVALID_GOAL,
             f"point {row} puts '{joint.name}' to {positions[row, column]:.6g}; it goes from"
-            f" {joint.lower:.6g} to {joint.upper:.6g}",
+            f" {joint.lower:.6g} to {joint.upper:.6g}"
         )
 
 
@@ -209,12 +191,11 @@ def _bounds(
     for each in given:
         name = each["name"]
         if name not in places:
-            raise GoalRefused(
-                Code.INVALID_JOINTS, f"a tolerance is for {_quoted(name)}, which is no joint here"
-            )
+            said = f"a tolerance is for {_quoted(name)}, which is no joint here"
+            raise GoalRefused(said, Code.INVALID_JOINTS)
         for row, value in enumerate((float(each["position"]), float(each["velocity"]))):
             if not np.isfinite(value):
-                raise GoalRefused(Code.INVALID_GOAL, f"the tolerance of '{name}' is no number")
+                raise GoalRefused(f"the tolerance of '{name}' is no number")
             if value:
                 bounds[row, places[name]] = np.inf if value < 0 else value
     return bounds

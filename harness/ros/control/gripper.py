@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.messages import message
 from harness.robot.description import RobotDescription
-from harness.ros.control.controller import Command, Outcome, Rows, Window
+from harness.ros.control.controller import Outcome, Rows, Window
 from harness.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.ros.interfaces import GRIPPER
 from harness.simulation.gripper_drive import GOAL_TOLERANCE, STALL_SPEED, STALL_TIME, joint_speed
@@ -17,7 +18,14 @@ from harness.simulation.set_points import ramp
 class GripperMotion:
     """Moves the gripper's joint as the step `gripper` does, independent of the arm."""
 
-    def __init__(self, description: RobotDescription, timestep: float, command: Command) -> None:
+    def __init__(
+        self,
+        description: RobotDescription,
+        timestep: float,
+        command: CommandRecord,
+        start: Rows,
+        measured: FloatArray,
+    ) -> None:
         """Plan the motion to `position` under `max_effort`, 0 for the gripper's own.
 
         Raises:
@@ -28,25 +36,22 @@ class GripperMotion:
         target, effort = (float(command.content[key]) for key in ("position", "max_effort"))
         if not np.isfinite([target, effort]).all() or effort < 0:
             raise GoalRefused(
-                Code.INVALID_GOAL,
                 f"position ({target:g}) and max_effort ({effort:g}) must be finite numbers,"
-                " max_effort not below 0",
+                " max_effort not below 0"
             )
         joint = description.joint_by_name[gripper.joint]
         if not joint.lower - LIMIT_SLACK <= target <= joint.upper + LIMIT_SLACK:
-            raise GoalRefused(
-                Code.INVALID_GOAL,
-                f"'{joint.name}' goes from {joint.lower:g} to {joint.upper:g}, not to {target:g}",
-            )
+            reach = f"from {joint.lower:g} to {joint.upper:g}"
+            raise GoalRefused(f"'{joint.name}' goes {reach}, not to {target:g}")
         self.goal, self.effort = command.goal, min(effort, gripper.max_effort)
         self._speed = joint_speed(description, gripper)
         self._range = abs(gripper.closed_position - gripper.open_position)
-        here, commanded = float(command.measured[0]), float(command.start[0, -1, 0])
+        here, commanded = float(measured[0]), float(start[0, -1, 0])
         turns_back = (target - here) * (commanded - here) < 0
         first = here if turns_back else commanded
         points = ramp(first, target, self._speed, joint.acceleration, timestep)
         self._rows: Rows = np.array([points.positions, points.velocities, points.accelerations])
-        self._target, self._timestep, self._begin = target, timestep, command.now
+        self._target, self._timestep, self._begin = target, timestep, command.time
         self._recent: list[float] = []
 
     def at(self, times: FloatArray) -> Rows:

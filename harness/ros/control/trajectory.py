@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import factorial, perm
 
 import numpy as np
 from scipy.interpolate import PPoly
 
 from harness.core.types import FloatArray
+from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.messages import message
-from harness.robot.description import Joint
-from harness.ros.control.controller import Command, Outcome, Rows, Window
-from harness.ros.control.goals import Code, Defaults, TrajectoryGoal, checked_goal
+from harness.robot.description import Joint, TrackingTolerances
+from harness.ros.control.controller import Outcome, Rows, Window
+from harness.ros.control.goals import Code, TrajectoryGoal, checked_goal
 from harness.ros.interfaces import FOLLOW
+
+TIME_SLACK = 1e-9
 
 
 class Spline:
@@ -23,42 +27,18 @@ class Spline:
         end: The time of the last knot [s].
     """
 
-    def __init__(
-        self,
-        times: FloatArray,
-        positions: FloatArray,
-        velocities: FloatArray | None = None,
-        accelerations: FloatArray | None = None,
-    ) -> None:
+    def __init__(self, times: FloatArray, *motion: FloatArray) -> None:
         """Fit the segments.
 
         Args:
             times: Strictly rising [s], shape (K,).
-            positions: The positions at the knots, shape (K, dof).
-            velocities: The velocities, shape (K, dof); None for straight segments.
-            accelerations: The accelerations, shape (K, dof); None where segments are not quintic.
+            motion: The positions at the knots and, where given, the velocities and accelerations,
+                shape (K, dof) each.
         """
-        self.begin, self.end, self._target = float(times[0]), float(times[-1]), positions[-1]
+        self.begin, self.end, self._target = float(times[0]), float(times[-1]), motion[0][-1]
         if len(times) == 1:  # a motion of no length, ahead of which and after which it rests
-            times, positions = np.array([times[0], times[0] + 1.0]), positions[[0, 0]]
-            velocities = accelerations = None
-        span, way = np.diff(times)[:, None], np.diff(positions, axis=0)
-        if velocities is None:
-            factors = [positions[:-1], way / span]
-        elif accelerations is None:
-            v0, v1 = velocities[:-1] * span, velocities[1:] * span
-            cubic = [(3 * way - 2 * v0 - v1) / span**2, (v0 + v1 - 2 * way) / span**3]
-            factors = [positions[:-1], velocities[:-1], *cubic]
-        else:
-            v0, v1 = velocities[:-1] * span, velocities[1:] * span
-            a0, a1 = accelerations[:-1] * span**2, accelerations[1:] * span**2
-            quintic = [
-                (10 * way - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1) / span**3,
-                (-15 * way + 8 * v0 + 7 * v1 + 1.5 * a0 - a1) / span**4,
-                (6 * way - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1) / span**5,
-            ]
-            factors = [positions[:-1], velocities[:-1], accelerations[:-1] / 2, *quintic]
-        self._polynomial = PPoly(np.array(factors[::-1]), times)
+            times, motion = np.array([times[0], times[0] + 1.0]), (motion[0][[0, 0]],)
+        self._polynomial = _hermite(times, motion)
 
     def at(self, times: FloatArray) -> Rows:
         """The motion at some times [s], shape (N,); at rest before the first knot and after."""
@@ -69,19 +49,39 @@ class Spline:
         return rows
 
 
-TIME_SLACK = 1e-9
+def _hermite(times: FloatArray, motion: Sequence[FloatArray]) -> PPoly:
+    """Polynomials with the given derivatives, of order 0, 1, ... , at both ends of each segment.
+
+    In the share s of its segment, a polynomial has factors of s^i: those for i < len(motion) follow
+    from its begin, and the others from what they have to add to these until its end.
+    """
+    known, span = range(len(motion)), np.diff(times)[:, None]
+    low = [motion[i][:-1] * span**i / factorial(i) for i in known]
+    lack = [
+        motion[order][1:] * span**order - sum(perm(i, order) * low[i] for i in known)
+        for order in known
+    ]
+    added = [[perm(i + len(motion), order) for i in known] for order in known]
+    high = np.tensordot(np.linalg.inv(added), lack, axes=1)
+    factors = [factor / span**i for i, factor in enumerate([*low, *high])]
+    return PPoly(np.array(factors[::-1]), times)
 
 
 def start_trajectory(
-    joints: Sequence[Joint], defaults: Defaults, command: Command
+    joints: Sequence[Joint],
+    defaults: TrackingTolerances,
+    command: CommandRecord,
+    start: Rows,
+    measured: FloatArray,
 ) -> TrajectoryMotion:
     """The motion of a trajectory from the last set point on.
 
     Raises:
         GoalRefused: It cannot be followed.
     """
-    goal = checked_goal(command.content, joints, command.now, defaults)
-    return TrajectoryMotion(command.goal, joints, goal, _spline(goal, command.now, command.start))
+    del measured
+    goal = checked_goal(command, joints, defaults)
+    return TrajectoryMotion(command.goal, joints, goal, _spline(goal, command.time, start))
 
 
 def follow_result(code: Code, reason: str) -> object:
@@ -154,12 +154,8 @@ def _spline(goal: TrajectoryGoal, now: float, start: Rows) -> Spline:
     left[-1] = True
     if not goal.stamp and goal.times[0] == 0:
         left[0] = True  # a point at time 0 is where the trajectory starts
-    times = times[left]
-    parts = [None if part is None else part[left] for part in goal.motion]
+    times, motion = times[left], [part[left] for part in goal.motion]
     if times[0] > now + TIME_SLACK:
         times = np.concatenate([[now], times])
-        parts = [None if part is None else np.vstack([at, part])
-                 for part, at in zip(parts, start, strict=True)]  # fmt: skip
-    positions, velocities, accelerations = parts
-    assert positions is not None
-    return Spline(times, positions, velocities, accelerations)
+        motion = [np.vstack([at, part]) for part, at in zip(motion, start, strict=False)]
+    return Spline(times, *motion)

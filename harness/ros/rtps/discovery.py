@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar
 
+from harness.ros.graph import Qos
 from harness.ros.rtps import wire
-from harness.ros.rtps.wire import Address
+from harness.ros.rtps.wire import Address, Parameters
+
+T = TypeVar("T")
+
+Reachable = Callable[[Sequence[Address]], Address | None]
+"""The one of some addresses under which they are reached; None for none."""
 
 LEASE = 100.0
 """Seconds of silence after which peers forget this participant."""
@@ -23,58 +30,11 @@ _VERSION = [(wire.PID_VERSION, wire.VERSION), (wire.PID_VENDOR, wire.VENDOR)]
 
 
 @dataclass(frozen=True)
-class Qos:
-    """What decides whether a writer and a reader match.
-
-    Attributes:
-        is_reliable: Lost samples are sent again.
-        is_latched: Readers that come later get the kept samples too (transient local).
-        depth: Samples that a writer keeps.
-    """
-
-    is_reliable: bool = True
-    is_latched: bool = False
-    depth: int = 10
-
-
-@dataclass(frozen=True)
-class ParticipantData:
-    """A participant as it announces itself.
-
-    Attributes:
-        domain: The number of its domain; None where it does not say.
-        meta: The addresses for discovery.
-        user: The addresses for samples, where endpoints have none of their own.
-        lease: The seconds of silence after which it is gone.
-    """
-
-    domain: int | None
-    meta: Sequence[Address]
-    user: Sequence[Address]
-    lease: float
-
-    @classmethod
-    def parsed(cls, payload: bytes) -> ParticipantData:
-        """The content of an announcement."""
-        known = wire.parameters_of(payload)
-        lease, domain = known.get(wire.PID_LEASE), known.get(wire.PID_DOMAIN)
-        return cls(
-            _first(domain) if domain else None,
-            _addresses(known, wire.PID_META_UNICAST),
-            _addresses(known, wire.PID_DEFAULT_UNICAST),
-            float(_first(lease)) if lease else PEER_LEASE,
-        )
-
-
-@dataclass(frozen=True)
 class Endpoint:
     """A writer or a reader as its participant announces it.
 
     Attributes:
-        guid: The GUID of the endpoint.
         topic: The name of its topic in DDS, such as `rt/joint_states`.
-        type_name: The name of its type in DDS.
-        qos: The quality that it offers or requests.
         addresses: Where it is reached; empty for its participant's addresses.
     """
 
@@ -87,7 +47,7 @@ class Endpoint:
     @property
     def is_writer(self) -> bool:
         """Whether it writes, with a key or without."""
-        return self.guid[15] & 0x0F in (0x02, 0x03)
+        return _is_writer(self.guid)
 
     def matches(self, other: Endpoint) -> bool:
         """Whether direction, topic, type and quality allow a connection with another endpoint."""
@@ -107,17 +67,13 @@ class Endpoint:
             KeyError: It has no topic or no type.
         """
         known = wire.parameters_of(payload)
-        reliable, durable = known.get(wire.PID_RELIABILITY), known.get(wire.PID_DURABILITY)
         guid = known[wire.PID_ENDPOINT][0][:16]
-        is_writer = cls(guid, "", "", Qos()).is_writer
+        reliability = _number(known, wire.PID_RELIABILITY, 2 if _is_writer(guid) else 1)
         return cls(
             guid,
             wire.text_of(known[wire.PID_TOPIC][0]),
             wire.text_of(known[wire.PID_TYPE][0]),
-            Qos(
-                is_reliable=_first(reliable) == 2 if reliable else is_writer,
-                is_latched=bool(durable) and _first(durable) >= 1,
-            ),
+            Qos(reliability == 2, _number(known, wire.PID_DURABILITY, 0) >= 1),
             _addresses(known, wire.PID_UNICAST),
         )
 
@@ -130,13 +86,46 @@ class Endpoint:
                 (wire.PID_PARTICIPANT, self.guid[:12] + wire.PARTICIPANT),
                 *_VERSION,
                 (wire.PID_KEY_HASH, self.guid),
-                *((wire.PID_UNICAST, wire.locator(each)) for each in self.addresses),
                 (wire.PID_TOPIC, wire.text(self.topic)),
                 (wire.PID_TYPE, wire.text(self.type_name)),
                 (wire.PID_RELIABILITY, reliability),
                 (wire.PID_DURABILITY, struct.pack("<I", int(self.qos.is_latched))),
             ]
         )
+
+
+@dataclass
+class Peer:
+    """Another participant.
+
+    Attributes:
+        domain: The number of its domain; None where it does not say.
+        meta: The address for discovery.
+        user: The address for samples, where endpoints have none of their own.
+        lease: The silence after which it is gone [s].
+        seen: The moment of `time.monotonic` of its last message.
+        knows_us: Whether it has sent anything to this participant's endpoints.
+        endpoints: Its writers and readers, by GUID.
+    """
+
+    domain: int | None
+    meta: Address
+    user: Address
+    lease: float
+    seen: float = 0.0
+    knows_us: bool = False
+    endpoints: dict[bytes, Endpoint] = field(default_factory=dict[bytes, Endpoint])
+
+    @classmethod
+    def parsed(cls, payload: bytes, reachable: Reachable) -> Peer | None:
+        """The content of an announcement; None where the participant cannot be reached."""
+        known = wire.parameters_of(payload)
+        meta = reachable(_addresses(known, wire.PID_META_UNICAST))
+        if meta is None:
+            return None
+        user = reachable(_addresses(known, wire.PID_DEFAULT_UNICAST)) or meta
+        lease = _number(known, wire.PID_LEASE, PEER_LEASE)
+        return cls(_number(known, wire.PID_DOMAIN, None), meta, user, lease)
 
 
 def announcement(guid: bytes, domain: int, name: str, addresses: Sequence[Address]) -> bytes:
@@ -170,10 +159,14 @@ def is_gone(inline: dict[int, bytes]) -> bool:
     return bool(inline.get(wire.PID_STATUS, b"\0")[-1] & 3)
 
 
-def _addresses(known: dict[int, list[bytes]], key: int) -> list[Address]:
+def _is_writer(guid: bytes) -> bool:
+    return guid[15] & 0x0F in (0x02, 0x03)
+
+
+def _addresses(known: Parameters, key: int) -> list[Address]:
     found = map(wire.address_of, known.get(key, []))
     return [address for address in found if address is not None]
 
 
-def _first(values: list[bytes] | None) -> int:
-    return struct.unpack_from("<I", values[0])[0] if values else 0
+def _number(known: Parameters, key: int, default: T) -> int | T:
+    return struct.unpack_from("<I", known[key][0])[0] if key in known else default

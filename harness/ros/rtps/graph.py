@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from harness.reporting.rosbag.messages import message
-from harness.ros.graph import OnMessage, Publisher, Reply
+from harness.ros.graph import DEFAULT, LATCHED, Client, OnMessage, Publisher, Qos, Reply, Use
 from harness.ros.interfaces import CANCEL, decoded, encoded, prepare
-from harness.ros.names import Use
 from harness.ros.rtps import wire
-from harness.ros.rtps.discovery import Endpoint, Qos
+from harness.ros.rtps.discovery import Endpoint
 from harness.ros.rtps.participant import Participant
 from harness.ros.rtps.reader import Reader
 from harness.ros.rtps.wire import Sample
@@ -37,28 +35,6 @@ def dds_type(kind: str) -> str:
     return f"{package}::{folder}::dds_::{name}_"
 
 
-@dataclass
-class _Client:
-    """A client of a service; `waiting` has what takes each response, by the request's identity."""
-
-    writer: Writer
-    reader: Reader
-    kind: str
-    waiting: dict[bytes, OnMessage] = field(default_factory=dict[bytes, OnMessage])
-
-    @property
-    def is_ready(self) -> bool:
-        return bool(self.writer.matched) and bool(self.reader.matched)
-
-    def call(self, request: Any, on_response: OnMessage) -> None:
-        number, guid = self.writer.last + 1, self.reader.endpoint.guid
-        identity = guid + wire.sequence_number(number)
-        if any(server.startswith(CYCLONE) for server in self.writer.matched):
-            identity = guid[8:] + number.to_bytes(8, "little")
-        self.waiting[identity] = on_response
-        self.writer.write(*_framed(encoded(request, f"{self.kind}_Request"), identity))
-
-
 class RtpsGraph:
     """A node in a domain, with a participant of its own."""
 
@@ -66,50 +42,45 @@ class RtpsGraph:
         """Join a domain, as `open_graph` says."""
         self.participant = Participant(domain, name=node, is_local=is_local)
         self._node = node
-        latched = Qos(is_latched=True, depth=1)
-        self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), latched)
+        self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED)
         self._introduce()
 
-    def advertise(
-        self, topic: str, kind: str, *, latched: bool = False, depth: int = 10
-    ) -> Publisher:
-        made = self._writer(f"rt{topic}", kind, Qos(True, latched, depth))
-        return Publisher(kind, made.write, lambda: len(made.matched), latched)
+    def advertise(self, topic: str, kind: str, qos: Qos = DEFAULT) -> Publisher:
+        made = self._writer(f"rt{topic}", kind, qos)
+        return Publisher(kind, made.write, lambda: len(made.matched), qos.is_latched)
 
-    def subscribe(
-        self,
-        topic: str,
-        kind: str,
-        on_message: OnMessage,
-        *,
-        latched: bool = False,
-        reliable: bool = True,
-    ) -> None:
-        qos = Qos(reliable, latched)
-        self._reader(f"rt{topic}", kind, qos, lambda content, _: on_message(content))
+    def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
+        self._reader(f"rt{topic}", kind, lambda content, _: on_message(content), qos)
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
         writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE)
 
         def take(request: Any, sample: Sample) -> None:
             def answer(response: Any) -> None:
-                payload = encoded(response, f"{kind}_Response")
-                writer.write(*_framed(payload, _request(sample)), target=sample.writer[:12])
+                framed = _framed(encoded(response, f"{kind}_Response"), _request(sample))
+                writer.write(*framed, target=sample.writer[:12])
 
             on_request(request, answer)
 
-        self._reader(f"rq{name}Request", f"{kind}_Request", SERVICE, take)
+        self._reader(f"rq{name}Request", f"{kind}_Request", take)
 
-    def client(self, name: str, kind: str) -> _Client:
+    def client(self, name: str, kind: str) -> Client:
+        waiting: dict[bytes, OnMessage] = {}
+
         def take(response: Any, sample: Sample) -> None:
-            on_response = client.waiting.pop(_answered_request(sample), None)
-            if on_response is not None:
-                on_response(response)
+            waiting.pop(_answered_request(sample), lambda _: None)(response)
 
-        reader = self._reader(f"rr{name}Reply", f"{kind}_Response", SERVICE, take)
+        def call(request: Any, on_response: OnMessage) -> None:
+            number, guid = writer.last + 1, reader.endpoint.guid
+            identity = guid + wire.sequence_number(number)
+            if any(server.startswith(CYCLONE) for server in writer.matched):
+                identity = guid[8:] + number.to_bytes(8, "little")
+            waiting[identity] = on_response
+            writer.write(*_framed(encoded(request, f"{kind}_Request"), identity))
+
+        reader = self._reader(f"rr{name}Reply", f"{kind}_Response", take)
         writer = self._writer(f"rq{name}Request", f"{kind}_Request", SERVICE)
-        client = _Client(writer, reader, kind)
-        return client
+        return Client(lambda: bool(writer.matched and reader.matched), call)
 
     def uses(self) -> tuple[list[Use], list[Use]]:
         return _uses(self.participant.own_endpoints()), _uses(self.participant.known_endpoints())
@@ -127,7 +98,7 @@ class RtpsGraph:
         return made
 
     def _reader(
-        self, topic: str, kind: str, qos: Qos, take: Callable[[Any, Sample], None]
+        self, topic: str, kind: str, take: Callable[[Any, Sample], object], qos: Qos = SERVICE
     ) -> Reader:
         def deliver(sample: Sample) -> None:
             content = decoded(_message_of(sample, topic), kind)
@@ -165,8 +136,7 @@ def _uses(endpoints: Iterable[Endpoint]) -> list[Use]:
             each.topic[2:],
             each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_"),
             each.is_writer,
-            each.qos.is_reliable,
-            each.qos.is_latched,
+            each.qos,
         )
         for each in endpoints
         if each.topic.startswith("rt/")

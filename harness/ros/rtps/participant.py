@@ -8,13 +8,12 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import dataclass, field
 
+from harness.ros.graph import Qos
 from harness.ros.rtps import wire
 from harness.ros.rtps.discovery import (
     Endpoint,
-    ParticipantData,
-    Qos,
+    Peer,
     announcement,
     farewell,
     is_gone,
@@ -33,18 +32,6 @@ DISCOVERY_PAIRS = (
 """Entities with which participants announce their writers and their readers."""
 
 
-@dataclass
-class _Peer:
-    """Another participant."""
-
-    meta: Address
-    user: Address
-    lease: float
-    seen: float
-    knows_us: bool = False
-    endpoints: dict[bytes, Endpoint] = field(default_factory=dict[bytes, Endpoint])
-
-
 class Participant:
     """Writers and readers of this process in a domain; everything happens inside `spin`."""
 
@@ -58,7 +45,7 @@ class Participant:
         self.prefix = wire.VENDOR + os.urandom(10)
         self.guid = self.prefix + wire.PARTICIPANT
         self._sockets = Sockets(domain, is_local=is_local)
-        self._peers: dict[bytes, _Peer] = {}
+        self._peers: dict[bytes, Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
         self._arrived: deque[tuple[Callable[[Sample], None], Sample]] = deque()
@@ -82,11 +69,8 @@ class Participant:
         self, topic: str, type_name: str, qos: Qos, deliver: Callable[[Sample], None]
     ) -> Reader:
         """A reader of a topic, known to the peers from now on."""
-
-        def arrive(sample: Sample) -> None:
-            self._arrived.append((deliver, sample))
-
-        made = Reader(self._endpoint(0x04, topic, type_name, qos), self._send, arrive)
+        endpoint = self._endpoint(0x04, topic, type_name, qos)
+        made = Reader(endpoint, self._send, lambda sample: self._arrived.append((deliver, sample)))
         self._readers[made.endpoint.guid[12:]] = made
         self._publish(wire.SUBSCRIPTIONS_WRITER, made)
         return made
@@ -107,11 +91,10 @@ class Participant:
             self._tend()
             left = until - time.monotonic()
             due = min(self._next_announcement, self._next_reminder) - time.monotonic()
-            is_quiet = True
-            for datagram in self._sockets.receive(max(0.0, min(left, due))):
-                is_quiet = False
+            datagrams = list(self._sockets.receive(max(0.0, min(left, due))))
+            for datagram in datagrams:
                 self._receive(datagram)
-            if (left <= 0 and is_quiet) or left < -0.05:  # the latter under a flood of messages
+            if left <= 0 and (not datagrams or left < -0.05):  # the latter under a flood of them
                 return
 
     def close(self) -> None:
@@ -163,21 +146,18 @@ class Participant:
 
     def _take_status(self, source: bytes, message: wire.Submessage) -> None:
         """What a peer's writer has, or what its reader lacks."""
-        body, order = message.body, message.order
-        first, second = body[:4], body[4:8]
+        first, second = message.body[:4], message.body[4:8]
         if message.kind == wire.HEARTBEAT:
-            oldest, last = wire.number_at(body, 8, order), wire.number_at(body, 16, order)
+            oldest, last = message.number(8), message.number(16)
             for reader in self._addressed(first, source + second):
                 reader.heartbeat(source + second, oldest, last, is_final=bool(message.flags & 2))
         elif message.kind == wire.GAP:
-            base, numbers = wire.numbers_of(body, 16, order)
             for reader in self._addressed(first, source + second):
-                reader.gap(source + second, wire.number_at(body, 8, order), base, numbers)
+                reader.gap(source + second, message.number(8), *message.numbers(16))
         elif message.kind == wire.ACKNACK and second in self._writers:
-            base, numbers = wire.numbers_of(body, 8, order)
-            self._writers[second].acknowledge(source + first, base, numbers)
+            self._writers[second].acknowledge(source + first, *message.numbers(8))
         elif message.kind == wire.NACK_FRAG and second in self._writers:
-            number, places = wire.number_at(body, 8, order), wire.fragments_of(body, 16, order)
+            number, places = message.number(8), message.fragments(16)
             self._writers[second].resend_fragments(source + first, number, places)
 
     def _take_sample(self, source: bytes, sample: Sample) -> None:
@@ -204,8 +184,7 @@ class Participant:
 
     def _endpoint(self, kind: int, topic: str, type_name: str, qos: Qos) -> Endpoint:
         entity = (len(self._writers) + len(self._readers)).to_bytes(3, "big") + bytes([kind])
-        own = self._sockets.unicast[-1:]
-        return Endpoint(self.prefix + entity, topic, type_name, qos, own)
+        return Endpoint(self.prefix + entity, topic, type_name, qos)
 
     def _publish(self, announcer: bytes, made: Writer | Reader) -> None:
         self._writers[announcer].write(made.endpoint.payload())
@@ -217,30 +196,25 @@ class Participant:
         if is_gone(sample.inline):
             self._forget(source)
             return
-        known = ParticipantData.parsed(sample.payload)
-        meta = self._sockets.reachable(known.meta)
-        if meta is None or known.domain not in (None, self.domain):
+        known = Peer.parsed(sample.payload, self._sockets.reachable)
+        if known is None or known.domain not in (None, self.domain):
             return
         is_new = source not in self._peers
-        user = self._sockets.reachable(known.user) or meta
-        peer = self._peers.setdefault(source, _Peer(meta, user, known.lease, time.monotonic()))
-        peer.lease = known.lease
+        peer = self._peers.setdefault(source, known)
+        peer.lease, peer.seen = known.lease, time.monotonic()
         if not peer.knows_us:  # it may not have listened yet when the last announcement came
-            self._announce(meta)
+            self._announce(peer.meta)
         if is_new:
             latched = Qos(is_latched=True)
             for writer, reader in DISCOVERY_PAIRS:
-                self._writers[writer].match(Endpoint(source + reader, "", "", latched), meta)
-                self._readers[reader].match(Endpoint(source + writer, "", "", latched), meta)
+                self._writers[writer].match(Endpoint(source + reader, "", "", latched), peer.meta)
+                self._readers[reader].match(Endpoint(source + writer, "", "", latched), peer.meta)
 
     def _take_endpoint(self, sample: Sample) -> None:
         """A peer made or removed a writer or a reader."""
         if is_gone(sample.inline):
-            guid = sample.inline.get(wire.PID_KEY_HASH)
-            if guid is None and len(sample.payload) > 4:
-                guid = wire.parameters_of(sample.payload)[wire.PID_ENDPOINT][0][:16]
-            if guid is not None:
-                self._forget(guid)
+            key = sample.inline.get(wire.PID_KEY_HASH)
+            self._forget(key or wire.parameters_of(sample.payload)[wire.PID_ENDPOINT][0][:16])
             return
         endpoint = Endpoint.parsed(sample.payload)
         peer = self._peers.get(endpoint.guid[:12])
@@ -249,7 +223,7 @@ class Participant:
             for mine in self._all():
                 self._match(mine, endpoint, peer)
 
-    def _match(self, mine: Writer | Reader, other: Endpoint, peer: _Peer) -> None:
+    def _match(self, mine: Writer | Reader, other: Endpoint, peer: Peer) -> None:
         """Connect two endpoints where they fit."""
         if mine.endpoint.matches(other):
             mine.match(other, self._sockets.reachable(other.addresses) or peer.user)

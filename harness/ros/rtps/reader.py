@@ -22,23 +22,13 @@ LARGEST_SAMPLE = 2**26
 
 
 @dataclass
-class _Partial:
-    """A sample of which fragments are missing."""
-
-    content: bytearray
-    missing: set[int]
-
-
-@dataclass
 class _Writer:
     """A matched writer of another participant.
 
     Attributes:
-        address: Where it is reached.
-        is_reliable: Whether lost samples come again.
         expected: The number of the next sample; 0 before anything is known.
         waiting: Samples that wait for an earlier one, by number.
-        partial: Samples of which fragments are missing, by number.
+        partial: The fragments of samples that are not whole, by the numbers of both.
         count: The number of acknowledgements so far.
     """
 
@@ -46,17 +36,12 @@ class _Writer:
     is_reliable: bool
     expected: int = 0
     waiting: dict[int, Sample] = field(default_factory=dict[int, Sample])
-    partial: dict[int, _Partial] = field(default_factory=dict[int, _Partial])
+    partial: dict[int, dict[int, bytes]] = field(default_factory=dict[int, dict[int, bytes]])
     count: int = 0
 
 
 class Reader:
-    """A reader of one topic.
-
-    Attributes:
-        endpoint: The reader as it is announced.
-        matched: The writers of other participants, by GUID.
-    """
+    """A reader of one topic; `matched` has the writers of other participants, by GUID."""
 
     def __init__(self, endpoint: Endpoint, send: Send, deliver: Callable[[Sample], None]) -> None:
         """Call `deliver` with every whole sample, those of a writer in order."""
@@ -69,32 +54,28 @@ class Reader:
         proxy = self.matched.setdefault(other.guid, _Writer(address, is_reliable))
         proxy.address = address
         if is_reliable:
-            # what was sent before comes again: Fast DDS answers a base of 0 at once, and one of 1
-            # with its next heartbeat, three seconds later
-            self._acknowledge(other.guid, proxy, 0 if other.guid.startswith(FAST_DDS) else 1, [])
+            self._request_heartbeat(other.guid, proxy)
 
     def take(self, sample: Sample) -> None:
         """A sample or a fragment of a matched writer arrived."""
         proxy = self.matched.get(sample.writer)
-        if proxy is None:
+        if proxy is None or sample.number < proxy.expected:  # a copy through another address
             return
         whole = _assembled(proxy, sample) if sample.first else sample
         if whole is None:
             return
-        if not proxy.is_reliable:
-            if sample.number >= proxy.expected:
-                proxy.expected = sample.number + 1
-                self._deliver(whole)
-            return
-        proxy.expected = proxy.expected or sample.number
-        if sample.number >= proxy.expected and len(proxy.waiting) < MOST_WAITING:
+        if not proxy.is_reliable:  # none before this one is waited for
+            proxy.expected = sample.number
+        elif not proxy.expected:  # whether there is one before it, a heartbeat says
+            self._request_heartbeat(sample.writer, proxy)
+        if len(proxy.waiting) < MOST_WAITING:
             proxy.waiting[sample.number] = whole
             self._drain(proxy)
 
     def heartbeat(self, guid: bytes, first: int, last: int, *, is_final: bool) -> None:
         """A writer has samples `first` to `last`; request what is missing."""
         proxy = self.matched.get(guid)
-        if proxy is None or not self.endpoint.qos.is_reliable:
+        if proxy is None or not proxy.is_reliable:
             return
         proxy.expected = max(proxy.expected, first)
         self._drain(proxy)
@@ -108,11 +89,15 @@ class Reader:
         proxy = self.matched.get(guid)
         if proxy is None:
             return
-        if first <= (proxy.expected or first):
+        if first <= max(proxy.expected, 1):
             proxy.expected = max(proxy.expected, base)
         while proxy.expected in numbers:
             proxy.expected += 1
         self._drain(proxy)
+
+    def _request_heartbeat(self, guid: bytes, proxy: _Writer) -> None:
+        """Fast DDS answers a base of 0 at once, and 1 with its next heartbeat, 3 s later."""
+        self._acknowledge(guid, proxy, 0 if guid.startswith(FAST_DDS) else 1, [])
 
     def _drain(self, proxy: _Writer) -> None:
         for passed in (proxy.waiting, proxy.partial):
@@ -136,18 +121,11 @@ def _assembled(proxy: _Writer, sample: Sample) -> Sample | None:
     if size > LARGEST_SAMPLE or step == 0:
         return None
     count = -(-size // step)
-    partial = proxy.partial.get(sample.number)
-    if partial is None:
-        partial = _Partial(bytearray(size), set(range(1, count + 1)))
-        proxy.partial[sample.number] = partial
-    place, rest = sample.first, memoryview(sample.payload)
-    while len(rest) and place <= count and len(partial.content) == size:
-        begin = (place - 1) * step
-        part = rest[: min(step, size - begin)]
-        partial.content[begin : begin + len(part)] = part
-        partial.missing.discard(place)
-        place, rest = place + 1, rest[step:]
-    if partial.missing:
+    parts = proxy.partial.setdefault(sample.number, {})
+    for place, begin in enumerate(range(0, len(sample.payload), step), sample.first):
+        if place <= count:
+            parts[place] = sample.payload[begin : begin + step]
+    if len(parts) < count:
         return None
     del proxy.partial[sample.number]
-    return replace(sample, payload=bytes(partial.content))
+    return replace(sample, payload=b"".join(parts[place] for place in sorted(parts))[:size])

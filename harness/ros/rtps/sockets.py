@@ -6,7 +6,7 @@ import fcntl
 import select
 import socket
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from harness.core.errors import HarnessError
@@ -73,14 +73,13 @@ class Sockets:
                 if host in self._own or not self.is_local:
                     yield datagram
 
-    def reachable(self, addresses: Iterable[Address]) -> Address | None:
+    def reachable(self, addresses: Sequence[Address]) -> Address | None:
         """The address under which a peer is reached, on this machine where it is here.
 
         Cyclone DDS takes only packets to the address of the interface that it has chosen.
         """
-        found = list(addresses)
-        here = [address for address in found if address[0] in self._own]
-        usable = here or ([] if self.is_local else found)
+        here = [address for address in addresses if address[0] in self._own]
+        usable = here or ([] if self.is_local else addresses)
         return min(usable, key=lambda each: each[0] != LOOPBACK, default=None)
 
     def close(self) -> None:

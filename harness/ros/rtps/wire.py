@@ -32,6 +32,7 @@ MOST_BITS = 256
 """Sequence numbers in one set."""
 
 Address = tuple[str, int]
+Parameters = dict[int, list[bytes]]
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,31 @@ class Submessage:
         """The byte order, for `struct`."""
         return "<" if self.flags & 1 else ">"
 
+    def unpack(self, form: str, place: int) -> tuple[int, ...]:
+        """The numbers at a place of the body, in a form of `struct`."""
+        return struct.unpack_from(f"{self.order}{form}", self.body, place)
+
+    def number(self, place: int) -> int:
+        """The sequence number at a place."""
+        high, low = self.unpack("iI", place)
+        return (high << 32) + low
+
+    def numbers(self, place: int) -> tuple[int, list[int]]:
+        """The base and the members of the set of sequence numbers at a place."""
+        base = self.number(place)
+        return base, [base + each for each in self._members(place + 8)]
+
+    def fragments(self, place: int) -> list[int]:
+        """The members of the set of fragment numbers at a place."""
+        (base,) = self.unpack("I", place)
+        return [base + each for each in self._members(place + 4)]
+
+    def _members(self, place: int) -> list[int]:
+        bits = min(self.unpack("I", place)[0], MOST_BITS)
+        words = self.unpack(f"{-(-bits // 32)}I", place + 4)
+        marks = "".join(f"{word:032b}" for word in words)
+        return [bit for bit in range(bits) if marks[bit] == "1"]
+
 
 @dataclass(frozen=True)
 class Sample:
@@ -55,8 +81,6 @@ class Sample:
     Attributes:
         reader: The entity of the reader; zeros for all readers.
         writer: The GUID of the writer.
-        number: The sequence number of the sample.
-        inline: Parameters that come with the sample.
         payload: The encapsulation header and the content, or fragments of them.
         first: The number of the first fragment, from 1; 0 for a whole sample.
         fragment_size: Bytes of each fragment but the last.
@@ -101,54 +125,28 @@ def sequence_number(number: int) -> bytes:
     return struct.pack("<iI", number >> 32, number & 0xFFFFFFFF)
 
 
-def number_at(body: bytes, place: int, order: str) -> int:
-    """The sequence number at a place."""
-    high, low = struct.unpack_from(f"{order}iI", body, place)
-    return (high << 32) + low
-
-
 def number_set(base: int, numbers: Sequence[int]) -> bytes:
     """A set of sequence numbers from a base on."""
-    chosen = [number for number in numbers if base <= number < base + MOST_BITS]
-    bits = max(chosen) - base + 1 if chosen else 0
-    words = [0] * ((bits + 31) // 32)
-    for number in chosen:
-        words[(number - base) // 32] |= 1 << (31 - (number - base) % 32)
+    places = {number - base for number in numbers if base <= number < base + MOST_BITS}
+    bits = max(places, default=-1) + 1
+    words = [0] * -(-bits // 32)
+    for place in places:
+        words[place // 32] |= 1 << (31 - place % 32)
     return sequence_number(base) + struct.pack(f"<I{len(words)}I", bits, *words)
-
-
-def numbers_of(body: bytes, place: int, order: str) -> tuple[int, list[int]]:
-    """The base and the members of a set of sequence numbers."""
-    base = number_at(body, place, order)
-    return base, [base + each for each in _members(body, place + 8, order)]
-
-
-def fragments_of(body: bytes, place: int, order: str) -> list[int]:
-    """The members of a set of fragment numbers."""
-    (base,) = struct.unpack_from(f"{order}I", body, place)
-    return [base + each for each in _members(body, place + 4, order)]
-
-
-def _members(body: bytes, place: int, order: str) -> Iterator[int]:
-    (bits,) = struct.unpack_from(f"{order}I", body, place)
-    for bit in range(min(bits, MOST_BITS)):
-        (word,) = struct.unpack_from(f"{order}I", body, place + 4 + 4 * (bit // 32))
-        if word >> (31 - bit % 32) & 1:
-            yield bit
 
 
 def parameters(values: Sequence[tuple[int, bytes]]) -> bytes:
     """A parameter list, each value padded to four bytes."""
-    parts = [
-        struct.pack("<HH", key, len(value) + -len(value) % 4) + value + bytes(-len(value) % 4)
-        for key, value in values
-    ]
-    return b"".join(parts) + struct.pack("<HH", PID_SENTINEL, 0)
+    made = b""
+    for key, value in values:
+        padded = value + bytes(-len(value) % 4)
+        made += struct.pack("<HH", key, len(padded)) + padded
+    return made + struct.pack("<HH", PID_SENTINEL, 0)
 
 
-def parsed_parameters(body: bytes, place: int, order: str) -> tuple[dict[int, list[bytes]], int]:
+def parsed_parameters(body: bytes, place: int, order: str) -> tuple[Parameters, int]:
     """The values of a parameter list by their keys, and where it ends."""
-    found: dict[int, list[bytes]] = {}
+    found: Parameters = {}
     while True:
         key, length = struct.unpack_from(f"{order}HH", body, place)
         place += 4
@@ -158,7 +156,7 @@ def parsed_parameters(body: bytes, place: int, order: str) -> tuple[dict[int, li
         place += length
 
 
-def parameters_of(payload: bytes) -> dict[int, list[bytes]]:
+def parameters_of(payload: bytes) -> Parameters:
     """The parameters of a discovery sample, after its encapsulation header."""
     return parsed_parameters(payload, 4, "<" if payload[1] & 1 else ">")[0]
 
@@ -202,30 +200,24 @@ def fragments(
     if len(payload) <= FRAGMENT:
         return [data(reader, writer, number, payload, inline)]
     head = struct.pack("<HH", 0, 28) + reader + writer + sequence_number(number)
-    return [
-        submessage(
-            DATA_FRAG,
-            head
-            + struct.pack("<IHHI", place, 1, FRAGMENT, len(payload))
-            + inline
-            + payload[begin : begin + FRAGMENT],
-            0x02 if inline else 0,
-        )
-        for place, begin in enumerate(range(0, len(payload), FRAGMENT), 1)
-    ]
+    made: list[bytes] = []
+    for place, begin in enumerate(range(0, len(payload), FRAGMENT), 1):
+        body = head + struct.pack("<IHHI", place, 1, FRAGMENT, len(payload)) + inline
+        body += payload[begin : begin + FRAGMENT]
+        made.append(submessage(DATA_FRAG, body, 0x02 if inline else 0))
+    return made
 
 
 def sample_of(source: bytes, message: Submessage) -> Sample:
     """What DATA or DATA_FRAG of a participant carries."""
-    body, order = message.body, message.order
-    (to_inline,) = struct.unpack_from(f"{order}H", body, 2)
-    number, place = number_at(body, 12, order), 4 + to_inline
+    number, place = message.number(12), 4 + message.unpack("H", 2)[0]
     inline: dict[int, bytes] = {}
     if message.flags & 0x02:
-        listed, place = parsed_parameters(body, place, order)
+        listed, place = parsed_parameters(message.body, place, message.order)
         inline = {key: values[0] for key, values in listed.items()}
+    body = message.body
     rest = body[4:8], source + body[8:12], number, inline, body[place:]
     if message.kind == DATA:
         return Sample(*rest)
-    first, _, fragment_size, size = struct.unpack_from(f"{order}IHHI", body, 20)
+    first, _, fragment_size, size = message.unpack("IHHI", 20)
     return Sample(*rest, first, fragment_size, size)

@@ -39,7 +39,6 @@ class Writer:
     """A reliable writer of one topic.
 
     Attributes:
-        endpoint: The writer as it is announced.
         matched: The readers of other participants, by GUID.
         last: The sequence number of the last sample.
     """
@@ -83,14 +82,14 @@ class Writer:
         if proxy is None:
             return
         proxy.acknowledged = max(proxy.acknowledged, min(base - 1, self.last))
-        kept = {each.number: each for each in self._history}
-        lost: list[int] = []
-        for number in missing:
-            is_kept = number in kept and number >= proxy.first
-            if is_kept and guid.startswith(kept[number].target):
-                self._send_sample(guid, proxy, kept[number], heartbeat=False)
-            elif number <= self.last:
-                lost.append(number)
+        kept = {
+            each.number: each
+            for each in self._history
+            if each.number >= proxy.first and guid.startswith(each.target)
+        }
+        for number in sorted(kept.keys() & missing):
+            self._send_sample(guid, proxy, kept[number], heartbeat=False)
+        lost = [number for number in missing if number not in kept and number <= self.last]
         if lost:
             self._send_gap(guid, proxy, lost)
         if missing or base <= self.last:
@@ -99,12 +98,11 @@ class Writer:
     def resend_fragments(self, guid: bytes, number: int, places: list[int]) -> None:
         """Send fragments that a reader lacks."""
         proxy = self.matched.get(guid)
-        kept = next((each for each in self._history if each.number == number), None)
-        if proxy is not None and kept is not None:
-            parts = wire.fragments(guid[12:], self._entity, number, kept.payload, kept.inline)
-            for place in places:
-                if 0 < place <= len(parts):
-                    self._send(guid[:12], parts[place - 1], proxy.address)
+        for kept in self._history:
+            if proxy is not None and kept.number == number:
+                parts = dict(enumerate(self._parts(guid, kept), 1))
+                for place in sorted(parts.keys() & places):
+                    self._send(guid[:12], parts[place], proxy.address)
 
     def remind(self) -> None:
         """Send a heartbeat to every reader that has not acknowledged everything."""
@@ -117,13 +115,14 @@ class Writer:
         return self._history[0].number if self._history else self.last + 1
 
     def _send_sample(self, guid: bytes, proxy: _Reader, kept: _Kept, *, heartbeat: bool) -> None:
-        *parts, end = wire.fragments(
-            guid[12:], self._entity, kept.number, kept.payload, kept.inline
-        )
+        *parts, end = self._parts(guid, kept)
         for part in parts:
             self._send(guid[:12], part, proxy.address)
         after = self._heartbeat(guid, proxy) if heartbeat else b""
         self._send(guid[:12], end + after, proxy.address)
+
+    def _parts(self, guid: bytes, kept: _Kept) -> list[bytes]:
+        return wire.fragments(guid[12:], self._entity, kept.number, kept.payload, kept.inline)
 
     def _heartbeat(self, guid: bytes, proxy: _Reader) -> bytes:
         self._count += 1
@@ -146,6 +145,4 @@ def _padded(payload: bytes) -> bytes:
     Cyclone DDS drops submessages of other lengths.
     """
     missing = -len(payload) % 4
-    if not missing:
-        return payload
     return payload[:3] + bytes([payload[3] | missing]) + payload[4:] + bytes(missing)

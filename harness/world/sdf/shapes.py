@@ -21,6 +21,7 @@ from harness.world.notes import Notes
 from harness.world.plain_values import facing, pose_spec, rounded
 from harness.world.sdf.elements import WORDS, note_unread_elements
 from harness.world.sdf.model_path import MissingFileError, ModelPath
+from harness.world.sdf.round_meshes import cone, ellipsoid
 from harness.world.sdf.values import number, numbers_of, positive, text_of
 
 PLAIN_COLORS: Mapping[str, Rgba] = {
@@ -38,6 +39,9 @@ PLAIN_COLORS: Mapping[str, Rgba] = {
     "Orange": (1.0, 0.5088, 0.0468, 1.0),
 }
 """Diffuse colours of material scripts called `Gazebo/...`: gazebo.material of Gazebo classic 11."""
+
+SHAPES = tuple(tag for tag, word in WORDS["geometry"].items() if word.treatment == "read")
+"""What a collision can be."""
 
 DEFAULT_TORSIONAL = FrictionSpec().torsional
 
@@ -65,10 +69,10 @@ class ShapeReader:
         if geometry.tag == "empty":
             return None
         if WORDS["geometry"][geometry.tag].treatment == "refused":
-            hint = "give the collision a box, cylinder, sphere, capsule, plane or mesh"
+            hint = f"shapes: {', '.join(SHAPES)}"
             geometry.refuse(f"a collision cannot be a <{geometry.tag}>", hint)
         shape = self._shape(element, geometry, folder, pose, friction=self._friction(element))
-        if shape.mesh is not None:
+        if geometry.tag == "mesh" and shape.mesh is not None:
             _refuse_untouchable(shape.mesh, geometry)
         return shape
 
@@ -106,15 +110,7 @@ class ShapeReader:
         words: dict[str, Any] = {key: value for key, value in more.items() if value is not None}
         match geometry.tag:
             case "box":
-                size = geometry.find("size")
-                if size is None:
-                    geometry.refuse("a <box> lacks its <size>")
-                values = numbers_of(size, 3)
-                if min(values) <= 0:
-                    size.refuse(f"a box has sizes above 0, not {size.text.strip()}")
-                if min(values) < SMALLEST_SIZE:
-                    size.refuse(f"a box has sizes of at least {SMALLEST_SIZE:g} m")
-                words["box"] = {"size": values}
+                words["box"] = {"size": _sizes(geometry, "size")}
             case "sphere":
                 words["sphere"] = {"radius": positive(geometry, "radius")}
             case "cylinder" | "capsule":
@@ -122,6 +118,10 @@ class ShapeReader:
                     "radius": positive(geometry, "radius"),
                     "length": positive(geometry, "length"),
                 }
+            case "cone":
+                words["mesh"] = cone(positive(geometry, "radius"), positive(geometry, "length"))
+            case "ellipsoid":
+                words["mesh"] = ellipsoid(_sizes(geometry, "radii"))
             case "plane":
                 words["plane"] = {}
                 pose = pose @ _facing(geometry)
@@ -203,6 +203,19 @@ class ShapeReader:
         if color is None:
             self.notes.add(script.place, f"the material script `{name}` is not a plain colour")
         return color
+
+
+def _sizes(shape: XmlElement, tag: str) -> tuple[float, float, float]:
+    """The three sizes of a box or an ellipsoid [m]."""
+    element = shape.find(tag)
+    if element is None:
+        shape.refuse(f"a <{shape.tag}> lacks its <{tag}>")
+    x, y, z = numbers_of(element, 3)
+    if min(x, y, z) <= 0:
+        element.refuse(f"<{tag}> of a <{shape.tag}> is above 0, not {element.text.strip()}")
+    if min(x, y, z) < SMALLEST_SIZE:
+        element.refuse(f"<{tag}> of a <{shape.tag}> is at least {SMALLEST_SIZE:g}")
+    return x, y, z
 
 
 def _refuse_untouchable(spec: MeshSpec, element: XmlElement) -> None:

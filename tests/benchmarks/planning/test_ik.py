@@ -94,11 +94,11 @@ def test_numeric_solutions_of_random_reachable_poses(file, print_row):
         positions = space.whole(sample_group_positions(space, rng))
         goal = PoseGoal(description.tcp_link, kinematics.link_pose(positions, description.tcp_link))
         begin = time.process_time_ns()
-        solved += bool(solve_numeric(space, goal, space.part(start), number, enough=1))
+        solved += bool(solve_numeric(space, goal, space.part(start), enough=1))
         first.append(time.process_time_ns() - begin)
         if number < SPREADS:
             begin = time.process_time_ns()
-            counts.append(len(solve_numeric(space, goal, space.part(start), number)))
+            counts.append(len(solve_numeric(space, goal, space.part(start))))
             spread.append(time.process_time_ns() - begin)
     heading = f"numeric inverse kinematics, ms of CPU time (goal: {GOAL})"
     if file == NUMERIC[0]:

@@ -14,7 +14,7 @@ from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 
 
 class NumericSolver(IkSolver):
-    """Damped least squares of any chain, with seeded restarts."""
+    """Damped least squares of any chain, from the seed and from near the goal."""
 
     name: ClassVar[str] = "numeric"
 
@@ -26,10 +26,10 @@ class NumericSolver(IkSolver):
         )
         if isinstance(goal, PoseGoal) and space.dof == TILT_JOINTS:
             part = TiltGoal.of(goal.link, goal.pose)
-            return IkResult(tuple(search(space, goal, seed=request.seed, part=part)))
-        found = search(space, goal, seed=request.seed)
+            return IkResult(tuple(search(space, goal, part=part)))
+        found = search(space, goal)
         if isinstance(goal, PoseGoal) and not found and space.dof < WHOLE_POSE_JOINTS:
             pitch = pitch_of(goal.pose.rotation) if space.dof >= PITCH_JOINTS else None
             point = PositionGoal(goal.link, goal.pose.translation, pitch)
-            found = search(space, point, seed=request.seed)
+            found = search(space, point)
         return IkResult(tuple(found))
