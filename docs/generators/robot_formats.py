@@ -22,8 +22,9 @@ robot:
 `package://name/path` is looked up in the robot's own package (the folder with its `package.xml`);
 in the folders of `packages`, of the option `--package-path` and of HARNESS_PACKAGE_PATH, and in
 their subfolders; next to the robot's package; and among installed Python packages. A robot
-without a `package.xml` may be in a folder with the package's name, at most three levels up. No
-file outside these folders is read.
+without a `package.xml` may be in a folder with the package's name, at most three levels up. A
+robot that is named as `package://name/path` itself reads in all of that package. No file outside
+these folders is read.
 
 The tables list what is *read*, *ignored* or *refused* (an error at its line and column, exit code
 2) of each file. Where *reported* is added, `harness check` and every run print a note. Each row

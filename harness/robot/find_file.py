@@ -35,6 +35,20 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
     return path
 
 
+def files_around(name: str, path: Path, given: Sequence[Path]) -> PackagePath:
+    """Where the files are that a robot's file names; of package://name/path, in all of its package.
+
+    Args:
+        name: As the scenario names the file.
+        path: The file.
+        given: The folders of `packages`.
+    """
+    inside = Path(name.removeprefix("package://").partition("/")[2]).parts
+    if name.startswith("package://") and path.parts[-len(inside) :] == inside:
+        given = (*given, path.parents[len(inside) - 1])
+    return PackagePath.of_file(path, given)
+
+
 def _names(folder: Path) -> list[str]:
     return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
 

@@ -11,7 +11,7 @@ from harness.language.scenario import RobotSpec
 from harness.robot.compose import WORLD, RobotPart
 from harness.robot.description import NamedState
 from harness.robot.estimated_masses import with_estimated_masses
-from harness.robot.find_file import find_file, find_folder
+from harness.robot.find_file import files_around, find_file, find_folder
 from harness.robot.imported_part import imported_part
 from harness.robot.mjcf.mjcf import read_mjcf
 from harness.robot.packages import PackagePath
@@ -40,7 +40,7 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> RobotPart:
     key = next(key for key in ("urdf", "xacro", "mjcf") if getattr(spec, key) is not None)
     given = tuple(find_folder(each, base_dir) for each in spec.packages)
     path = find_file(getattr(spec, key), key, base_dir, given)
-    packages = PackagePath.of_file(path, given)
+    packages = files_around(getattr(spec, key), path, given)
     srdf_path = None if spec.srdf is None else find_file(spec.srdf, "srdf", base_dir, given)
     files = [*([path] if key == "xacro" else []), *([srdf_path] if srdf_path else [])]
     refuse_unknown_arguments(spec.args, files)

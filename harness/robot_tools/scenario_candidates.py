@@ -45,8 +45,9 @@ JAW_TURN = 0.35
 HEAVIEST_BOX, LIGHTEST_BOX = 0.1, 0.01  # [kg]
 GRIP_SHARE = 0.1
 """Weight of the box as a share of what the friction of both fingers carries; others creep down."""
-ARM_SHARE = 0.1
-"""Weight of the box as a share of what moves of the robot: a light arm holds a light box still."""
+ARM_SHARE, ARM_LEAST = 0.05, 0.03
+"""Weight of the box as a share of what moves of the robot, and the least that this asks for [kg]:
+a light arm holds a light box still, but the lightest ones turn when fingers push them."""
 SLIDING = 0.3
 """Friction of a box that a single jaw pushes against the palm; with more it jams on the stand."""
 GRAVITY = 9.81  # [m/s^2]
@@ -124,7 +125,7 @@ class Candidates:
         width, travel = self._box_width(gripper), _travel(self._reach)
         height, friction = min(TALLEST_BOX, 2.0 * width), SLIDING if gripper.has_single_jaw else 1.0
         carried = 2.0 * friction * _grip_force(gripper, width) / GRAVITY
-        light = min(GRIP_SHARE * carried, ARM_SHARE * moving_mass(self._description))
+        light = max(ARM_SHARE * moving_mass(self._description), ARM_LEAST)
         numbers = {
             "base": self._base,
             "x": x,
@@ -132,7 +133,9 @@ class Candidates:
             "box_middle": top + height / 2,
             "width": width,
             "height": height,
-            "mass": max(min(HEAVIEST_BOX, round(light, 2)), LIGHTEST_BOX),
+            "mass": max(
+                min(HEAVIEST_BOX, round(min(GRIP_SHARE * carried, light), 2)), LIGHTEST_BOX
+            ),
             "friction": friction,
             "least": min(SHORTEST_APPROACH, travel),
             "travel": travel,

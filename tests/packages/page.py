@@ -18,7 +18,7 @@ RENEW = "python -m tests.packages.page"
 
 HEAD = """# Robots of other packages
 
-This page lists arms with a fixed base in five packages of the Python registry. A scenario names
+This page lists arms with a fixed base in seven packages of the Python registry. A scenario names
 such an arm like this:
 
 ```yaml

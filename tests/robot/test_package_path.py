@@ -203,6 +203,22 @@ def test_what_is_nowhere_is_reported_with_the_ways_out(tmp_path):
         mesh(tmp_path, urdf, packages=["gone"])
 
 
+def test_a_robot_named_by_its_package_reads_in_all_of_it(tmp_path):
+    """Without a package.xml, as in a wheel."""
+    name = "../meshes/part.obj"
+    shape = f'<collision><geometry><mesh filename="{name}"/></geometry></collision>'
+    for folder in ("wheel/urdf", "wheel/meshes"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "wheel/meshes/part.obj").write_text(TETRAHEDRON)
+    (tmp_path / "wheel/urdf/arm.urdf").write_text(URDF.replace(SHAPE, SHAPE + shape, 1))
+    with pytest.raises(SpecError, match="lies outside"):
+        load_robot(RobotSpec(urdf="wheel/urdf/arm.urdf"), tmp_path)
+    words = {"urdf": "package://wheel/urdf/arm.urdf", "packages": ["other"]}
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/wheel").symlink_to(tmp_path / "wheel")
+    load_robot(RobotSpec.model_validate(words), tmp_path)
+
+
 def test_a_link_out_of_the_packages_is_not_followed(tmp_path):
     urdf = arm(tmp_path / "src" / "arm")
     (tmp_path / "secret.obj").write_text(TETRAHEDRON)
