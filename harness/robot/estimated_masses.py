@@ -19,6 +19,9 @@ from harness.robot.urdf.urdf import Urdf
 DENSITY = 1000.0
 """Density of links without a mass [kg/m^3]; hulls of arms of 5 to 30 kg have 600 to 1500."""
 
+BEAD, BEAD_RADIUS = 1e-3, 0.01
+"""Mass of an empty link between two joints, as a share of what it carries; its radius [m]."""
+
 HINT = "give it an <inertial> with its mass [kg] and inertia [kg m^2]"
 
 
@@ -30,8 +33,8 @@ def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
         source: Its name in messages.
 
     Raises:
-        SpecError: A group has neither a mass nor a shape, or a stated mass of zero; every such
-            group, at its `<mass>` or its link.
+        SpecError: A group has neither a mass nor a shape and carries none, or a stated mass of
+            zero; every such group, at its `<mass>` or its link.
         RobotError: The same, for a robot without elements.
     """
     carrier = carriers(urdf.joints, urdf.root)
@@ -44,24 +47,51 @@ def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
         if first != urdf.root and not any(link.inertial for link in links)
     }
     estimated: dict[str, Link] = {}
-    problems: list[Problem] = []
+    empty: list[str] = []
     for first, links in massless.items():
         shaped = {link.name: _with_mass(link) for link in links if link.collisions or link.visuals}
         if shaped and not any(_states_mass(urdf, link.name) for link in links):
             estimated |= shaped
         else:
-            problems.append(_problem(urdf, first, source))
-    if problems:
+            empty.append(first)
+    notes: list[str] = []
+    if estimated:
+        total = sum(link.inertial.mass for link in estimated.values() if link.inertial)
+        notes.append(
+            f"no mass is given for {', '.join(estimated)}: {total:.3g} kg in all, from the volume "
+            f"of their shapes at {DENSITY:g} kg/m^3"
+        )
+    urdf = replace(urdf, links=tuple(estimated.get(link.name, link) for link in urdf.links))
+    carried = {
+        first: 0.0 if _states_mass(urdf, first) else _carried(urdf, first) for first in empty
+    }
+    if problems := [_problem(urdf, first, source) for first in empty if not carried[first]]:
         raise SpecError(problems)
-    if not estimated:
-        return urdf
-    total = sum(link.inertial.mass for link in estimated.values() if link.inertial)
-    note = (
-        f"no mass is given for {', '.join(estimated)}: {total:.3g} kg in all, from the volume of "
-        f"their shapes at {DENSITY:g} kg/m^3"
+    if empty:
+        notes.append(
+            f"moving links without a mass and a shape get {BEAD:.1%} of what they carry: "
+            f"{', '.join(empty)}"
+        )
+    links = tuple(
+        replace(link, inertial=_bead(carried[link.name])) if link.name in carried else link
+        for link in urdf.links
     )
-    links = tuple(estimated.get(link.name, link) for link in urdf.links)
-    return replace(urdf, links=links, notes=(*urdf.notes, note))
+    return replace(urdf, links=links, notes=(*urdf.notes, *notes))
+
+
+def _carried(urdf: Urdf, link: str) -> float:
+    """Mass of the links distal to a link [kg]."""
+    distal = {link}
+    for joint in urdf.joints:  # parents before children
+        if joint.parent in distal:
+            distal.add(joint.child)
+    return sum(each.inertial.mass for each in urdf.links if each.inertial and each.name in distal)
+
+
+def _bead(carried: float) -> Inertial:
+    """A small solid sphere at a link's origin, which physics requires of a link that moves."""
+    mass = BEAD * carried
+    return Inertial(mass, np.zeros(3), 0.4 * mass * BEAD_RADIUS**2 * np.eye(3))
 
 
 def _with_mass(link: Link) -> Link:

@@ -39,9 +39,9 @@ def files_around(name: str, path: Path, given: Sequence[Path]) -> PackagePath:
     """Where the files are that a robot's file names; of package://name/path, in all of its package.
 
     Args:
-        name: As the scenario names the file.
-        path: The file.
-        given: The folders of `packages`.
+        name: The word by which the scenario names the robot's file.
+        path: The path of the robot's file.
+        given: The folders of `packages` of the scenario.
     """
     inside = Path(name.removeprefix("package://").partition("/")[2]).parts
     if name.startswith("package://") and path.parts[-len(inside) :] == inside:

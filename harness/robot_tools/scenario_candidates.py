@@ -46,8 +46,8 @@ HEAVIEST_BOX, LIGHTEST_BOX = 0.1, 0.01  # [kg]
 GRIP_SHARE = 0.1
 """Weight of the box as a share of what the friction of both fingers carries; others creep down."""
 ARM_SHARE, ARM_LEAST = 0.05, 0.03
-"""Weight of the box as a share of what moves of the robot, and the least that this asks for [kg]:
-a light arm holds a light box still, but the lightest ones turn when fingers push them."""
+"""Weight of the box as a share of the moving mass of the robot, but at least this [kg]: a light
+arm holds a light box still, and the lightest boxes turn when fingers push them."""
 SLIDING = 0.3
 """Friction of a box that a single jaw pushes against the palm; with more it jams on the stand."""
 GRAVITY = 9.81  # [m/s^2]

@@ -68,6 +68,17 @@ def test_given_masses_stay(tmp_path):
     assert any("no mass is given for upper: " in note for note in arm.notes)
 
 
+def test_a_link_between_two_joints_that_is_only_a_frame_gets_a_bead(tmp_path):
+    """As where two joints share an axis point: the first one's link is empty."""
+    write_arm(tmp_path, URDF.replace(INERTIAL + SHAPE, "", 1))
+    arm = load_arm(tmp_path)
+    carried = link(arm, "lower").inertial.mass + link(arm, "wrist").inertial.mass
+    assert link(arm, "upper").inertial.mass == pytest.approx(1e-3 * carried)
+    note = "moving links without a mass and a shape get 0.1% of what they carry: upper"
+    assert note in arm.notes
+    run(tmp_path, "- move_to: {joints: {turn: 0.3}}", robot="{urdf: arm.urdf, srdf: arm.srdf}")
+
+
 def test_every_link_that_weighs_nothing_is_in_one_message(tmp_path):
     write_arm(tmp_path, BARE.replace(SHAPE, ""))
     with pytest.raises(SpecError) as caught:

@@ -111,7 +111,7 @@ def test_what_is_ignored_or_assumed_is_noted(tmp_path):
     assert arm.notes == (
         "2 <gazebo> elements ignored",
         "1 <transmission> element ignored",
-        "joint reach: a velocity limit of 0 counts as none",
+        "joint reach: the velocity limit of 0 counts as none",
         "SRDF: state 'home' has bend at 7, outside its limits [-2, 2]",
         "no velocity limits of reach: 0.2 m/s is assumed",
         "no acceleration limits: 5 rad/s^2 and 1 m/s^2 are assumed",

@@ -35,7 +35,7 @@ def zero_limits(joints: Sequence[XmlElement]) -> list[str]:
         ]
         if names:
             plural = "s" if len(names) > 1 else ""
-            notes.append(f"joint{plural} {', '.join(names)}: a {key} limit of 0 counts as none")
+            notes.append(f"joint{plural} {', '.join(names)}: the {key} limit of 0 counts as none")
     return notes
 
 
