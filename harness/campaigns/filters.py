@@ -94,15 +94,19 @@ def _condition(text: str, connection: sqlite3.Connection) -> tuple[str, list[Any
             raise UsageError(f"--where '{text}': '{written}' is not a number")
         return f"{inside} text {operator} ?)", [name, written]
     clauses, values = list[str](), list[Any]()
-    units = connection.execute(
+    found = connection.execute(
         "SELECT DISTINCT unit FROM parameters WHERE path = ? AND unit IS NOT NULL", (name,)
     )
-    for (stored,) in units.fetchall():
-        factor = 1.0 if not unit else conversion_factor(unit, stored)
+    units = [row[0] for row in found]
+    if not unit and len(units) > 1 and "" not in units:
+        raise UsageError(f"--where '{text}': '{name}' has the units {', '.join(units)}; name one")
+    for stored in units:
+        is_own_unit = not unit and len(units) == 1
+        factor = 1.0 if is_own_unit else conversion_factor(unit, stored)
         if factor is None:
             raise UsageError(f"--where '{text}': '{name}' has the unit '{stored}'")
         clauses.append(f"(unit = ? AND number {operator} ?)")
-        values += [stored, number * factor]
+        values += [stored, float(f"{number * factor:.15g}")]
     return f"{inside} ({' OR '.join(clauses or ['0'])}))", [name, *values]
 
 

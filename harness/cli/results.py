@@ -83,7 +83,7 @@ def _export(arguments: argparse.Namespace, database: sqlite3.Connection, query: 
 def _document(
     arguments: argparse.Namespace, database: sqlite3.Connection, query: Query
 ) -> dict[str, Any]:
-    from harness.campaigns.table import columns, count, left_out, rows
+    from harness.campaigns.table import COLUMNS, columns, count, left_out, rows
 
     names = columns(database)
     found = rows(database, query, arguments.limit or SHOWN, is_worst_first=True)
@@ -91,8 +91,25 @@ def _document(
         "format": "armharness-query/1",
         "selected": count(database, query),
         "left_out": left_out(database),
-        "runs": [dict(zip(names, row, strict=True)) for row in found],
+        "runs": [
+            {
+                name: value if name in COLUMNS else _plain(value)
+                for name, value in zip(names, row, strict=True)
+            }
+            for row in found
+        ],
     }
+
+
+def _plain(value: str | None) -> float | str | None:
+    """A parameter as a number where it has no unit."""
+    from harness.core.quantity import split_quantity
+
+    try:
+        number, unit = split_quantity(value)
+    except ValueError:
+        return value
+    return value if unit else number
 
 
 def _lines(

@@ -160,6 +160,11 @@ def _show(
     say(f"{found.request.file}: {len(exploration.samples)} runs over {names}")
     if exploration.rate is not None:
         say(exploration.rate.sentence)
+    if len(exploration.samples) < found.request.runs:
+        say(
+            f"the search ended before {found.request.runs} runs: no expectation that has not"
+            " failed has a margin that varies"
+        )
     if found.uncounted:
         say(f"{found.uncounted} runs are invalid or begin with an overlap, and do not count")
     if not written:
@@ -177,7 +182,8 @@ def _show_failure(each: WrittenFailure, found: SearchResult, report: str) -> Non
     from harness.reporting.suite.cause import cause_of
 
     failure = each.failure
-    say("", f"FAILED in {len(failure.samples)} runs: {failure.kind}")
+    count = len(failure.samples)
+    say("", f"FAILED in {count} run{'s' if count > 1 else ''}: {failure.kind}")
     changed = changes(found, failure.nearest)
     of = f"{len(changed)} of {len(found.space.parameters)} parameters"
     say(f"  smallest change that fails in this way ({of}, {failure.shrink_runs} runs to shrink):")

@@ -16,7 +16,16 @@ BUFFER = 2**20
 
 @contextmanager
 def replaced(file: Path) -> Generator[IO[bytes]]:
-    """A new file, which gets its name when everything is written."""
+    """A new file, which gets its name when everything is written.
+
+    A link stays one, and its target is replaced. What is no file, such as a pipe or a device, is
+    written to.
+    """
+    if file.exists() and not file.is_file():
+        with file.open("wb") as stream:
+            yield stream
+        return
+    file = file.resolve()
     part = file.with_name(f".{file.name}.{os.getpid()}")
     try:
         with part.open("wb", buffering=BUFFER) as stream:

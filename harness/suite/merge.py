@@ -11,6 +11,7 @@ from pathlib import Path
 
 from harness.reporting.result import CaseResult
 from harness.suite.conditions import read_conditions
+from harness.suite.discovery import UsageError
 from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
 from harness.suite.stream import FILE, ResultHead, Stream, entry_of, head_of, lines_of
@@ -28,10 +29,13 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
         The whole suite, counted as one run would count it, and the description of the first part.
 
     Raises:
-        UsageError: A folder holds no part, or the parts are not of one suite.
+        UsageError: A folder holds no part, the target is one, or the parts are not of one suite.
         HarnessError: The results cannot be written.
     """
     records = read_shard_records(folders)
+    for folder in folders:
+        if folder.resolve() == target.resolve():
+            raise UsageError(f"'{folder}' holds a part; write the whole into another --report-dir")
     first = records[0]
     request = SuiteRequest(
         first.expression,

@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import os
+from pathlib import Path
 
 import pytest
 
@@ -131,9 +133,40 @@ def test_conditions_understand_units_words_and_margins(tmp_path, capsys):
         assert set(names(query(capsys, folder, *options)[1])) == found, options
 
 
+@pytest.mark.parametrize("condition", ["h=0.15", "h=15 cm", "h=150 mm", "h>0.12"])
+def test_a_number_without_a_unit_is_si_where_a_parameter_has_several(tmp_path, capsys, condition):
+    heights = (0.05, 0.1, "15 cm")
+    folder = journal(tmp_path / "a", [entry(i, 0.01, h=h) for i, h in enumerate(heights)])
+    assert names(query(capsys, folder, "--where", condition)[1]) == ["sample2"]
+
+
+def test_a_document_has_parameters_as_numbers_where_they_have_no_unit(tmp_path, capsys):
+    folder = journal(tmp_path / "a", [entry(1, 0.01, friction=0.2, x="5 cm", color="red")])
+    (run,) = query(capsys, folder)[1]["runs"]
+    assert (run["friction"], run["x"], run["color"]) == (0.2, "5 cm", "red")
+
+
+def test_an_export_goes_into_a_pipe_and_to_where_a_link_leads(tmp_path, capsys):
+    folder = journal(tmp_path / "a", [entry(1, 0.01)])
+    pipe, link, target = (tmp_path / name for name in ("pipe", "link.csv", "target.csv"))
+    os.mkfifo(pipe)
+    link.symlink_to(target)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    for file in (pipe, link):
+        assert main(["results", folder, "--csv", str(file)]) == 0
+    assert os.read(reader, 10_000) == target.read_bytes()
+    os.close(reader)
+    assert pipe.is_fifo()
+    assert link.is_symlink()
+    assert main(["results", folder, "--csv", "/dev/full"]) == 3
+    assert "No space left" in capsys.readouterr().err
+    assert Path("/dev/full").is_char_device()
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (("--where", "h<3"), "'h' has the units"),
         (("--where", "frction<1"), "did you mean `friction`?"),
         (("--where", "friction"), "write NAME<VALUE"),
         (("--where", "friction<red"), "'red' is not a number"),
@@ -142,7 +175,9 @@ def test_conditions_understand_units_words_and_margins(tmp_path, capsys):
     ],
 )
 def test_mistakes_in_a_query_are_explained(tmp_path, capsys, options, message):
-    folder = journal(tmp_path / "a", [entry(1, 0.01, friction=0.2, x="5 cm")])
+    folder = journal(
+        tmp_path / "a", [entry(1, 0.01, friction=0.2, x="5 cm", h="5 cm"), entry(2, 1, h="9 mm")]
+    )
     assert main(["results", folder, *options]) == 2
     assert message in capsys.readouterr().err
 

@@ -176,6 +176,15 @@ def test_a_folder_without_a_part_and_a_part_twice_are_refused(parts, tmp_path):
     assert "both hold part 1/3" in twice.stderr
 
 
+def test_a_merge_does_not_overwrite_one_of_its_parts(parts, tmp_path):
+    folders = [parts / f"at{number}" for number in (1, 2, 3)]
+    before = (folders[1] / "results.jsonl").read_bytes()
+    merged = harness("merge", *folders, "--report-dir", folders[1], cwd=tmp_path)
+    assert merged.returncode == 2
+    assert "at2' holds a part" in merged.stderr
+    assert (folders[1] / "results.jsonl").read_bytes() == before
+
+
 def test_cases_stay_in_their_parts_when_others_are_added():
     few = {name: _part_of(name) for name in ("a", "b", "c")}
     more = {name: _part_of(name) for name in ("a", "x", "b", "y", "c", "z")}
