@@ -8,7 +8,6 @@ starts, always, or in no sample.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -17,7 +16,7 @@ import pinocchio as pin
 
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
-from harness.planning.collision.collision_model import rigid_shapes
+from harness.planning.collision.collision_model import check_data, rigid_shapes
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.srdf.srdf import link_pair
@@ -142,12 +141,7 @@ class _Checker:
                     self._geometry.addCollisionPair(pin.CollisionPair(one, other))
                     owners.append(number)
         self._owners = np.array(owners, dtype=np.intp)
-        self._data = pin.GeometryData(self._geometry)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)
-            for request in self._data.collisionRequests:
-                # From the last configuration's guess, Coal overlooks collisions of 5 cm depth.
-                request.enable_cached_gjk_guess = False
+        self._data = check_data(self._geometry)
         shapes = [shape.geometry for shape in self._geometry.geometryObjects]
         for shape in shapes:
             shape.computeLocalAABB()

@@ -1,0 +1,29 @@
+"""Checks of collisions do not depend on the states that were checked before."""
+
+import numpy as np
+import pinocchio as pin
+
+from harness.language.scenario import RobotSpec
+from harness.planning.collision.pair_statistics import sample_robot_positions
+from harness.planning.collision.scene import CoalScene
+from harness.robot.load import load_robot
+
+
+def test_a_check_answers_as_one_that_begins_anew():
+    """With Coal's guess from the state before, one of 299 touching pairs was overlooked."""
+    description = load_robot(RobotSpec.model_validate({"model": "ur5e", "gripper": "rh_p12_rn_a"}))
+    scene = CoalScene(description)
+    model = scene.collision_model()
+    checked, robot, touching = model.shared.geometry_data, model.robot.model, 0
+    for row in sample_robot_positions(description, 300, np.random.default_rng(5)):
+        configuration = scene.robot.configuration(row)
+        anew = model.geometry.createData()
+        model.set_margins([0.0] * len(model.pairs))
+        for data in (checked, anew):
+            pin.computeCollisions(
+                robot, robot.createData(), model.geometry, data, configuration, False
+            )
+        answers = [[r.isCollision() for r in data.collisionResults] for data in (checked, anew)]
+        assert answers[0] == answers[1]
+        touching += sum(answers[1])
+    assert touching > 100
