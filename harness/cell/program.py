@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from harness.cell.controllers import ControllerNames
 from harness.core.camera import Camera
 from harness.core.world import World, WorldObject
 from harness.language.expectation import ExpectationFields
@@ -75,6 +76,7 @@ class Program:
         step_locs: Where each step is written, by its path.
         object_locs: Where each object is written, by name; the world's own are at `world`.
         videos: Cameras that are recorded all through the run, and their frames a second.
+        controllers: The controllers that ROS 2 nodes command.
     """
 
     title: str
@@ -88,6 +90,7 @@ class Program:
     object_locs: Mapping[str, Loc] = field(default_factory=dict[str, Loc])
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     videos: Mapping[str, float] = field(default_factory=dict[str, float])
+    controllers: ControllerNames = field(default_factory=ControllerNames)
 
     def all_steps(self) -> Iterator[ProgramStep]:
         """Every step of the file, nested ones after the one they are nested in."""

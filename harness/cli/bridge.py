@@ -43,8 +43,7 @@ def bridge_request(
     """What the arguments request; the steps are replaced where none hands the robot over."""
     from harness.language.reading.load import read_scenario
     from harness.ros.bridge import BridgeRequest, handed_over
-    from harness.ros.launch import named_commands
-    from harness.session.run_request import RunRequest
+    from harness.session.run_request import RunRequest, named_commands
     from harness.steps.external import External
     from harness.suite.folders import report_folders
 

@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +30,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     from harness.cli.bridge import note, show_case
     from harness.ros.bridge import open_graph
     from harness.ros.domain import domain_of_user
-    from harness.ros.remote import run_on_robot
+    from harness.ros.remote import RemoteArm, run_on_robot
     from harness.session.run_request import RunRequest
     from harness.suite.folders import report_folders
 
@@ -51,7 +52,8 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     is_local, share = not arguments.network, arguments.velocity_scaling
     graph = open_graph(arguments.adapter, domain, node="armharness", is_local=is_local, say=note)
     with closing(graph):
-        case = run_on_robot(request, graph, share, confirmation, confirmation.note)
+        connect = partial(RemoteArm, graph, share, confirmation)
+        case = run_on_robot(request, connect, confirmation.note)
     show_case(case, request)
     return EXIT_CODES[case.outcome]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.assertions.placed import as_expectation, check_expectation
+from harness.cell.controllers import controller_names
 from harness.cell.program import Program, ProgramExpectation, ProgramStep
 from harness.cell.scope import At, Prerequisite, Problems, Scope
 from harness.core.errors import RobotError
@@ -110,6 +111,7 @@ class _Compiler:
             check_expectation(as_expectation(expectation), loc, self.scope)
         check_cameras(sources.world.cameras, scenario.cameras, self.scope)
         videos = check_videos(scenario.videos, self.scope)
+        controllers = controller_names(sources.description, scenario.ros2, self.problems)
         if len(objects) + len(self.later) > MOST_OBJECTS:
             self.problems.add(
                 ("objects",) if scenario.objects else ("world",),
@@ -129,6 +131,7 @@ class _Compiler:
             object_locs=self.object_locs,
             cameras=self.scope.cameras,
             videos=videos,
+            controllers=controllers,
         )
 
     # -- objects ------------------------------------------------------------------------------

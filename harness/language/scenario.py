@@ -195,12 +195,6 @@ class Ros2Names(SpecModel):
         default=None, description="The gripper's controller, of GripperCommand and trajectories."
     )
 
-    @model_validator(mode="after")
-    def _names_apart(self) -> Ros2Names:
-        if self.gripper_controller in (self.arm_controllers or ()):
-            raise ValueError("the controllers of arm and gripper need different names")
-        return self
-
 
 class WorldChoice(SpecModel):
     """The world: a bundled one, or a file."""

@@ -16,6 +16,13 @@ from harness.ros.interfaces import CANCEL, UUID, seconds, stamp
 
 INFO = "action_msgs/msg/GoalInfo"
 STATUSES = "action_msgs/msg/GoalStatusArray"
+Clock = Callable[[], float]
+"""The simulated time [s]."""
+OnGoal = Callable[[str, Any], bool]
+"""Takes a goal's identifier and content; whether it is accepted. A rejected goal may have a result
+already, for those who request it nevertheless."""
+OnCancel = Callable[[str], object]
+"""Takes the identifier of a running goal, which has to end then."""
 MOST_ENDED = 100
 """Goals that are kept after their end, for those who request the result later."""
 
@@ -36,7 +43,6 @@ class CancelCode(IntEnum):
     """Return codes of a request to cancel."""
 
     NONE = 0
-    REJECTED = 1
     UNKNOWN_GOAL = 2
     TERMINATED = 3
 
@@ -54,25 +60,9 @@ class ActionServer:
     """Serves one action; the caller decides about goals, and reports their end."""
 
     def __init__(
-        self,
-        graph: Graph,
-        name: str,
-        kind: str,
-        *,
-        clock: Callable[[], float],
-        on_goal: Callable[[str, Any], bool],
-        on_cancel: Callable[[str], bool],
+        self, graph: Graph, name: str, kind: str, clock: Clock, on_goal: OnGoal, on_cancel: OnCancel
     ) -> None:
-        """Serve an action from now on.
-
-        Args:
-            name: The action's name, such as `/arm_controller/follow_joint_trajectory`.
-            kind: The action's type, such as `control_msgs/action/FollowJointTrajectory`.
-            clock: The simulated time [s].
-            on_goal: Called with a goal's identifier and content; whether it is accepted. A rejected
-                goal may have been given a result, for those who request it nevertheless.
-            on_cancel: Called with the identifier of a running goal; whether it will be canceled.
-        """
+        """Serve an action, such as `/arm_controller/follow_joint_trajectory`, from now on."""
         self.name, self.kind = name, kind
         self._clock, self._on_goal, self._on_cancel = clock, on_goal, on_cancel
         self._goals: dict[str, _Goal] = {}
@@ -82,18 +72,17 @@ class ActionServer:
         graph.serve(f"{name}/_action/cancel_goal", CANCEL, self._take_cancel)
         graph.serve(f"{name}/_action/get_result", f"{kind}_GetResult", self._take_request)
 
-    def owns(self, goal: str) -> bool:
-        """Whether a goal was sent to this server."""
-        return goal in self._goals
-
     def feedback(self, goal: str, content: Any) -> None:
-        """Publish feedback of a goal."""
-        kind = f"{self.kind}_FeedbackMessage"
-        self._feedback.publish(message(kind, goal_id=uuid_of(goal), feedback=content))
+        """Publish feedback of a goal, if it is one of this server."""
+        if goal in self._goals:
+            kind = f"{self.kind}_FeedbackMessage"
+            self._feedback.publish(message(kind, goal_id=uuid_of(goal), feedback=content))
 
     def finish(self, goal: str, has_succeeded: bool, result: Any) -> None:
-        """End a goal; who requested its result gets it."""
-        known = self._goals[goal]
+        """End a goal, if it is one of this server; who requested its result gets it."""
+        known = self._goals.get(goal)
+        if known is None:
+            return
         known.result = result
         if known.entry.status == Status.CANCELING:
             known.entry.status = Status.CANCELED
@@ -134,35 +123,31 @@ class ActionServer:
         info = request.goal_info
         goal, before = hex_of(info.goal_id), seconds(info.stamp)
         is_named = any(info.goal_id.uuid)
-        chosen = [
-            each
-            for each, known in self._goals.items()
+        running = {each: known.entry for each, known in self._goals.items() if known.result is None}
+        canceling = {
+            each: entry
+            for each, entry in running.items()
             if (is_named and each == goal)
-            or (before and seconds(known.entry.goal_info.stamp) <= before)
+            or (before and seconds(entry.goal_info.stamp) <= before)
             or not (is_named or before)
-        ]
-        running = [each for each in chosen if self._goals[each].result is None]
+        }
         code = CancelCode.NONE
         if is_named and goal not in running:
             code = CancelCode.TERMINATED if goal in self._goals else CancelCode.UNKNOWN_GOAL
-        canceling: list[Any] = []
-        for each in running:
-            entry = self._goals[each].entry
+        for each, entry in canceling.items():
             entry.status = Status.CANCELING
-            if self._on_cancel(each):
-                canceling.append(entry.goal_info)
-            else:
-                entry.status, code = Status.EXECUTING, CancelCode.REJECTED
-        reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=canceling))
+            self._on_cancel(each)
+        infos = [entry.goal_info for entry in canceling.values()]
+        reply(message(f"{CANCEL}_Response", return_code=int(code), goals_canceling=infos))
 
     def _response(self, known: _Goal | None) -> Any:
         fields = {"status": known.entry.status, "result": known.result} if known else {}
         return message(f"{self.kind}_GetResult_Response", **fields)
 
     def _publish_status(self) -> None:
-        entries = [known.entry for known in self._goals.values()]
-        states = [entry for entry in entries if entry.status != Status.UNKNOWN]
-        self._status.publish(message(STATUSES, status_list=states))
+        states = (known.entry for known in self._goals.values())
+        known = [entry for entry in states if entry.status != Status.UNKNOWN]
+        self._status.publish(message(STATUSES, status_list=known))
 
 
 def uuid_of(goal: str) -> Any:
@@ -183,7 +168,6 @@ class ClientGoal:
         is_accepted: None before the server answered.
         status: How it ended; UNKNOWN before.
         result: The result; None before the end.
-        cancel_code: The return code of the request to cancel it; None before the answer.
     """
 
     identifier: str
@@ -191,7 +175,6 @@ class ClientGoal:
     status: Status = Status.UNKNOWN
     result: Any = None
     feedback: list[Any] = field(default_factory=list[Any])
-    cancel_code: int | None = None
 
     @property
     def is_over(self) -> bool:
@@ -235,11 +218,7 @@ class ActionClient:
     def cancel(self, goal: ClientGoal) -> None:
         """Request that a goal is canceled."""
         info = message(INFO, goal_id=uuid_of(goal.identifier))
-
-        def answered(response: Any) -> None:
-            goal.cancel_code = response.return_code
-
-        self._cancel.call(message(f"{CANCEL}_Request", goal_info=info), answered)
+        self._cancel.call(message(f"{CANCEL}_Request", goal_info=info), lambda _: None)
 
     def _take_feedback(self, content: Any) -> None:
         goal = self._goals.get(hex_of(content.goal_id))

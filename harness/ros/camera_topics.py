@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import multiprocessing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache, partial
-from multiprocessing.connection import Connection
-from multiprocessing.process import BaseProcess
+from multiprocessing import Pipe
+from multiprocessing.context import SpawnProcess
+from typing import Any
 
 import numpy as np
 
@@ -14,17 +14,18 @@ from harness.cell.program import Program
 from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.core.world import WorldObject
 from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
 from harness.reporting.rosbag.frames import optical_frames
 from harness.reporting.rosbag.topics import topic_word
-from harness.robot.description import RobotDescription
 from harness.ros.graph import Graph, Qos
 from harness.ros.interfaces import header
 
 IMAGE, COMPRESSED, INFO = (
     f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "CameraInfo")
 )
+
+Poses = Callable[[], Mapping[str, FloatArray]]
+"""Returns T_world_object of the objects that are there, shape (7,) each."""
 
 
 class _Topics:
@@ -59,23 +60,16 @@ class CameraTopics:
         cameras, objects = tuple(program.cameras.values()), program.all_objects()
         frames = optical_frames(cameras, [each.name for each in objects])
         self._topics = [_Topics(graph, camera, frames[camera.name]) for camera in cameras]
-        self._scene = cameras, program.description, objects, program.seed
-        self._painter: tuple[BaseProcess, Connection] | None = None
+        self._make_painter = partial(_Painter, program.seed, program.description, objects, cameras)
+        self._painter: _Painter | None = None
         self._pending: tuple[_Topics, float] | None = None
 
-    def publish(
-        self,
-        time: float,
-        sample: int,
-        positions: FloatArray,
-        poses: Callable[[], Mapping[str, FloatArray]],
-    ) -> None:
+    def publish(self, time: float, sample: int, positions: FloatArray, poses: Poses) -> None:
         """Publish what is due at a simulated time [s].
 
         Args:
             sample: Index of the physics sample, from which the noise is drawn.
             positions: Joint positions in description order, shape (n,).
-            poses: Returns T_world_object of the objects that are there, shape (7,) each.
         """
         self._send_finished()
         for topics in self._topics:
@@ -85,24 +79,23 @@ class CameraTopics:
             topics.publish_info(time)
             if topics.are_watched and self._pending is None:
                 self._pending = topics, time
-                _, connection = self._painter = self._painter or _start_painter(*self._scene)
-                connection.send((topics.camera.name, sample, positions, poses()))
+                self._painter = self._painter or self._make_painter()
+                self._painter.pictures.send((topics.camera, sample, positions, poses()))
 
     def close(self) -> None:
         """End the process that draws."""
         if self._painter is not None:
-            process, connection = self._painter
-            connection.close()
-            process.terminate()
-            process.join(5)
+            self._painter.pictures.close()
+            self._painter.terminate()
+            self._painter.join(5)
             self._painter = self._pending = None
 
     def _send_finished(self) -> None:
-        if self._painter is None or self._pending is None or not self._painter[1].poll():
+        if self._painter is None or self._pending is None or not self._painter.pictures.poll():
             return
         (topics, time), self._pending = self._pending, None
         try:
-            drawn = self._painter[1].recv()
+            drawn = self._painter.pictures.recv()
         except EOFError:  # it could not draw; the run does not depend on it
             self._topics.clear()
             return
@@ -110,53 +103,41 @@ class CameraTopics:
             topics.publish(time, *drawn)
 
 
-def _start_painter(*scene: object) -> tuple[BaseProcess, Connection]:
-    """A process that draws a scene; a fork would inherit locks and OpenGL.
-
-    A worker of an executor would outlive a parent that is killed.
-    """
-    ours, theirs = multiprocessing.Pipe()
-    context = multiprocessing.get_context("spawn")
-    process = context.Process(target=_paint, args=(theirs, ours, *scene), daemon=True)
-    process.start()
-    theirs.close()
-    return process, ours
-
-
-def _paint(
-    requests: Connection,
-    parent: Connection,
-    cameras: Sequence[Camera],
-    description: RobotDescription,
-    objects: Sequence[WorldObject],
-    seed: int,
-) -> None:
-    """Draw what is requested, one picture after the other, until the pipe closes.
+class _Painter(SpawnProcess):
+    """Draws what is requested through `pictures`, one picture after the other, until that closes.
 
     The answer is a picture as the camera delivers it, and as a JPEG; None while the camera's
-    carrier is not in the scene.
+    carrier is not in the scene. A fork would inherit locks and OpenGL, and a worker of an executor
+    would outlive a parent that is killed.
     """
-    from harness.cameras.camera_scene import CameraScene
-    from harness.cameras.captures import jpeg
-    from harness.cameras.renderer import make_renderer
-    from harness.cameras.sensor import as_delivered
-    from harness.robot.forward_kinematics import robot_poses
 
-    parent.close()
-    scene, known = CameraScene(description, objects, cameras), {c.name: c for c in cameras}
-    make = cache(partial(make_renderer, scene.picture))
-    while True:
-        try:
-            name, sample, positions, rows = requests.recv()
-        except (EOFError, KeyboardInterrupt):
-            return
-        camera, poses = known[name], robot_poses(description, positions)
-        poses |= {each: SE3.from_vector(row) for each, row in rows.items()}
-        scene.picture.pose(poses)
-        view = scene.view(camera, poses)
-        if view is None:
-            requests.send(None)
-            continue
-        ideal = make(camera.width, camera.height).render(view)
-        picture = as_delivered(ideal, camera, seed, sample)
-        requests.send((picture, jpeg(picture, camera)))
+    def __init__(self, seed: int, *scene: Any) -> None:
+        """Start the process for a scene: what `CameraScene` is made of."""
+        super().__init__(daemon=True)
+        self._seed, self._scene = seed, scene
+        self.pictures, self._requests = Pipe()
+        self.start()
+        self._requests.close()
+
+    def run(self) -> None:
+        from harness.cameras.camera_scene import CameraScene
+        from harness.cameras.captures import jpeg
+        from harness.cameras.renderer import make_renderer
+        from harness.cameras.sensor import as_delivered
+
+        self.pictures.close()
+        scene = CameraScene(*self._scene)
+        make = cache(partial(make_renderer, scene.picture))
+        while True:
+            try:
+                camera, sample, positions, rows = self._requests.recv()
+            except (EOFError, KeyboardInterrupt):
+                return
+            objects = {name: SE3.from_vector(row) for name, row in rows.items()}
+            view = scene.view(camera, scene.pose_robot(positions, objects))
+            drawn = None
+            if view is not None:
+                ideal = make(camera.width, camera.height).render(view)
+                picture = as_delivered(ideal, camera, self._seed, sample)
+                drawn = picture, jpeg(picture, camera)
+            self._requests.send(drawn)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
-from harness.cell.cell import Presence
 from harness.core.errors import HarnessError
-from harness.engine.execute import object_record
 from harness.language.expectation import ExpectationFields
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.read_run import read_run
-from harness.recording.run import Run
+from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import RESOLVED
 from harness.reporting.result import CaseResult
@@ -35,14 +34,13 @@ LOOK_EVERY, LOOK_SHARE = 0.5, 0.05
 look reads the whole record. Wall time has no part in it, so that a replay ends alike."""
 
 
-class HandOver:
-    """What commands the robot between two ticks, and what is done after each."""
+class HandOver(ABC):
+    """Lets time pass while programs command the robot: what they do between two ticks."""
 
     def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
-        description = prepared.program.description
         self.prepared, self.simulator = prepared, simulator
-        self.cell = ExternalCell(simulator, prepared.loaded.scenario.ros2)
-        self.robot = robot_record(description, prepared.kinematics)
+        self.cell = ExternalCell(simulator, prepared.program.controllers)
+        self.robot = robot_record(prepared.program.description, prepared.kinematics)
 
     @property
     def commands(self) -> tuple[CommandRecord, ...]:
@@ -53,35 +51,28 @@ class HandOver:
         """Why a run that did not pass says nothing about the programs; empty where it does."""
         return ""
 
-    def drive(
-        self,
-        request: ExternalRequest,
-        feed: Callable[[], None],
-        after: Callable[[], None] = lambda: None,
-    ) -> ExternalResult:
-        """Move time tick by tick until the request's end.
+    @abstractmethod
+    def feed(self) -> None:
+        """Let commands take effect before a tick."""
 
-        Args:
-            request: What ends the loop, and when.
-            feed: Lets commands take effect before a tick.
-            after: Called after each tick.
-        """
+    @abstractmethod
+    def after(self) -> None:
+        """Do what follows a tick."""
+
+    def hand_over(self, request: ExternalRequest) -> ExternalResult:
+        """Move time tick by tick until the request's end."""
         cell, simulator = self.cell, self.simulator
-        begin, first = simulator.time, simulator.sample_count - 1
-        before = seen = len(cell.commands)
-        cell.hold_commanded(simulator.commanded_positions())
+        begin, first, before = simulator.time, simulator.sample_count - 1, len(cell.commands)
+        cell.begin()
         look_at, ended_at, ended_by = LOOK_EVERY, np.inf, ""
-        end: CommandRecord | None = None
         while not ended_by:
-            feed()
-            end = next((each for each in cell.commands[seen:] if each.kind == "end"), end)
-            seen = len(cell.commands)
-            if end is not None and end.content.get("reason") == "stopped":
+            self.feed()
+            if cell.end is not None and cell.end.content.get("reason") == "stopped":
                 ended_by = "stopped"
                 break
             cell.tick()
-            after()
-            if end is not None and (ended_at == np.inf or not cell.is_idle):
+            self.after()
+            if cell.end is not None and (ended_at == np.inf or not cell.is_idle):
                 ended_at = cell.time
             elapsed, is_due = cell.time - begin, cell.time - begin >= look_at - 1e-9
             if is_due:
@@ -94,8 +85,8 @@ class HandOver:
                 ended_by = "exit"
         count = sum(command.kind != "end" for command in cell.commands[before:])
         cell.finish()
-        after()
-        detail = _said(end) if end is not None and ended_by in ("timeout", "exit") else ""
+        self.after()
+        detail = _said(cell.end) if cell.end and ended_by in ("timeout", "exit") else ""
         return ExternalResult(ended_by, count, detail)
 
     def _holds(self, request: ExternalRequest, begin: float, first: int) -> bool:
@@ -105,16 +96,14 @@ class HandOver:
             return False
         times = begin, simulator.time, first, simulator.sample_count
         step = StepRecord(name, name, "", "", request.line, "passed", *times)
-        presences = (
-            Presence(obj, obj.pose, [[0.0, np.inf]]) for obj in self.prepared.program.world.objects
-        )
+        objects = self.prepared.program.world.objects
         run = Run(
             scenario="",
             file="",
             case="",
             seed=0,
             robot=self.robot,
-            objects=tuple(object_record(presence, np.inf) for presence in presences),
+            objects=tuple(ObjectRecord.of(obj, ((0.0, np.inf),), obj.pose) for obj in objects),
             attachments=(),
             steps=(step,),
             signals=simulator.finish(),
@@ -140,15 +129,12 @@ class ReplayControl(HandOver):
         super().__init__(prepared, simulator)
         self._left = list(commands)
 
-    def hand_over(self, request: ExternalRequest) -> ExternalResult:
-        """Let the recorded commands take effect until the request's end.
+    def feed(self) -> None:
+        """Let the recorded commands of this sample take effect.
 
         Raises:
             HarnessError: A command belongs to a sample that this run does not stop at.
         """
-        return self.drive(request, self._feed)
-
-    def _feed(self) -> None:
         now = self.simulator.sample_count - 1
         while self._left and self._left[0].sample <= now:
             command = self._left.pop(0)
@@ -157,7 +143,10 @@ class ReplayControl(HandOver):
                     f"the command at t={command.time:.3f} s comes too late in this replay: the"
                     " recorded commands belong to another run"
                 )
-            self.cell.receive(command.kind, command.controller, command.goal, command.content)
+            self.cell.receive(command.kind, command.controller, command.goal, **command.content)
+
+    def after(self) -> None:
+        """Nothing: no program waits for an answer."""
 
 
 def replay(folder: Path, report_dir: Path | None = None) -> CaseResult:

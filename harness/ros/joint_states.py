@@ -21,16 +21,15 @@ class JointStates:
 
     def __init__(self, graph: Graph, description: RobotDescription) -> None:
         self._description = description
-        self._times: list[float] = []
+        self._stamps: list[float] = []
         self._rows: list[FloatArray] = []
-        self._begin: float | None = None
         self._arrived = wall.monotonic()
         graph.subscribe("/joint_states", "sensor_msgs/msg/JointState", self._take, BEST_EFFORT)
 
     @property
     def time(self) -> float:
         """Time of the last message since the first one [s]; -1 before the first one."""
-        return self._times[-1] if self._times else -1.0
+        return self._stamps[-1] - self._stamps[0] if self._stamps else -1.0
 
     @property
     def silence(self) -> float:
@@ -55,8 +54,9 @@ class JointStates:
     def record(self) -> tuple[FloatArray, FloatArray]:
         """Times (N,) on the grid, and positions, velocities and efforts at them, (3, N, n)."""
         times = np.arange(self.sample_count, dtype=np.float64) * GRID
+        arrived = np.array(self._stamps) - self._stamps[0]
         columns = np.array(self._rows).reshape(len(self._rows), -1).T
-        even = np.array([np.interp(times, self._times, column) for column in columns])
+        even = np.array([np.interp(times, arrived, column) for column in columns])
         return times, even.reshape(3, -1, len(times)).swapaxes(1, 2)
 
     def _take(self, state: Any) -> None:
@@ -66,13 +66,12 @@ class JointStates:
         if any(joint.mimic is None and joint.name not in place for joint in joints):
             return
         stamp = seconds(state.header.stamp) or wall.monotonic()
-        self._begin = stamp if self._begin is None else self._begin
-        if stamp - self._begin <= self.time:
+        if self._stamps and stamp <= self._stamps[-1]:
             return
         row = np.zeros((3, len(joints)))
         for part, values in zip(row, (state.position, state.velocity, state.effort), strict=True):
             if len(values) >= len(place):
                 part[:] = [values[place[j.name]] if j.name in place else 0.0 for j in joints]
         row[0] = self._description.with_mimics(row[0])
-        self._times.append(stamp - self._begin)
+        self._stamps.append(stamp)
         self._rows.append(row)

@@ -8,32 +8,12 @@ import shlex
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
-from harness.core.errors import Problem, SpecError, StepFailed
+from harness.core.errors import StepFailed
 
 TAIL = 2000
 """Characters of a program's last output that are shown."""
-
-
-def named_commands(given: Iterable[str]) -> dict[str, str]:
-    """Commands by name, from `NAME=COMMAND` or `COMMAND`.
-
-    Raises:
-        SpecError: A command is empty, or two have the same name.
-    """
-    commands: dict[str, str] = {}
-    for text in given:
-        name, equals, command = text.partition("=")
-        if not (equals and name.isidentifier()):
-            name, command = "node", text
-        reason = "" if command.strip() else "it has no command"
-        if name in commands:
-            reason = f"two commands are called '{name}'; write NAME=COMMAND"
-        if reason:
-            raise SpecError([Problem(f"the node '{text}'", 0, 0, reason)])
-        commands[name] = command
-    return commands
 
 
 def start_program(commands: Mapping[str, str], name: str, domain: int) -> Program | None:
@@ -47,15 +27,20 @@ def start_program(commands: Mapping[str, str], name: str, domain: int) -> Progra
         reason = f"several commands are allowed ({known}); name one with `launch`"
     elif name and name not in commands:
         allowed = f"; allowed: {known}" if commands else ""
-        reason = f"the command '{name}' is not allowed: give it with --node '{name}=COMMAND'"
-        reason += allowed
+        reason = (
+            f"the command '{name}' is not allowed: give it with --node '{name}=COMMAND'{allowed}"
+        )
     if reason:
         raise StepFailed("COMMUNICATION_FAILURE", reason)
     return Program(commands[name or known], domain) if commands else None
 
 
 class Program:
-    """A running program, with everything that it started."""
+    """A running program, with everything that it started.
+
+    Attributes:
+        output: The end of what it printed, once it is stopped.
+    """
 
     def __init__(self, command: str, domain: int) -> None:
         """Start a command in the domain.
@@ -63,24 +48,20 @@ class Program:
         Raises:
             StepFailed: COMMUNICATION_FAILURE; it cannot be started.
         """
-        environment = {
-            **os.environ,
-            "ROS_DOMAIN_ID": str(domain),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-            "PYTHONUNBUFFERED": "1",
-        }
-        self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `stop`
+        environment = dict(os.environ, ROS_DOMAIN_ID=str(domain), PYTHONUNBUFFERED="1")
+        environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+        self.output, self._printed = "", tempfile.TemporaryFile()  # noqa: SIM115 - closed by `stop`
         try:
             self._process = subprocess.Popen(
                 shlex.split(command),
                 env=environment,
                 stdin=subprocess.DEVNULL,
-                stdout=self._output,
+                stdout=self._printed,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
         except (OSError, ValueError) as error:
-            self._output.close()
+            self._printed.close()
             reason = error.strerror if isinstance(error, OSError) else error
             said = f"`{command}` cannot be started: {reason}"
             raise StepFailed("COMMUNICATION_FAILURE", said) from error
@@ -90,22 +71,15 @@ class Program:
         """The exit code; None while it runs."""
         return self._process.poll()
 
-    def output(self) -> str:
-        """The end of what it printed."""
-        size = self._output.seek(0, os.SEEK_END)
-        self._output.seek(max(0, size - TAIL))
-        return self._output.read().decode("utf-8", "replace").strip()
-
     def stop(self) -> None:
         """End the program and what it started: interrupt, then kill what goes on."""
-        self._signal(signal.SIGINT)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(2.0)
-        self._signal(signal.SIGKILL)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(5.0)
-        self._output.close()
-
-    def _signal(self, number: int) -> None:
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, number)
+        if self._printed.closed:
+            return
+        for number, patience in ((signal.SIGINT, 2.0), (signal.SIGKILL, 5.0)):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, number)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(patience)
+        self._printed.seek(max(0, self._printed.seek(0, os.SEEK_END) - TAIL))
+        self.output = self._printed.read().decode("utf-8", "replace").strip()
+        self._printed.close()

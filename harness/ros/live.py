@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 Say = Callable[[str], None]
 
+FEEDBACK_EVERY = 5
+"""Ticks between two messages of feedback: 20 Hz, as controllers are set by default."""
+
 LOOK_EVERY = 50
 """Ticks between two looks at how nodes use topics."""
 
@@ -75,8 +78,6 @@ class LiveControl(HandOver):
         self._wiring = Wiring(graph, self.cell, self._note)
         self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None
-        self._exit_code: int | None = None
-        self._output = ""
         self._said: set[str] = set()
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
@@ -86,7 +87,7 @@ class LiveControl(HandOver):
         self._wiring.is_open = True
         self._pace.start()
         try:
-            result = self.drive(request, self._feed, self._after)
+            result = super().hand_over(request)
             self._look_at_names()
             if result.ended_by == "until":
                 self._names = ()
@@ -94,7 +95,8 @@ class LiveControl(HandOver):
         finally:
             self._wiring.is_open = False
             self._cameras.close()
-            self._end_program()
+            if self._program is not None:
+                self._program.stop()
 
     def refusal(self) -> str:
         """Why a run that did not pass says nothing about the nodes; empty where it does."""
@@ -109,40 +111,38 @@ class LiveControl(HandOver):
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """What is said of wall time, names and the launched program; nothing of it is judged."""
         said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
-        if self._exit_code and has_passed:
-            said.append(f"the launched program ended with exit code {self._exit_code}")
-        if self._output and (self._exit_code or not has_passed):
-            said.append(f"the launched program printed:\n{indent(self._output, '  ')}")
+        codes = [each.content["code"] for each in self.cell.commands if "code" in each.content]
+        code = codes[-1] if codes else 0
+        output = self._program.output if self._program is not None else ""
+        if code and has_passed:
+            said.append(f"the launched program ended with exit code {code}")
+        if output and (code or not has_passed):
+            said.append(f"the launched program printed:\n{indent(output, '  ')}")
         return tuple(said)
 
-    def _feed(self) -> None:
+    def feed(self) -> None:
         """Receive until the next tick is due."""
         self._graph.spin(self._pace.next())
         self._pace.tick()
         if self._pace.ticks % LOOK_EVERY == 0:
             self._look_at_names()
         if self._request.stop.is_set():
-            self.cell.receive("end", content={"reason": "stopped"})
-        if self._program is not None and self._program.exit_code is not None:
-            self._exit_code = self._program.exit_code
-            self.cell.receive("end", content={"reason": "exit", "code": self._exit_code})
-            self._end_program()
+            self.cell.receive("end", reason="stopped")
+        program = self._program
+        if program is not None and program.exit_code is not None and self.cell.end is None:
+            self.cell.receive("end", reason="exit", code=program.exit_code)
+            program.stop()
 
-    def _after(self) -> None:
+    def after(self) -> None:
         simulator = self.simulator
         sample = simulator.sample_count - 1
         positions, velocities = (part[-1] for part in simulator.measured(sample))
         efforts = np.zeros(len(positions))
         efforts[simulator.physics.actuated] = simulator.efforts()
-        self._wiring.after_tick()
+        if self._pace.ticks % FEEDBACK_EVERY == 0:
+            self._wiring.publish_feedback()
         self._states.publish(simulator.time, positions, velocities, efforts)
         self._cameras.publish(simulator.time, sample, positions, simulator.objects_now)
-
-    def _end_program(self) -> None:
-        if self._program is not None:
-            self._output = self._program.output()
-            self._program.stop()
-            self._program = None
 
     def _look_at_names(self) -> None:
         """Note wrong types at once, and names that are not served where a step fails.

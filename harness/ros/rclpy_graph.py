@@ -11,7 +11,7 @@ from typing import Any
 
 from harness.core.errors import Problem, SpecError
 from harness.ros.graph import DEFAULT, Client, OnMessage, Publisher, Qos, Reply, Use
-from harness.ros.interfaces import CANCEL, decoded, encoded
+from harness.ros.interfaces import decoded, encoded
 
 
 class RclpyGraph:
@@ -83,11 +83,10 @@ class RclpyGraph:
         for topic, _ in node.get_topic_names_and_types():
             writers = node.get_publishers_info_by_topic(topic)
             for each in (*writers, *node.get_subscriptions_info_by_topic(topic)):
-                found = Qos(
-                    each.qos_profile.reliability == qos.ReliabilityPolicy.RELIABLE,
-                    each.qos_profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL,
-                )
-                use = Use(topic, each.topic_type, each in writers, found)
+                is_reliable = each.qos_profile.reliability == qos.ReliabilityPolicy.RELIABLE
+                is_latched = each.qos_profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL
+                quality = Qos(is_reliable, is_latched)
+                use = Use(topic, each.topic_type, each in writers, quality)
                 (own if each.node_name == node.get_name() else others).append(use)
         return own, others
 
@@ -102,13 +101,12 @@ class RclpyGraph:
         self._context.try_shutdown()
 
     def _profile(self, requested: Qos) -> Any:
-        qos = self._rclpy.qos
-        reliability, durability = qos.ReliabilityPolicy, qos.DurabilityPolicy
-        return qos.QoSProfile(
-            depth=requested.depth,
-            reliability=reliability.RELIABLE if requested.is_reliable else reliability.BEST_EFFORT,
-            durability=durability.TRANSIENT_LOCAL if requested.is_latched else durability.VOLATILE,
-        )
+        qos, profile = self._rclpy.qos, self._rclpy.qos.QoSProfile(depth=requested.depth)
+        if not requested.is_reliable:
+            profile.reliability = qos.ReliabilityPolicy.BEST_EFFORT
+        if requested.is_latched:
+            profile.durability = qos.DurabilityPolicy.TRANSIENT_LOCAL
+        return profile
 
     def _to_ros(self, content: Any, kind: str, ros_type: Any) -> Any:
         return self._rclpy.serialization.deserialize_message(encoded(content, kind), ros_type)
@@ -126,10 +124,8 @@ def _message_type(kind: str) -> Any:
 
 
 def _service_type(kind: str) -> Any:
-    """The class in rclpy of a service of an action."""
-    if kind == CANCEL:
-        return _imported("action_msgs.srv").CancelGoal
-    return _message_type(f"{kind}Service")
+    """The class of a service in rclpy; those of an action have other names there."""
+    return _message_type(kind if "/srv/" in kind else f"{kind}Service")
 
 
 def _imported(module: str) -> Any:

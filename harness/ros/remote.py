@@ -14,11 +14,10 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import ControlFailure
-from harness.recording.signals import Signals
+from harness.recording.signals import UNPUBLISHED, Signals
 from harness.reporting.result import CaseResult
 from harness.reporting.rosbag.messages import message, trajectory_message
 from harness.ros.actions import ActionClient, ClientGoal, Status
-from harness.ros.control.cell import controller_names
 from harness.ros.control.goals import Code
 from harness.ros.graph import Graph, spin_until
 from harness.ros.interfaces import COMMAND, FOLLOW, GRIPPER
@@ -34,17 +33,8 @@ from harness.session.timing import Clock
 if TYPE_CHECKING:
     from harness.session.timed_simulator import TimedSimulator
 
-UNRECORDED = (
-    "joint_commands",
-    "joint_command_velocities",
-    "contact_forces",
-    "presses",
-    "frictions",
-    "support_forces",
-    "link_overlaps",
-    "planned_clearances",
-)
-"""Signals that a robot's topics do not carry."""
+MEASURED = ("position", "effort", "stalled", "reached_goal")
+"""What the result of GripperCommand says."""
 
 PATIENCE = 10.0
 """Wall time in which servers must be found, and joint states must come [s]."""
@@ -58,24 +48,22 @@ UNKNOWN = np.full(7, np.nan)
 REASON = 1.0
 """Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""
 
+Confirm = Callable[[JointTrajectory], bool]
+"""Called with each trajectory before it is sent; whether the arm may move."""
+
 START_TOLERANCE = 0.01
 """Largest distance of the arm from where a trajectory begins [rad or m], as MoveIt allows."""
 
 
 def run_on_robot(
-    request: RunRequest,
-    graph: Graph,
-    velocity_scaling: float,
-    confirm: Callable[[JointTrajectory], bool],
-    notify: Notify,
+    request: RunRequest, connect: Callable[[Prepared], RemoteArm], notify: Notify
 ) -> CaseResult:
     """Run a case on the robot of a ROS 2 domain.
 
     What its topics do not show, such as contacts and the poses of objects, is not observable.
 
     Args:
-        velocity_scaling: Share of the planned speed, (0, 1].
-        confirm: Called with each trajectory before it is sent; whether the arm may move.
+        connect: Finds the robot of the scenario.
 
     Raises:
         StepFailed: COMMUNICATION_FAILURE; the robot cannot be reached.
@@ -83,8 +71,7 @@ def run_on_robot(
 
     def start(request: RunRequest, _: Clock) -> Start:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
-        robot = RemoteArm(graph, prepared, velocity_scaling, confirm)
-        return Start(prepared, cast("TimedSimulator", robot), 0)
+        return Start(prepared, cast("TimedSimulator", connect(prepared)), 0)
 
     return run_case(request, notify, start=start)
 
@@ -100,17 +87,16 @@ class RemoteArm:
     """Sends trajectories to the servers of a robot's controllers, one after the other."""
 
     overlaps_at_start = ()
-    unrecorded = UNRECORDED
+    unrecorded = ("joint_commands", "joint_command_velocities", *UNPUBLISHED)
     timestep = GRID
 
     def __init__(
-        self,
-        graph: Graph,
-        prepared: Prepared,
-        velocity_scaling: float,
-        confirm: Callable[[JointTrajectory], bool],
+        self, graph: Graph, velocity_scaling: float, confirm: Confirm, prepared: Prepared
     ) -> None:
         """Find the robot's controllers and its joints.
+
+        Args:
+            velocity_scaling: Share of the planned speed, (0, 1].
 
         Raises:
             StepFailed: COMMUNICATION_FAILURE; a server or a joint is missing.
@@ -119,11 +105,11 @@ class RemoteArm:
         self._kinematics, self._program = prepared.kinematics, prepared.program
         self.description = self._program.description
         self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
-        self._command: FloatArray | None = None
         self._states = JointStates(graph, self.description)
-        names, gripper = controller_names(self.description, prepared.loaded.scenario.ros2)
-        arms = [ActionClient(graph, f"/{name}/follow_joint_trajectory", FOLLOW) for name in names]
-        self._gripper = ActionClient(graph, f"/{gripper}/gripper_cmd", GRIPPER) if gripper else None
+        names = self._program.controllers
+        arms = [ActionClient(graph, f"/{arm}/follow_joint_trajectory", FOLLOW) for arm in names.arm]
+        finger = f"/{names.gripper}/gripper_cmd"
+        self._gripper = ActionClient(graph, finger, GRIPPER) if names.gripper else None
         if not self._wait(lambda: any(arm.is_ready for arm in arms), PATIENCE):
             served = ", ".join(actions(graph.uses()[1])) or "no action"
             required = " or ".join(arm.name for arm in arms)
@@ -132,8 +118,6 @@ class RemoteArm:
         if not self._wait(lambda: self._states.time >= 0, PATIENCE):
             joints = ", ".join(self.description.joint_names)
             _unreachable(f"/joint_states brings no message with all joints: {joints}")
-
-    # -- where things are ---------------------------------------------------------------------
 
     @property
     def time(self) -> float:
@@ -144,25 +128,18 @@ class RemoteArm:
     def sample_count(self) -> int:
         return self._states.sample_count
 
-    @property
-    def faults(self) -> NoReturn:
-        """Nothing of a real robot is broken on purpose."""
-        raise StepFailed("ABORT", "faults are injected into simulated robots alone")
-
     def joint_positions(self) -> FloatArray:
         """Measured, description order."""
         self._graph.spin(wall.monotonic())
         return self._states.positions
 
     def commanded_positions(self) -> FloatArray:
-        """The end of the last trajectory, or where the robot stood."""
-        return self.joint_positions() if self._command is None else self._command.copy()
+        """Where the robot stands: the next motion begins there."""
+        return self.joint_positions()
 
     def object_pose(self, name: str) -> SE3:
         """T_world_object as the scenario has it; it is not measured."""
         return next(obj.pose for obj in self._program.all_objects() if obj.name == name)
-
-    # -- motion -------------------------------------------------------------------------------
 
     def track(self, trajectory: JointTrajectory) -> None:
         """Send a trajectory and watch the arm on its way.
@@ -172,17 +149,13 @@ class RemoteArm:
                 strays from its tolerance, upon which the goal is canceled; PREEMPTED, when the user
                 does not confirm.
         """
-        self._refuse_other_start(trajectory)
         if not self._confirm(trajectory):
             raise StepFailed("PREEMPTED", "the motion was not confirmed, so nothing moved")
+        self._refuse_other_start(trajectory)
         client, slowed = self._arm, _slowed(trajectory, self._share)
         goal = client.send(message(f"{FOLLOW}_Goal", trajectory=trajectory_message(slowed)))
         self._follow(client, goal, 10.0 * slowed.duration + PATIENCE)
         self._refuse_failure(goal, client)
-        end = self.commanded_positions()
-        for name, position in zip(trajectory.joint_names, trajectory.positions[-1], strict=True):
-            end[self.description.joint_index[name]] = position
-        self._command = self.description.with_mimics(end)
 
     def command_gripper(
         self, position: float, max_effort: float, *, timeout: float
@@ -198,14 +171,8 @@ class RemoteArm:
             raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
         loose = [o for o in self._program.all_objects() if o.in_simulation and not o.is_static]
         held = tuple(each.name for each in loose) if goal.result.stalled else ()
-        return GripperResult(
-            position=goal.result.position,
-            effort=goal.result.effort,
-            stalled=goal.result.stalled,
-            reached_goal=goal.result.reached_goal,
-            contacts=dict.fromkeys(gripper.sides, held),
-            between=held,
-        )
+        said = {key: getattr(goal.result, key) for key in MEASURED}
+        return GripperResult(**said, contacts=dict.fromkeys(gripper.sides, held), between=held)
 
     def hold(self, duration: float) -> None:
         """Let the robot's time pass [s]."""
@@ -226,8 +193,7 @@ class RemoteArm:
             raise StepFailed("TIMED_OUT", f"the robot still moves after {timeout:g} s")
         return True
 
-    # -- what a program does not do to a real cell ----------------------------------------------
-
+    faults = property(_refuses("faults are injected into simulated robots alone"))
     start_gripper = _refuses("arm and gripper of a ROS 2 robot do not move in parallel here")
     add_object = _refuses("an object would have to appear in the real cell; add it `in: planning`")
     remove_object = _refuses("an object cannot be taken out of the real cell by a program")
@@ -237,20 +203,13 @@ class RemoteArm:
     def unweld(self, name: str) -> None:
         del name
 
-    # -- the record ---------------------------------------------------------------------------
-
     def finish(self) -> Signals:
         """What `/joint_states` brought, on an even grid; poses follow from the joints."""
         times, (positions, velocities, efforts) = self._states.record()
         nothing = np.full_like(positions, np.nan)
         poses = self._kinematics.link_poses(positions, self._frames)
-        objects = {
-            each.name: np.tile(
-                each.pose.as_vector() if each.is_static else UNKNOWN, (len(times), 1)
-            )
-            for each in self._program.all_objects()
-            if each.in_simulation
-        }
+        objects = [each for each in self._program.all_objects() if each.in_simulation]
+        known = {o.name: o.pose.as_vector() if o.is_static else UNKNOWN for o in objects}
         return Signals(
             times=times,
             joint_positions=positions,
@@ -260,10 +219,8 @@ class RemoteArm:
             joint_command_velocities=nothing,
             tcp_pose=poses[:, 0],
             frames={link: poses[:, place] for place, link in enumerate(self._frames)},
-            object_poses=objects,
+            object_poses={name: np.tile(pose, (len(times), 1)) for name, pose in known.items()},
         )
-
-    # -- inside -------------------------------------------------------------------------------
 
     def _wait(self, holds: Callable[[], bool], timeout: float) -> bool:
         return spin_until(self._graph, holds, timeout)
@@ -294,36 +251,29 @@ class RemoteArm:
             raise
 
     def _refuse_other_start(self, trajectory: JointTrajectory) -> None:
-        now = self.joint_positions()
-        places = [self.description.joint_index[name] for name in trajectory.joint_names]
-        errors = np.abs(now[places] - trajectory.positions[0])
-        worst = int(np.argmax(errors))
-        if errors[worst] > START_TOLERANCE:
-            raise StepFailed(
-                "START_STATE_INVALID",
-                f"'{trajectory.joint_names[worst]}' stands {errors[worst]:.3g} from where the"
-                f" trajectory begins (tolerance {START_TOLERANCE:g})",
-            )
+        now, index = self.joint_positions(), self.description.joint_index
+        begins = zip(trajectory.joint_names, trajectory.positions[0], strict=True)
+        off, name = max((abs(now[index[name]] - begin), name) for name, begin in begins)
+        if off > START_TOLERANCE:
+            said = f"'{name}' stands {off:.3g} from where the trajectory begins"
+            raise StepFailed("START_STATE_INVALID", f"{said} (tolerance {START_TOLERANCE:g})")
 
     def _refuse_stray(self, goal: ClientGoal) -> None:
         """Refuse to go on when the feedback shows a joint beyond its tolerance."""
         tolerance, joints = self.description.tracking.trajectory, self.description.joint_by_name
         for feedback in goal.feedback:
-            off = {
-                str(name): abs(float(error))
-                for name, error in zip(feedback.joint_names, feedback.error.positions, strict=False)
-                if name in joints
-            }
-            name = max(off, key=off.__getitem__, default="")
-            if not name or off[name] <= tolerance:
-                continue
-            error, unit = off[name], joints[name].position_unit
-            raise StepFailed(
-                "CONTROL_FAILED",
-                f"{name} is {error:.3g} {unit} off its trajectory (tolerance {tolerance:g} {unit});"
-                " the goal was canceled",
-                ControlFailure(name, error, tolerance, unit, self.time, ()),
-            )
+            errors = map(abs, feedback.error.positions.tolist())
+            named = zip(errors, map(str, feedback.joint_names), strict=False)
+            known = [(error, name) for error, name in named if name in joints]
+            error, name = max(known, default=(0.0, ""))
+            if error > tolerance:
+                unit = joints[name].position_unit
+                raise StepFailed(
+                    "CONTROL_FAILED",
+                    f"{name} is {error:.3g} {unit} off its trajectory (tolerance"
+                    f" {tolerance:g} {unit}); the goal was canceled",
+                    ControlFailure(name, error, tolerance, unit, self.time, ()),
+                )
         goal.feedback.clear()
 
     def _refuse_failure(self, goal: ClientGoal, client: ActionClient) -> None:

@@ -12,13 +12,14 @@ ros-ament-cmake-pytest and ros-domain-coordinator. gcc and cmake are needed.
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
 import tempfile
 from pathlib import Path
 
-from harness.ros.interfaces import ACTIONS, MESSAGES
+from harness.ros.interfaces import DEFINITIONS
 
 PACKAGE = """<?xml version="1.0"?>
 <package format="3"><name>control_msgs</name><version>5.0.0</version>
@@ -42,17 +43,9 @@ ament_package()
 
 
 def write_sources(folder):
-    """The package's sources, from the field lists that the bridge itself uses."""
-    texts = {f"{kind}.msg": text for kind, text in MESSAGES.items()}
-    texts |= {f"{kind}.action": "\n---\n".join(parts) for kind, parts in ACTIONS.items()}
-    files = []
-    for name, text in texts.items():
-        package, _, file = name.partition("/")
-        if package == "control_msgs":
-            path = folder / file
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text.replace("/msg/", "/").replace("control_msgs/", "") + "\n")
-            files.append(file)
+    """The package's sources, with the definitions that the bridge itself uses."""
+    shutil.copytree(DEFINITIONS / "control_msgs", folder)
+    files = sorted(str(path.relative_to(folder)) for path in folder.glob("*/*"))
     (folder / "package.xml").write_text(PACKAGE)
     (folder / "CMakeLists.txt").write_text(CMAKE.format(files=" ".join(files)))
 

@@ -4,10 +4,11 @@ import cv2
 import numpy as np
 import pytest
 
-from harness.ros.actions import Status
+from harness.reporting.rosbag.messages import message
+from harness.ros.actions import CancelCode, Status, uuid_of
 from harness.ros.control.goals import Code
 from harness.ros.handover import replay
-from harness.ros.interfaces import TRAJECTORY
+from harness.ros.interfaces import CANCEL, TRAJECTORY
 from tests.ros.bridging import bridge, scenario
 from tests.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 
@@ -95,7 +96,15 @@ def test_tolerances_cancel_and_preemption(tmp_path):
         assert "newer command" in first.result.error_string
         node.arm.cancel(second)
         node.wait(lambda: second.is_over)
-        assert (second.cancel_code, second.status) == (0, Status.CANCELED)
+        assert second.status is Status.CANCELED
+        cancel, codes = node.graph.client(f"{node.arm.name}/_action/cancel_goal", CANCEL), []
+        node.wait(cancel.is_ready)
+        for identifier in (second.identifier, "ab" * 16):
+            info = message("action_msgs/msg/GoalInfo", goal_id=uuid_of(identifier))
+            request = message(f"{CANCEL}_Request", goal_info=info)
+            cancel.call(request, lambda response: codes.append(response.return_code))
+        node.wait(lambda: len(codes) == 2)
+        assert codes == [CancelCode.TERMINATED, CancelCode.UNKNOWN_GOAL]
 
 
 def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tmp_path):
@@ -141,6 +150,7 @@ def test_a_gripper_stalls_on_an_object(tmp_path):
         node.ready()
         opened = node.send(grip(0.015), node.gripper)
         assert (opened.result.reached_goal, opened.result.stalled) == (True, False)
+        assert 0 < max(each.position for each in opened.feedback) <= 0.016
         closed = node.send(grip(-0.005), node.gripper)
         assert (closed.result.reached_goal, closed.result.stalled) == (False, True)
         refused = node.send(grip(0.5), node.gripper)

@@ -29,7 +29,7 @@ def content(*points, names=("first", "second"), **fields):
 def followed(sent, now=0.0, tolerances=UNBOUNDED):
     """The motion of a goal from rest at zero."""
     command = CommandRecord(0, now, "trajectory", goal="g", content=sent)
-    return start_trajectory(JOINTS, tolerances, command, REST, HERE)
+    return start_trajectory(JOINTS, tolerances, command, REST)
 
 
 def refused(**fields):

@@ -8,6 +8,7 @@ from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.ros.actions import ActionClient
 from harness.ros.bridge import BridgeRequest, run_bridge
+from harness.ros.domain import free_domain
 from harness.ros.graph import BEST_EFFORT, LATCHED, Use
 from harness.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.ros.names import unserved
@@ -91,13 +92,27 @@ def test_a_second_robot_in_a_domain_is_refused(tmp_path):
     [
         ("{arm_controllers: [/my/arm]}", "no digit first, and `/` in between"),
         ("{gripper_controller: two words}", "ROS 2 takes letters, digits and `_`"),
-        ("{arm_controllers: [a, b], gripper_controller: b}", "need different names"),
+        ("{arm_controllers: [a, b], gripper_controller: b}", "'b' is a name of the arm's"),
+        ("{arm_controllers: [gripper_controller]}", "'gripper_controller' is a name of the arm's"),
+        ("{gripper_controller: joint_trajectory_controller}", "name of the arm's controller and"),
     ],
 )
 def test_names_that_ros_does_not_take_are_reported_at_their_place(tmp_path, names, reason):
     [(line, message)] = problems(tmp_path, HOLD, rest=f"ros2: {names}")
     assert reason in message
     assert line == 6
+
+
+@pytest.mark.parametrize("command", ["check", "bridge", "run"])
+def test_a_name_that_the_robot_uses_already_is_refused_before_the_run(tmp_path, capsys, command):
+    file = scenario(tmp_path, HOLD, "ros2: {arm_controllers: [gripper_controller]}")
+    options = [] if command == "check" else ["--no-report"]
+    with free_domain() as domain:
+        options += ["--domain", str(domain)] if command == "bridge" else []
+        assert main([command, str(file), *options]) == 2
+    said = capsys.readouterr()
+    assert "test.scenario.yaml:5:25" in said.out + said.err
+    assert "need different names" in said.out + said.err
 
 
 @pytest.mark.parametrize("text", ["233", "-1", "abc"])

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from harness.cell.controllers import ControllerNames
 from harness.core.types import FloatArray
-from harness.language.scenario import Ros2Names
 from harness.recording.commands import CommandKind, CommandRecord
-from harness.robot.description import RobotDescription, TrackingTolerances
+from harness.robot.description import TrackingTolerances
 from harness.ros.control.controller import Controller, Outcome, Rows, Window
 from harness.ros.control.goals import Code, GoalRefused
 from harness.ros.control.gripper import GripperMotion
@@ -29,62 +28,42 @@ STOPPED = "the session ended while this goal was active"
 UNBOUNDED = TrackingTolerances(np.inf, np.inf)
 
 
-def controller_names(
-    description: RobotDescription, names: Ros2Names
-) -> tuple[tuple[str, ...], str]:
-    """The scenario's names, else the robot's, else `<group>_controller` as MoveIt's assistant.
-
-    Returns:
-        The names of the arm's controller, which all lead to the same one, and the name of the
-        gripper's; empty where there is none.
-    """
-    own, group, gripper = description.controllers, description.arm_group, description.gripper
-    arm = names.arm_controllers or own.get("arm") or (f"{group}_controller",)
-    if gripper is None:
-        return arm if group else (), ""
-    default = next(iter(own.get("gripper", ())), f"{gripper.group}_controller")
-    return arm if group else (), names.gripper_controller or default
-
-
 class ExternalCell:
     """Controllers on the servos; time moves in `tick` alone, commands come between ticks.
 
     Attributes:
         commands: Everything that was received.
+        end: The end of the launched program or of the session, since `begin`.
         on_outcome: Called with each goal that ended.
         controllers: The controllers, by each of their names.
     """
 
-    def __init__(self, servos: MujocoSimulator, names: Ros2Names) -> None:
+    def __init__(self, servos: MujocoSimulator, names: ControllerNames) -> None:
         self._servos = servos
         self.description = description = servos.description
         self.commands: list[CommandRecord] = []
         self.on_outcome: Callable[[Outcome], None] = lambda _: None
         self._rows = max(1, round(TICK / servos.timestep))
         self.controllers: dict[str, Controller] = {}
-        arm, finger = controller_names(description, names)
-        if arm:
+        if names.arm:
             joints = description.groups[description.arm_group].joint_names
-            group = self._controller(joints, description.tracking)
-            self.controllers.update(dict.fromkeys(arm, group))
-        if finger and description.gripper is not None:
-            grip = self.controllers[finger] = self._controller(
-                [description.gripper.joint], UNBOUNDED
-            )
-            grip.start["gripper"] = partial(GripperMotion, description, servos.timestep)
+            arm = self._controller(joints, description.tracking, ("trajectory",))
+            self.controllers.update(dict.fromkeys(names.arm, arm))
+        if description.gripper is not None:
+            finger = (description.gripper.joint,)
+            grip = self._controller(finger, UNBOUNDED, ("trajectory", "gripper"))
+            self.controllers[names.gripper] = grip
         self._each = tuple(dict.fromkeys(self.controllers.values()))
-        self.hold_commanded(
-            description.start_positions() if servos.sample_count == 1 else servos.joint_positions()
-        )
+        self.begin()
 
-    def _controller(self, names: Sequence[str], bounds: TrackingTolerances) -> Controller:
-        """A controller of some joints, which follows trajectories within bounds."""
-        description, actuated = self.description, self._servos.physics.actuated
+    def _controller(
+        self, names: Sequence[str], bounds: TrackingTolerances, kinds: tuple[CommandKind, ...]
+    ) -> Controller:
+        description = self.description
         joints = [description.joint_by_name[name] for name in names]
         places = np.array([description.joint_index[name] for name in names])
-        follow = partial(start_trajectory, joints, bounds)
-        columns = np.searchsorted(actuated, places)
-        return Controller(names, columns, places, {"trajectory": follow})
+        columns = np.searchsorted(self._servos.physics.actuated, places)
+        return Controller(joints, columns, places, bounds, kinds)
 
     @property
     def time(self) -> float:
@@ -96,27 +75,24 @@ class ExternalCell:
         """Whether no controller follows anything."""
         return all(controller.motion is None for controller in self._each)
 
-    def hold_commanded(self, positions: FloatArray) -> None:
-        """Start from set points in description order, such as a planned motion left them."""
-        held = positions[self._servos.physics.actuated][None]
+    def begin(self) -> None:
+        """Start from the set points as a planned motion left them."""
+        self.end: CommandRecord | None = None
+        held = self._servos.commanded_positions()[self._servos.physics.actuated][None]
         self._last: Rows = np.array([held, np.zeros_like(held), np.zeros_like(held)])
 
-    # -- commands -----------------------------------------------------------------------------
-
     def receive(
-        self,
-        kind: CommandKind,
-        controller: str = "",
-        goal: str = "",
-        content: Mapping[str, Any] | None = None,
+        self, kind: CommandKind, controller: str = "", goal: str = "", **content: Any
     ) -> CommandRecord:
         """Let a command take effect now, and record it with what became of it."""
-        sample, content = self._servos.sample_count - 1, content or {}
+        sample = self._servos.sample_count - 1
         record = CommandRecord(sample, self.time, kind, controller, goal, content, "accepted")
         try:
             if kind == "cancel":
                 self._cancel(goal)
-            elif kind != "end":
+            elif kind == "end":
+                self.end = record
+            else:
                 self._begin(self.controllers[controller], record)
         except GoalRefused as refused:
             record = replace(record, answer=str(refused))
@@ -128,31 +104,30 @@ class ExternalCell:
 
     def _begin(self, controller: Controller, command: CommandRecord) -> None:
         """Let a controller follow a goal; what it followed before ends."""
-        start = self._last[:, :, controller.columns]
-        measured = self._servos.joint_positions()[controller.places]
-        motion = controller.start[command.kind](command, start, measured)
+        start, gripper = self._last[:, :, controller.columns], self.description.gripper
+        if command.kind == "gripper":
+            motion = GripperMotion(self._servos, command, float(start[0, -1, 0]))
+        else:
+            motion = start_trajectory(controller.joints, controller.bounds, command, start)
         self._interrupt(controller, Code.INVALID_GOAL, PREEMPTED)
-        controller.motion, gripper = motion, self.description.gripper
-        if gripper is not None and "gripper" in controller.start:
+        controller.motion = motion
+        if gripper is not None and "gripper" in controller.kinds:
             self._servos.limit_gripper(motion.effort or gripper.grip_effort)
 
     def _interrupt(self, controller: Controller, code: Code, reason: str) -> None:
         """End what a controller follows before it is reached."""
         motion, controller.motion = controller.motion, None
         if motion is not None and motion.goal:  # what came from a topic has no result
-            now = self._window(controller, np.array([self.time]), self._last)
-            self.on_outcome(motion.interrupted(code, reason, now))
+            self.on_outcome(motion.interrupted(code, reason, self._now(controller)))
 
     def _cancel(self, goal: str) -> None:
         """Hold the joints of a goal where they are."""
         for controller in self._each:
-            if controller.goal == goal:
+            if controller.motion is not None and controller.motion.goal == goal:
                 self._hold(controller, self._servos.joint_positions()[controller.places])
                 self._interrupt(controller, Code.SUCCESSFUL, "canceled")
                 return
         raise GoalRefused("no such goal is active")
-
-    # -- time ---------------------------------------------------------------------------------
 
     def tick(self) -> None:
         """Move time by one tick, and see which goals ended."""
@@ -171,16 +146,21 @@ class ExternalCell:
                     self._hold(controller, ended.hold)
                 self.on_outcome(ended)
 
-    def tracking(self) -> list[tuple[Controller, Window]]:
-        """Desired and measured motion of every controller with a goal, at this moment."""
-        now = np.array([self.time])
-        return [(each, self._window(each, now, self._last)) for each in self._each if each.goal]
+    def feedback(self) -> Iterator[tuple[str, Any]]:
+        """Every goal that is followed, and the feedback of its action at this moment."""
+        for each in self._each:
+            if each.motion is not None and each.motion.goal:
+                yield each.motion.goal, each.motion.feedback(self._now(each))
 
     def finish(self) -> None:
         """End what is still active; the arm holds its last set point."""
         for controller in self._each:
             self._interrupt(controller, Code.INVALID_GOAL, STOPPED)
         self._servos.command(self._last[0, -1])
+
+    def _now(self, controller: Controller) -> Window:
+        """Desired and measured motion of a controller's joints at this moment."""
+        return self._window(controller, np.array([self.time]), self._last)
 
     def _window(self, controller: Controller, times: FloatArray, rows: Rows) -> Window:
         """Desired and measured motion of a controller's joints at the last samples."""

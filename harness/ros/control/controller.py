@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from harness.core.types import FloatArray, IntArray
-from harness.recording.commands import CommandKind, CommandRecord
+from harness.recording.commands import CommandKind
+from harness.robot.description import Joint, TrackingTolerances
 from harness.ros.control.goals import Code
 
 Rows = FloatArray
@@ -64,14 +65,13 @@ class Motion(Protocol):
         """How the goal ended; None while it goes on."""
         ...
 
+    def feedback(self, window: Window) -> Any:
+        """The feedback message of its action."""
+        ...
+
     def interrupted(self, code: Code, reason: str, window: Window) -> Outcome:
         """How the goal ends when a newer goal or a request to cancel ends it."""
         ...
-
-
-Start = Callable[[CommandRecord, Rows, FloatArray], Motion]
-"""Makes the motion of a command from the last set point, shape (3, 1, dof), and the measured
-positions, shape (dof,); raises GoalRefused where it cannot be followed."""
 
 
 @dataclass(eq=False)
@@ -81,17 +81,14 @@ class Controller:
     Attributes:
         columns: Where its joints are among the actuated ones.
         places: Where they are in the description.
-        start: Make the motion of a command, by its kind.
+        bounds: The tolerances of a trajectory that has none of its own.
+        kinds: The commands that it takes.
         motion: What it follows; None while it follows nothing.
     """
 
-    joint_names: Sequence[str]
+    joints: Sequence[Joint]
     columns: IntArray
     places: IntArray
-    start: dict[CommandKind, Start]
+    bounds: TrackingTolerances
+    kinds: tuple[CommandKind, ...]
     motion: Motion | None = None
-
-    @property
-    def goal(self) -> str:
-        """The identifier of the goal that it follows; empty for none, or one from a topic."""
-        return self.motion.goal if self.motion else ""

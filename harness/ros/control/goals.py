@@ -20,8 +20,8 @@ LIMIT_SLACK = 1e-4
 LARGEST = 1e6
 """Values from which on a position, a velocity or an acceleration is no motion of an arm."""
 
-LONGEST_NAME = 40
-"""Characters of a name in a message."""
+LONGEST_NAME, MOST_NAMES = 40, 8
+"""Characters of a name in a message, and names in a list."""
 
 OTHER_CLOCK = 1e6
 """Stamps that differ from the simulated time by more are those of another clock [s]."""
@@ -107,33 +107,21 @@ def checked_goal(
             f"the trajectory ends at t={stamp + times[-1]:.3f} s, and it is t={now:.3f} s",
             Code.OLD_HEADER_TIMESTAMP,
         )
+    path = _bounds(content.get("path_tolerance", ()), joints, defaults.trajectory)
+    goal = _bounds(content.get("goal_tolerance", ()), joints, defaults.goal)
     limit = float(content.get("goal_time", 0.0)) or defaults.goal_time
-    return TrajectoryGoal(
-        times,
-        motion,
-        stamp,
-        _bounds(content.get("path_tolerance", ()), joints, defaults.trajectory),
-        _bounds(content.get("goal_tolerance", ()), joints, defaults.goal),
-        np.inf if limit < 0 else limit,
-    )
+    return TrajectoryGoal(times, motion, stamp, path, goal, np.inf if limit < 0 else limit)
 
 
 def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
     """Columns of the message for the controller's joints."""
     unknown = [_quoted(name) for name in given if name not in names]
-    missing = [name for name in names if name not in given]
-    reason = ""
-    if not given:
-        reason = "the trajectory names no joints"
-    elif unknown:
-        said = ", ".join(unknown[:6])
-        reason = f"this controller has no joint {said}; it has {', '.join(names)}"
-    elif len(set(given)) < len(given):
-        reason = "the trajectory names a joint twice"
-    elif missing:
-        reason = f"the trajectory lacks {', '.join(map(repr, missing))}"
-    if reason:
-        raise GoalRefused(reason, Code.INVALID_JOINTS)
+    if unknown:
+        said = f"this controller has no joint {', '.join(unknown[:MOST_NAMES])}; it has"
+        raise GoalRefused(f"{said} {', '.join(names)}", Code.INVALID_JOINTS)
+    if sorted(given) != sorted(names):
+        said = f"the trajectory names {', '.join(given[:MOST_NAMES]) or 'no joints'}; it must name"
+        raise GoalRefused(f"{said} each of {', '.join(names)} once", Code.INVALID_JOINTS)
     return [list(given).index(name) for name in names]
 
 
@@ -142,15 +130,12 @@ def _quoted(name: str) -> str:
 
 
 def _check_times(times: FloatArray) -> None:
-    falls = ~(np.diff(times) > 0)
+    falls = ~(np.diff(times, prepend=-1e-9) > 0)
     if falls.any():
         place = int(np.argmax(falls))
-        raise GoalRefused(
-            f"time_from_start must rise: point {place + 1} is at {times[place + 1]:.6g} s, the one"
-            f" before at {times[place]:.6g} s"
-        )
-    if times[0] < 0:
-        raise GoalRefused(f"the first point is at {times[0]:.6g} s, before 0")
+        before = f", after {times[place - 1]:.6g} s" if place else ""
+        said = f"point {place} is at {times[place]:.6g} s{before}"
+        raise GoalRefused(f"time_from_start must rise from 0 on; {said}")
 
 
 def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray:

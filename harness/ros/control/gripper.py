@@ -2,36 +2,41 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.messages import message
-from harness.robot.description import RobotDescription
 from harness.ros.control.controller import Outcome, Rows, Window
 from harness.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.ros.interfaces import GRIPPER
-from harness.simulation.gripper_drive import GOAL_TOLERANCE, STALL_SPEED, STALL_TIME, joint_speed
-from harness.simulation.set_points import ramp
+from harness.simulation.gripper_drive import (
+    GOAL_TOLERANCE,
+    STALL_SPEED,
+    STALL_TIME,
+    gripper_ramp,
+    joint_speed,
+)
+
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 
 class GripperMotion:
     """Moves the gripper's joint as the step `gripper` does, independent of the arm."""
 
-    def __init__(
-        self,
-        description: RobotDescription,
-        timestep: float,
-        command: CommandRecord,
-        start: Rows,
-        measured: FloatArray,
-    ) -> None:
+    def __init__(self, servos: MujocoSimulator, command: CommandRecord, commanded: float) -> None:
         """Plan the motion to `position` under `max_effort`, 0 for the gripper's own.
+
+        Args:
+            commanded: The last set point of the joint.
 
         Raises:
             GoalRefused: A number is not finite, or beyond the joint's limits.
         """
-        gripper = description.gripper
+        description, gripper = servos.description, servos.description.gripper
         assert gripper is not None
         target, effort = (float(command.content[key]) for key in ("position", "max_effort"))
         if not np.isfinite([target, effort]).all() or effort < 0:
@@ -46,12 +51,10 @@ class GripperMotion:
         self.goal, self.effort = command.goal, min(effort, gripper.max_effort)
         self._speed = joint_speed(description, gripper)
         self._range = abs(gripper.closed_position - gripper.open_position)
-        here, commanded = float(measured[0]), float(start[0, -1, 0])
-        turns_back = (target - here) * (commanded - here) < 0
-        first = here if turns_back else commanded
-        points = ramp(first, target, self._speed, joint.acceleration, timestep)
+        self._target, self._timestep, self._begin = target, servos.timestep, command.time
+        here = float(servos.joint_positions()[description.joint_index[joint.name]])
+        points = gripper_ramp(description, here, commanded, target, servos.timestep)
         self._rows: Rows = np.array([points.positions, points.velocities, points.accelerations])
-        self._target, self._timestep, self._begin = target, timestep, command.time
         self._recent: list[float] = []
 
     def at(self, times: FloatArray) -> Rows:
@@ -72,11 +75,16 @@ class GripperMotion:
         hold = np.array([self._target])
         return self._ended(window, hold, stalled=not is_near, reached_goal=is_near)
 
+    def feedback(self, window: Window) -> Any:
+        return self._message("Feedback", window)
+
     def interrupted(self, code: Code, reason: str, window: Window) -> Outcome:
         del code, reason  # its result has no fields for them
         return self._ended(window, None)
 
     def _ended(self, window: Window, hold: FloatArray | None, **said: bool) -> Outcome:
+        return Outcome(self.goal, any(said.values()), self._message("Result", window, **said), hold)
+
+    def _message(self, part: str, window: Window, **said: bool) -> Any:
         position, effort = float(window.measured[0, -1, 0]), float(window.efforts[0])
-        result = message(f"{GRIPPER}_Result", position=position, effort=effort, **said)
-        return Outcome(self.goal, any(said.values()), result, hold)
+        return message(f"{GRIPPER}_{part}", position=position, effort=effort, **said)

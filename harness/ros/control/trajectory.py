@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import factorial, perm
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -15,7 +16,7 @@ from harness.reporting.rosbag.messages import message
 from harness.robot.description import Joint, TrackingTolerances
 from harness.ros.control.controller import Outcome, Rows, Window
 from harness.ros.control.goals import Code, TrajectoryGoal, checked_goal
-from harness.ros.interfaces import FOLLOW
+from harness.ros.interfaces import FOLLOW, POINT, header
 
 TIME_SLACK = 1e-9
 
@@ -68,18 +69,13 @@ def _hermite(times: FloatArray, motion: Sequence[FloatArray]) -> PPoly:
 
 
 def start_trajectory(
-    joints: Sequence[Joint],
-    defaults: TrackingTolerances,
-    command: CommandRecord,
-    start: Rows,
-    measured: FloatArray,
+    joints: Sequence[Joint], defaults: TrackingTolerances, command: CommandRecord, start: Rows
 ) -> TrajectoryMotion:
-    """The motion of a trajectory from the last set point on.
+    """The motion of a trajectory from the last set point on, shape (3, 1, dof).
 
     Raises:
         GoalRefused: It cannot be followed.
     """
-    del measured
     goal = checked_goal(command, joints, defaults)
     return TrajectoryMotion(command.goal, joints, goal, _spline(goal, command.time, start))
 
@@ -122,6 +118,21 @@ class TrajectoryMotion:
             return None
         said = f"goal tolerance: {missed[1]} {now - end:.3f} s after the end"
         return self._ended(Code.GOAL_TOLERANCE_VIOLATED, said, last)
+
+    def feedback(self, window: Window) -> Any:
+        def point(motion: FloatArray) -> Any:
+            positions, velocities = np.ascontiguousarray(motion)
+            return message(POINT, positions=positions, velocities=velocities)
+
+        desired, actual = window.desired[:2, -1], window.measured[:, -1]
+        return message(
+            f"{FOLLOW}_Feedback",
+            header=header(float(window.times[-1])),
+            joint_names=[joint.name for joint in self.joints],
+            desired=point(desired),
+            actual=point(actual),
+            error=point(desired - actual),
+        )
 
     def interrupted(self, code: Code, reason: str, window: Window) -> Outcome:
         del window

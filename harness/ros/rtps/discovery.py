@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
@@ -81,16 +82,14 @@ class Endpoint:
         """Its announcement."""
         reliability = struct.pack("<IiI", 2 if self.qos.is_reliable else 1, 0, 429496730)
         return _HEAD + wire.parameters(
-            [
-                (wire.PID_ENDPOINT, self.guid),
-                (wire.PID_PARTICIPANT, self.guid[:12] + wire.PARTICIPANT),
-                *_VERSION,
-                (wire.PID_KEY_HASH, self.guid),
-                (wire.PID_TOPIC, wire.text(self.topic)),
-                (wire.PID_TYPE, wire.text(self.type_name)),
-                (wire.PID_RELIABILITY, reliability),
-                (wire.PID_DURABILITY, struct.pack("<I", int(self.qos.is_latched))),
-            ]
+            *_VERSION,
+            (wire.PID_ENDPOINT, self.guid),
+            (wire.PID_PARTICIPANT, self.guid[:12] + wire.PARTICIPANT),
+            (wire.PID_KEY_HASH, self.guid),
+            (wire.PID_TOPIC, wire.text(self.topic)),
+            (wire.PID_TYPE, wire.text(self.type_name)),
+            (wire.PID_RELIABILITY, reliability),
+            (wire.PID_DURABILITY, struct.pack("<I", int(self.qos.is_latched))),
         )
 
 
@@ -112,7 +111,7 @@ class Peer:
     meta: Address
     user: Address
     lease: float
-    seen: float = 0.0
+    seen: float = field(default_factory=time.monotonic)
     knows_us: bool = False
     endpoints: dict[bytes, Endpoint] = field(default_factory=dict[bytes, Endpoint])
 
@@ -129,29 +128,27 @@ class Peer:
 
 
 def announcement(guid: bytes, domain: int, name: str, addresses: Sequence[Address]) -> bytes:
-    """The announcement of this participant."""
+    """The submessage with which a participant announces itself."""
     locators = [wire.locator(each) for each in addresses]
-    return _HEAD + wire.parameters(
-        [
-            *_VERSION,
-            (wire.PID_PARTICIPANT, guid),
-            (wire.PID_DOMAIN, struct.pack("<I", domain)),
-            *((wire.PID_META_UNICAST, each) for each in locators),
-            *((wire.PID_DEFAULT_UNICAST, each) for each in locators),
-            (wire.PID_LEASE, struct.pack("<iI", int(LEASE), 0)),
-            (wire.PID_BUILTIN, struct.pack("<I", BUILTIN)),
-            (wire.PID_NAME, wire.text(name)),
-            (wire.PID_USER_DATA, struct.pack("<I", 10) + b"enclave=/;"),
-        ]
+    payload = _HEAD + wire.parameters(
+        *_VERSION,
+        (wire.PID_PARTICIPANT, guid),
+        (wire.PID_DOMAIN, struct.pack("<I", domain)),
+        *((wire.PID_META_UNICAST, each) for each in locators),
+        *((wire.PID_DEFAULT_UNICAST, each) for each in locators),
+        (wire.PID_LEASE, struct.pack("<iI", int(LEASE), 0)),
+        (wire.PID_BUILTIN, struct.pack("<I", BUILTIN)),
+        (wire.PID_NAME, wire.text(name)),
+        (wire.PID_USER_DATA, struct.pack("<I", 10) + b"enclave=/;"),
     )
+    return wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload)
 
 
 def farewell(guid: bytes) -> bytes:
     """The submessage with which a participant leaves."""
-    status = (wire.PID_STATUS, struct.pack(">I", 3))
-    body = struct.pack("<HH", 0, 16) + wire.NO_ENTITY + wire.SPDP_WRITER
-    body += wire.sequence_number(2) + wire.parameters([(wire.PID_KEY_HASH, guid), status])
-    return wire.submessage(wire.DATA, body, 0x02)
+    status = wire.PID_STATUS, struct.pack(">I", 3)
+    inline = wire.parameters((wire.PID_KEY_HASH, guid), status)
+    return wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 2, b"", inline)
 
 
 def is_gone(inline: dict[int, bytes]) -> bool:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
 from harness.reporting.rosbag.messages import message
 from harness.ros.graph import DEFAULT, LATCHED, Client, OnMessage, Publisher, Qos, Reply, Use
-from harness.ros.interfaces import CANCEL, decoded, encoded, prepare
+from harness.ros.interfaces import decoded, encoded, prepare
 from harness.ros.rtps import wire
 from harness.ros.rtps.discovery import Endpoint
 from harness.ros.rtps.participant import Participant
@@ -30,7 +30,6 @@ GID = 16
 
 def dds_type(kind: str) -> str:
     """`std_msgs/msg/String` as `std_msgs::msg::dds_::String_`."""
-    kind = kind.replace(CANCEL, "action_msgs/srv/CancelGoal")
     package, folder, name = kind.split("/")
     return f"{package}::{folder}::dds_::{name}_"
 
@@ -41,6 +40,7 @@ class RtpsGraph:
     def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
         """Join a domain, as `open_graph` says."""
         self.participant = Participant(domain, name=node, is_local=is_local)
+        self.spin, self.close = self.participant.spin, self.participant.close
         self._node = node
         self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED)
         self._introduce()
@@ -55,10 +55,9 @@ class RtpsGraph:
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
         writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE)
 
-        def take(request: Any, sample: Sample) -> None:
+        def take(request: Any, identity: bytes) -> None:
             def answer(response: Any) -> None:
-                framed = _framed(encoded(response, f"{kind}_Response"), _request(sample))
-                writer.write(*framed, target=sample.writer[:12])
+                writer.write(*_framed(encoded(response, f"{kind}_Response"), identity))
 
             on_request(request, answer)
 
@@ -67,8 +66,8 @@ class RtpsGraph:
     def client(self, name: str, kind: str) -> Client:
         waiting: dict[bytes, OnMessage] = {}
 
-        def take(response: Any, sample: Sample) -> None:
-            waiting.pop(_answered_request(sample), lambda _: None)(response)
+        def take(response: Any, identity: bytes) -> None:
+            waiting.pop(identity, lambda _: None)(response)
 
         def call(request: Any, on_response: OnMessage) -> None:
             number, guid = writer.last + 1, reader.endpoint.guid
@@ -83,13 +82,8 @@ class RtpsGraph:
         return Client(lambda: bool(writer.matched and reader.matched), call)
 
     def uses(self) -> tuple[list[Use], list[Use]]:
-        return _uses(self.participant.own_endpoints()), _uses(self.participant.known_endpoints())
-
-    def spin(self, until: float) -> None:
-        self.participant.spin(until)
-
-    def close(self) -> None:
-        self.participant.close()
+        own, others = self.participant.own_endpoints(), self.participant.known_endpoints()
+        return [*_uses(own)], [*_uses(others)]
 
     def _writer(self, topic: str, kind: str, qos: Qos) -> Writer:
         prepare(kind)
@@ -98,12 +92,13 @@ class RtpsGraph:
         return made
 
     def _reader(
-        self, topic: str, kind: str, take: Callable[[Any, Sample], object], qos: Qos = SERVICE
+        self, topic: str, kind: str, take: Callable[[Any, bytes], object], qos: Qos = SERVICE
     ) -> Reader:
         def deliver(sample: Sample) -> None:
-            content = decoded(_message_of(sample, topic), kind)
+            payload, identity = _unframed(sample, topic)
+            content = decoded(payload, kind)
             if content is not None:
-                take(content, sample)
+                take(content, identity)
 
         prepare(kind)
         made = self.participant.reader(topic, dds_type(kind), qos, deliver)
@@ -129,53 +124,33 @@ class RtpsGraph:
         self._discovery.write(encoded(info, INFO))
 
 
-def _uses(endpoints: Iterable[Endpoint]) -> list[Use]:
+def _uses(endpoints: Iterable[Endpoint]) -> Iterator[Use]:
     """What endpoints are in ROS; services are left out."""
-    return [
-        Use(
-            each.topic[2:],
-            each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_"),
-            each.is_writer,
-            each.qos,
-        )
-        for each in endpoints
-        if each.topic.startswith("rt/")
-    ]
-
-
-# -- what identifies a request: a reader and a number in 24 bytes, or 16 bytes of Cyclone DDS -----
+    for each in endpoints:
+        if each.topic.startswith("rt/"):
+            kind = each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_")
+            yield Use(each.topic[2:], kind, each.is_writer, each.qos)
 
 
 def _framed(payload: bytes, identity: bytes) -> tuple[bytes, bytes]:
-    """The payload and the inline parameters of a request or a response."""
+    """The payload and the inline parameters of a request or a response.
+
+    What identifies a request is its reader and its number in 24 bytes, or 16 bytes of Cyclone DDS.
+    """
     if len(identity) == CYCLONE_IDENTITY:
         return payload[:4] + identity + payload[4:], b""
     keys = wire.PID_RELATED, wire.PID_RELATED_OLD
-    return payload, wire.parameters([(key, identity) for key in keys])
+    return payload, wire.parameters(*((key, identity) for key in keys))
 
 
-def _message_of(sample: Sample, topic: str) -> bytes:
-    """The serialised message alone."""
-    is_framed = sample.writer.startswith(CYCLONE) and not topic.startswith("rt")
-    return sample.payload[:4] + sample.payload[20:] if is_framed else sample.payload
-
-
-def _request(sample: Sample) -> bytes:
-    """The identity of a request."""
+def _unframed(sample: Sample, topic: str) -> tuple[bytes, bytes]:
+    """The serialised message, and the identity of the request that it is or answers."""
+    if topic.startswith("rt"):
+        return sample.payload, b""
     if sample.writer.startswith(CYCLONE):
-        return sample.payload[4:20]
-    return (_related(sample)[:16] or sample.writer) + wire.sequence_number(sample.number)
-
-
-def _answered_request(sample: Sample) -> bytes:
-    """The identity of the request that a response answers."""
-    return sample.payload[4:20] if sample.writer.startswith(CYCLONE) else _related(sample)
-
-
-def _related(sample: Sample) -> bytes:
-    """The reader and the number that a sample names; empty where it names none."""
-    for key in (wire.PID_RELATED, wire.PID_RELATED_OLD):
-        related = sample.inline.get(key, b"")
-        if len(related) >= 24 and any(related[:12]):
-            return related[:24]
-    return b""
+        return sample.payload[:4] + sample.payload[20:], sample.payload[4:20]
+    named = (sample.inline.get(key, b"")[:24] for key in (wire.PID_RELATED, wire.PID_RELATED_OLD))
+    related = next((each for each in named if len(each) == 24 and any(each[:12])), b"")
+    if topic.startswith("rq"):
+        related = (related[:16] or sample.writer) + wire.sequence_number(sample.number)
+    return sample.payload, related

@@ -41,10 +41,11 @@ class Participant:
         Raises:
             NetworkError: It has no free port.
         """
-        self.domain, self.name = domain, name
+        self.domain = domain
         self.prefix = wire.VENDOR + os.urandom(10)
         self.guid = self.prefix + wire.PARTICIPANT
         self._sockets = Sockets(domain, is_local=is_local)
+        self._announcement = announcement(self.guid, domain, name, self._sockets.unicast)
         self._peers: dict[bytes, Peer] = {}
         self._writers: dict[bytes, Writer] = {}
         self._readers: dict[bytes, Reader] = {}
@@ -55,8 +56,6 @@ class Participant:
             written, read = (Endpoint(self.prefix + e, "", "", builtin) for e in (writer, reader))
             self._writers[writer] = Writer(written, self._send)
             self._readers[reader] = Reader(read, self._send, self._take_endpoint)
-
-    # -- endpoints ----------------------------------------------------------------------------
 
     def writer(self, topic: str, type_name: str, qos: Qos) -> Writer:
         """A writer of a topic, known to the peers from now on."""
@@ -82,8 +81,6 @@ class Participant:
     def known_endpoints(self) -> list[Endpoint]:
         """The writers and readers of all peers."""
         return [each for peer in self._peers.values() for each in peer.endpoints.values()]
-
-    # -- time ---------------------------------------------------------------------------------
 
     def spin(self, until: float) -> None:
         """Receive, answer and announce until a moment of `time.monotonic`; at least once."""
@@ -116,8 +113,6 @@ class Participant:
                     self._forget(prefix)
             known = {peer.meta for peer in self._peers.values()}
             self._announce(*(self._sockets.announced | known))
-
-    # -- messages -----------------------------------------------------------------------------
 
     def _send(self, prefix: bytes, content: bytes, address: Address) -> None:
         target = wire.submessage(wire.INFO_DST, prefix) if prefix else b""
@@ -156,9 +151,8 @@ class Participant:
                 reader.gap(source + second, message.number(8), *message.numbers(16))
         elif message.kind == wire.ACKNACK and second in self._writers:
             self._writers[second].acknowledge(source + first, *message.numbers(8))
-        elif message.kind == wire.NACK_FRAG and second in self._writers:
-            number, places = message.number(8), message.fragments(16)
-            self._writers[second].resend_fragments(source + first, number, places)
+        elif message.kind == wire.NACK_FRAG and second in self._writers:  # it lacks fragments of it
+            self._writers[second].acknowledge(source + first, 0, [message.number(8)])
 
     def _take_sample(self, source: bytes, sample: Sample) -> None:
         if sample.writer[12:] == wire.SPDP_WRITER:
@@ -174,13 +168,9 @@ class Participant:
             return (self._readers[entity],) if entity in self._readers else ()
         return [reader for reader in self._readers.values() if writer in reader.matched]
 
-    # -- discovery ----------------------------------------------------------------------------
-
     def _announce(self, *addresses: Address) -> None:
-        payload = announcement(self.guid, self.domain, self.name, self._sockets.unicast)
-        sample = wire.data(wire.NO_ENTITY, wire.SPDP_WRITER, 1, payload)
         for address in addresses:
-            self._send(b"", sample, address)
+            self._send(b"", self._announcement, address)
 
     def _endpoint(self, kind: int, topic: str, type_name: str, qos: Qos) -> Endpoint:
         entity = (len(self._writers) + len(self._readers)).to_bytes(3, "big") + bytes([kind])
@@ -199,12 +189,9 @@ class Participant:
         known = Peer.parsed(sample.payload, self._sockets.reachable)
         if known is None or known.domain not in (None, self.domain):
             return
-        is_new = source not in self._peers
         peer = self._peers.setdefault(source, known)
-        peer.lease, peer.seen = known.lease, time.monotonic()
         if not peer.knows_us:  # it may not have listened yet when the last announcement came
             self._announce(peer.meta)
-        if is_new:
             latched = Qos(is_latched=True)
             for writer, reader in DISCOVERY_PAIRS:
                 self._writers[writer].match(Endpoint(source + reader, "", "", latched), peer.meta)

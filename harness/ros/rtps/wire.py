@@ -59,19 +59,10 @@ class Submessage:
 
     def numbers(self, place: int) -> tuple[int, list[int]]:
         """The base and the members of the set of sequence numbers at a place."""
-        base = self.number(place)
-        return base, [base + each for each in self._members(place + 8)]
-
-    def fragments(self, place: int) -> list[int]:
-        """The members of the set of fragment numbers at a place."""
-        (base,) = self.unpack("I", place)
-        return [base + each for each in self._members(place + 4)]
-
-    def _members(self, place: int) -> list[int]:
-        bits = min(self.unpack("I", place)[0], MOST_BITS)
-        words = self.unpack(f"{-(-bits // 32)}I", place + 4)
+        base, bits = self.number(place), min(self.unpack("I", place + 8)[0], MOST_BITS)
+        words = self.unpack(f"{-(-bits // 32)}I", place + 12)
         marks = "".join(f"{word:032b}" for word in words)
-        return [bit for bit in range(bits) if marks[bit] == "1"]
+        return base, [base + bit for bit in range(bits) if marks[bit] == "1"]
 
 
 @dataclass(frozen=True)
@@ -135,7 +126,7 @@ def number_set(base: int, numbers: Sequence[int]) -> bytes:
     return sequence_number(base) + struct.pack(f"<I{len(words)}I", bits, *words)
 
 
-def parameters(values: Sequence[tuple[int, bytes]]) -> bytes:
+def parameters(*values: tuple[int, bytes]) -> bytes:
     """A parameter list, each value padded to four bytes."""
     made = b""
     for key, value in values:
@@ -187,8 +178,8 @@ def address_of(value: bytes) -> Address | None:
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes, inline: bytes = b"") -> bytes:
-    """A whole sample."""
-    flags = 0x04 | (0x02 if inline else 0)
+    """A whole sample; one without a payload is the end of what its parameters name."""
+    flags = (0x04 if payload else 0) | (0x02 if inline else 0)
     head = struct.pack("<HH", 0, 16) + reader + writer + sequence_number(number)
     return submessage(DATA, head + inline + payload, flags)
 

@@ -27,12 +27,11 @@ class _Reader:
 
 @dataclass(frozen=True)
 class _Kept:
-    """A sample of the history; `target` is the prefix of its participant, empty for all."""
+    """A sample of the history."""
 
     number: int
     payload: bytes
     inline: bytes
-    target: bytes
 
 
 class Writer:
@@ -49,17 +48,13 @@ class Writer:
         self.last = self._count = 0
         self._history: deque[_Kept] = deque(maxlen=endpoint.qos.depth)
 
-    def write(self, payload: bytes, inline: bytes = b"", target: bytes = b"") -> None:
-        """Write a sample for all participants or for one of them."""
+    def write(self, payload: bytes, inline: bytes = b"") -> None:
+        """Write a sample, once for all readers of a participant."""
         self.last += 1
-        kept = _Kept(self.last, _padded(payload), inline, target)
+        kept = _Kept(self.last, _padded(payload), inline)
         self._history.append(kept)
         for prefix, proxy in {guid[:12]: proxy for guid, proxy in self.matched.items()}.items():
-            everyone = prefix + wire.NO_ENTITY
-            if prefix.startswith(target):
-                self._send_sample(everyone, proxy, kept, heartbeat=proxy.is_reliable)
-            else:
-                self._send_gap(everyone, proxy, [self.last])
+            self._send_sample(prefix + wire.NO_ENTITY, proxy, kept, heartbeat=proxy.is_reliable)
 
     def match(self, other: Endpoint, address: Address) -> None:
         """Serve a reader from now on, with the kept samples where it requests them."""
@@ -82,11 +77,7 @@ class Writer:
         if proxy is None:
             return
         proxy.acknowledged = max(proxy.acknowledged, min(base - 1, self.last))
-        kept = {
-            each.number: each
-            for each in self._history
-            if each.number >= proxy.first and guid.startswith(each.target)
-        }
+        kept = {each.number: each for each in self._history if each.number >= proxy.first}
         for number in sorted(kept.keys() & missing):
             self._send_sample(guid, proxy, kept[number], heartbeat=False)
         lost = [number for number in missing if number not in kept and number <= self.last]
@@ -94,15 +85,6 @@ class Writer:
             self._send_gap(guid, proxy, lost)
         if missing or base <= self.last:
             self._send(guid[:12], self._heartbeat(guid, proxy), proxy.address)
-
-    def resend_fragments(self, guid: bytes, number: int, places: list[int]) -> None:
-        """Send fragments that a reader lacks."""
-        proxy = self.matched.get(guid)
-        for kept in self._history:
-            if proxy is not None and kept.number == number:
-                parts = dict(enumerate(self._parts(guid, kept), 1))
-                for place in sorted(parts.keys() & places):
-                    self._send(guid[:12], parts[place], proxy.address)
 
     def remind(self) -> None:
         """Send a heartbeat to every reader that has not acknowledged everything."""
@@ -115,14 +97,12 @@ class Writer:
         return self._history[0].number if self._history else self.last + 1
 
     def _send_sample(self, guid: bytes, proxy: _Reader, kept: _Kept, *, heartbeat: bool) -> None:
-        *parts, end = self._parts(guid, kept)
+        whole = guid[12:], self._entity, kept.number, kept.payload, kept.inline
+        *parts, end = wire.fragments(*whole)
         for part in parts:
             self._send(guid[:12], part, proxy.address)
         after = self._heartbeat(guid, proxy) if heartbeat else b""
         self._send(guid[:12], end + after, proxy.address)
-
-    def _parts(self, guid: bytes, kept: _Kept) -> list[bytes]:
-        return wire.fragments(guid[12:], self._entity, kept.number, kept.payload, kept.inline)
 
     def _heartbeat(self, guid: bytes, proxy: _Reader) -> bytes:
         self._count += 1
