@@ -13,7 +13,7 @@ import pinocchio as pin
 from harness.core.details import Details
 from harness.core.quantity import distinct
 from harness.core.types import FloatArray
-from harness.planning.collision.collision_model import Payload
+from harness.planning.collision.collision_model import SceneObject
 from harness.planning.model.robot_model import GroupSpace, pin_from_se3
 from harness.recording.motion_failures import OverloadFailure, TrajectoryFailure
 
@@ -32,10 +32,10 @@ class InverseDynamics:
     limits: FloatArray
     _space: GroupSpace
     _model: pin.Model
-    payloads: tuple[Payload, ...] = ()
+    payloads: tuple[SceneObject, ...] = ()
 
     @classmethod
-    def of(cls, space: GroupSpace, payloads: Sequence[Payload]) -> InverseDynamics | None:
+    def of(cls, space: GroupSpace, payloads: Sequence[SceneObject]) -> InverseDynamics | None:
         """Create the inverse dynamics; None when no joint of the group has an effort limit."""
         description = space.robot.description
         limits = np.array([description.joint_by_name[name].effort for name in space.joint_names])
@@ -45,6 +45,7 @@ class InverseDynamics:
         if payloads:
             model = model.copy()
             for payload in payloads:
+                assert payload.link is not None
                 inertia = pin.Inertia(payload.mass, payload.center_of_mass, payload.inertia)
                 placement = space.robot.placement(payload.link) @ payload.pose
                 joint = space.robot.parent_joint(payload.link)

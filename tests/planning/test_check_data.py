@@ -14,11 +14,11 @@ def test_a_check_answers_as_one_that_begins_anew():
     description = load_robot(RobotSpec.model_validate({"model": "ur5e", "gripper": "rh_p12_rn_a"}))
     scene = CoalScene(description)
     model = scene.collision_model()
-    checked, robot, touching = model.shared.geometry_data, model.robot.model, 0
+    checked, robot = model.check_data(model.margins(padding=0.0)), model.robot.model
+    touching = 0
     for row in sample_robot_positions(description, 300, np.random.default_rng(5)):
         configuration = scene.robot.configuration(row)
         anew = model.geometry.createData()
-        model.set_margins([0.0] * len(model.pairs))
         for data in (checked, anew):
             pin.computeCollisions(
                 robot, robot.createData(), model.geometry, data, configuration, False

@@ -13,7 +13,7 @@ from harness.core.user_cache import cache_folder, cached
 from harness.planning.collision import compiled
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
-from harness.planning.collision.convex_tree import shapes_tree
+from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
@@ -267,13 +267,11 @@ def test_states_at_20_micrometres_from_their_margin_are_judged_by_the_distance(s
     nearest = set()
     for _ in range(300):
         state = drawn(space, generator)
-        padded = [
-            touch for touch, pair in cell.scene.distances(space.whole(state)) if pair.keeps_padding
-        ]
+        padded = [touch for touch, padded in cell.scene.distances(space.whole(state)) if padded]
         others = [
             touch.distance
-            for touch, pair in cell.scene.distances(space.whole(state))
-            if not pair.keeps_padding
+            for touch, padded in cell.scene.distances(space.whole(state))
+            if not padded
         ]
         if min(others) < 1e-3 or not 1e-3 < padded[0].distance < 0.05:
             continue
@@ -294,7 +292,7 @@ def test_every_node_of_a_tree_contains_what_is_below_it(collision, tmp_path):
         Shape(Capsule(0.02, 0.1), at(0, 0, 1)),
         Shape(Cylinder(0.05, 0.1), at(0, 1, 0, (1, 2, 0))),
     ]
-    tree = shapes_tree(shapes)
+    tree = RigidShapes(0, tuple(shapes)).tree
     low, high = tree.box().reshape(2, 3)
     for node, (end, _) in enumerate(tree.nodes):
         center, radius = tree.spheres[node, :3], tree.spheres[node, 3]

@@ -41,8 +41,8 @@ def test_touches_are_the_pairs_whose_distance_is_too_small(cell):
         state = cell.with_arm(rng.uniform(-np.pi, np.pi, 6))
         near = {
             (touch.first, touch.second, required): touch.distance
-            for touch, pair in cell.scene.distances(state)
-            if touch.distance <= (required := padding if pair.keeps_padding else 0.0)
+            for touch, keeps_padding in cell.scene.distances(state)
+            if touch.distance <= (required := padding if keeps_padding else 0.0)
         }
         touches = cell.scene.touches(state, padding)
         measured = {(t.first, t.second, t.required): t.distance for t in touches}
@@ -59,7 +59,7 @@ def test_padding_is_kept_from_objects_but_not_between_links(cell, shape):
     gap = 0.03
     high = thing("shelf", at(palm[0], palm[1], palm[2] + 2.0), Shape(shape))
     cell.add(high)
-    top = 2.0 - min(t.distance for t, p in cell.scene.distances(cell.state) if p.second == "shelf")
+    top = 2.0 - min(t.distance for t, _ in cell.scene.distances(cell.state) if t.second == "shelf")
     cell.scene.move_object("shelf", at(palm[0], palm[1], palm[2] + top + gap))
     assert cell.scene.touches(cell.state, gap - 0.002) == ()
     assert all("shelf" in pair for pair in pairs(cell.scene.touches(cell.state, gap + 0.002)))
@@ -72,7 +72,7 @@ def test_a_capsule_is_round_at_its_ends(cell):
     lowest = {}
     for name in ("pill", "can"):
         cell.scene.move_object(name, at(0.0, 0.0, 3.0))
-        found = [t.distance for t, p in cell.scene.distances(cell.state) if p.second == name]
+        found = [t.distance for t, _ in cell.scene.distances(cell.state) if t.second == name]
         lowest[name] = min(found)
         cell.scene.move_object(name, at(5.0, 0.0, 3.0))
     assert lowest["pill"] == pytest.approx(lowest["can"] - 0.1, abs=0.03)

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio as pin
@@ -15,7 +15,7 @@ from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.compiled import Certify
-from harness.planning.collision.convex_tree import ConvexTree, concatenate
+from harness.planning.collision.convex_tree import ConvexTree
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
 
@@ -86,28 +86,30 @@ class MotionArrays:
         self.table[row, 1 : 1 + array.ndim] = array.shape
 
 
-def motion_arrays(
-    model: CollisionModel, space: GroupSpace, margins: Mapping[tuple[str, str], float]
-) -> MotionArrays:
-    """Create the arrays of a scene for a group's motions; pairs that move together are left out."""
+def motion_arrays(model: CollisionModel, space: GroupSpace, margins: FloatArray) -> MotionArrays:
+    """Create the arrays of a scene for a group's motions; pairs that move together are left out.
+
+    Args:
+        margins: The margin of each of the model's pairs [m], shape (K,).
+    """
     moving = MovingJoints(space)
-    layout = _layout(model, moving)
-    margin = np.array([margins[pair.first, pair.second] for pair in model.pairs])[layout.pairs]
+    layout = _layout(model, tuple(moving.above), tuple(moving.parent.tolist()))
+    margin = margins[layout.pairs]
     free = np.maximum(margin, 0.0) + ROUNDING
     blocked = np.where(margin >= 0, margin - ROUNDING, -np.inf)
-    tree = layout.tree
+    tree = model.tree
     arrays = (
         *(moving.parent, moving.chain, moving.body_poses(model.bodies)),
         *(layout.body_rows, layout.boxes),
         *(tree.spheres, tree.nodes, tree.convexes, tree.sizes, tree.points),
         *(tree.edges_at, tree.edges),
         *(np.column_stack([free, blocked]), layout.checks, layout.keys, layout.joints),
-        *_working_memory(layout, len(moving.columns)),
+        *_working_memory(layout, tree, len(moving.columns)),
     )
     return MotionArrays(space.offset[moving.columns], space.matrix[moving.columns], arrays)
 
 
-def _working_memory(layout: _Layout, width: int) -> Arrays:
+def _working_memory(layout: _Layout, tree: ConvexTree, width: int) -> Arrays:
     """The memory of the compiled check that does not depend on the length of a motion."""
     bodies, pairs, keys = len(layout.body_rows), len(layout.checks), len(layout.keys)
     floats = ((width,), (width,), (width, 12), (bodies, 12), (bodies, 3), (keys, 2, 9))
@@ -117,7 +119,7 @@ def _working_memory(layout: _Layout, width: int) -> Arrays:
         np.empty((SCRATCH, 13)),
         np.empty(bodies, dtype=np.int64),
         np.empty(keys, dtype=np.int64),
-        layout.tree.convexes[:, 0].copy(),
+        tree.convexes[:, 0].copy(),
         np.empty((MOST_WAITING, 2), dtype=np.int64),
         np.arange(max(MOST_LEFT, 2 * pairs)),
     )
@@ -174,23 +176,14 @@ class MovingJoints:
     def body_poses(self, bodies: tuple[Body, ...]) -> FloatArray:
         """Poses of bodies relative to the moving joints that carry them, shape (B, 12)."""
         joints = [body.rigid.joint for body in bodies]
-        rows = [_flat(self._seen(self.above[joint], joint)) for joint in joints]
-        return np.array(rows).reshape(-1, 12)
-
-    def path(self, joint: int) -> list[int]:
-        """Moving joints from one to the base, tip first."""
-        found = []
-        while joint >= 0:
-            found.append(joint)
-            joint = int(self.parent[joint])
-        return found
+        poses = {joint: _flat(self._seen(self.above[joint], joint)) for joint in {*joints}}
+        return np.array([poses[joint] for joint in joints]).reshape(-1, 12)
 
 
 class _Layout:
     """The pairs of a scene as indices of bodies and keys.
 
     Attributes:
-        tree: The trees of all bodies.
         body_rows: The joint that carries each body, and its root in the tree, shape (B, 2).
         boxes: The lower and upper corner of each body's bounding box, shape (B, 6).
         keys: The joints that move two bodies relative to each other, as ranges of `joints`.
@@ -199,75 +192,60 @@ class _Layout:
         pairs: The index of each of them in the scene, shape (K,).
     """
 
-    def __init__(self, model: CollisionModel, moving: MovingJoints) -> None:
-        self._paths = {carrier: moving.path(carrier) for carrier in (-1, *moving.above)}
-        self._index = {body.name: number for number, body in enumerate(model.bodies)}
-        self._carrier = [moving.above[body.rigid.joint] for body in model.bodies]
-        self._has_plane = [
-            any(isinstance(shape.geometry, Plane) for shape in body.rigid.shapes)
-            for body in model.bodies
-        ]
-        self._key_of: dict[tuple[int, int], int] = {}
-        keys: list[tuple[int, ...]] = []
-        joints: list[int] = []
-        checks: list[tuple[int, int, int]] = []
-        pairs: list[int] = []
-        for number, pair in enumerate(model.pairs):
-            first, second = self._index[pair.first], self._index[pair.second]
-            if self._carrier[first] == self._carrier[second]:
-                continue
-            if self._has_plane[first]:
-                first, second = second, first
-            checks.append((first, second, self._key(first, second, keys, joints)))
-            pairs.append(number)
-        self.tree, roots, self.boxes = _trees(model)
-        self.body_rows: IntArray = np.column_stack([self._carrier, roots]).astype(np.int64)
-        self.keys: IntArray = np.array(keys, dtype=np.int64).reshape(-1, 6)
-        self.joints: IntArray = np.array(joints or [0], dtype=np.int64)
-        self.checks: IntArray = np.array(checks, dtype=np.int64).reshape(-1, 3)
-        self.pairs: IntArray = np.array(pairs, dtype=np.int64)
-
-    def _key(self, body: int, other: int, keys: list[tuple[int, ...]], joints: list[int]) -> int:
-        """The joints that move a body and another one relative to each other."""
-        carriers = self._carrier[body], self._carrier[other]
-        name = (body, -1) if carriers[1] < 0 else (-1, other) if carriers[0] < 0 else (body, other)
-        if name not in self._key_of:
-            first, second = (self._paths[carrier] for carrier in carriers)
-            near = [joint for joint in first if joint not in second]
-            far = [joint for joint in second if joint not in first]
-            start = len(joints)
-            joints += near + far
-            middle, end = start + len(near), start + len(near) + len(far)
-            self._key_of[name] = len(keys)
-            keys.append((body if near else -1, other if far else -1, start, middle, middle, end))
-        return self._key_of[name]
+    def __init__(
+        self, model: CollisionModel, above: tuple[int, ...], parent: tuple[int, ...]
+    ) -> None:
+        carriers = [above[body.rigid.joint] for body in model.bodies]
+        carrier = np.array(carriers, dtype=np.int64)
+        has_plane = np.array([_has_plane(body) for body in model.bodies], dtype=bool)
+        first, second = model.pairs.T
+        self.pairs: IntArray = np.flatnonzero(carrier[first] != carrier[second])
+        ends = model.pairs[self.pairs]
+        swapped = has_plane[ends[:, 0]]
+        ends[swapped] = ends[swapped, ::-1]
+        moved = np.where(carrier[ends] < 0, -1, ends)  # what stands still has the key of the other
+        count = len(carriers) + 1
+        numbers, key_of = np.unique((moved + 1) @ [count, 1], return_inverse=True)
+        paths = [_path(each, parent) for each in (*carriers, -1)]
+        self.keys, self.joints = _keys(np.column_stack(np.divmod(numbers, count)) - 1, paths)
+        self.checks: IntArray = np.column_stack([ends, key_of])
+        self.boxes: FloatArray = np.array([body.rigid.box for body in model.bodies])
+        roots = np.cumsum([0, *(len(body.rigid.tree.nodes) for body in model.bodies)])[:-1]
+        self.body_rows: IntArray = np.column_stack([carrier, roots]).astype(np.int64)
 
 
-_tree_cache: WeakKeyDictionary[CollisionModel, tuple[ConvexTree, IntArray, FloatArray]] = (
-    WeakKeyDictionary()
-)
-_layout_cache: WeakKeyDictionary[CollisionModel, dict[tuple[int, ...], _Layout]] = (
-    WeakKeyDictionary()
-)
+def _keys(names: IntArray, paths: Sequence[list[int]]) -> tuple[IntArray, IntArray]:
+    """The joints that move two bodies relative to each other, as in `_Layout`.
+
+    Args:
+        names: The two bodies of each key, -1 for what stands still, shape (R, 2).
+        paths: The joints that move each body, tip first; at the end those of what stands still.
+    """
+    keys: list[tuple[int, ...]] = []
+    joints: list[int] = []
+    for body, other in names.tolist():
+        near = [joint for joint in paths[body] if joint not in paths[other]]
+        far = [joint for joint in paths[other] if joint not in paths[body]]
+        start = len(joints)
+        middle, end = start + len(near), start + len(near) + len(far)
+        joints += near + far
+        keys.append((body if near else -1, other if far else -1, start, middle, middle, end))
+    return np.array(keys, dtype=np.int64).reshape(-1, 6), np.array(joints or [0], dtype=np.int64)
 
 
-def _layout(model: CollisionModel, moving: MovingJoints) -> _Layout:
-    """The cached layout of a scene for one set of moving joints."""
-    layouts = _layout_cache.setdefault(model, {})
-    key = (*moving.above, *moving.parent.tolist())
-    if key not in layouts:
-        layouts[key] = _Layout(model, moving)
-    return layouts[key]
+def _path(joint: int, parent: tuple[int, ...]) -> list[int]:
+    """Moving joints from one to the base, tip first."""
+    return [] if joint < 0 else [joint, *_path(parent[joint], parent)]
 
 
-def _trees(model: CollisionModel) -> tuple[ConvexTree, IntArray, FloatArray]:
-    """The trees of a scene's bodies, one after another, their roots and boxes; cached per scene."""
-    if model not in _tree_cache:
-        trees = [body.rigid.tree for body in model.bodies]
-        roots = np.cumsum([0, *(len(tree.nodes) for tree in trees)])[:-1]
-        boxes = np.array([body.rigid.box for body in model.bodies])
-        _tree_cache[model] = concatenate(trees), roots, boxes
-    return _tree_cache[model]
+def _has_plane(body: Body) -> bool:
+    return any(isinstance(shape.geometry, Plane) for shape in body.rigid.shapes)
+
+
+@lru_cache(maxsize=4)
+def _layout(model: CollisionModel, above: tuple[int, ...], parent: tuple[int, ...]) -> _Layout:
+    """The layout of a scene for a set of moving joints."""
+    return _Layout(model, above, parent)
 
 
 def _joint_motion(joint: Joint, value: float) -> FloatArray:

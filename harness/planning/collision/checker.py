@@ -66,26 +66,19 @@ class MotionChecker:
         self.space = space
         self.padding = padding
         self.checks = 0
-        self._key = object()
         self.lowered: list[LoweredMargin] = []
-        model = self._scene_model
-        self._pairs = model.pairs
-        self._robot = model.robot.model
+        self._robot = self._scene_model.robot.model
         self._data = self._robot.createData()
-        self._geometry = model.geometry
-        self._geometry_data = model.shared.geometry_data
         self._margins = self._choose_margins(start)
 
-    def _choose_margins(self, start: FloatArray) -> dict[tuple[str, str], float]:
-        margins = {
-            (pair.first, pair.second): self.padding if pair.keeps_padding else 0.0
-            for pair in self._pairs
-        }
-        widened = [margin + MARGIN_SLACK for margin in margins.values()]
+    def _choose_margins(self, start: FloatArray) -> FloatArray:
+        margins = self._scene_model.margins(self.padding)
         configuration = self.space.configuration(start)
-        found = self._scene_model.near(configuration, widened)
-        near = [replace(touch, required=0.0) for touch in found]
-        deep = [touch for touch in near if touch.distance < -DEEPEST_START]
+        near = [
+            (index, replace(touch, required=0.0))
+            for index, touch in self._scene_model.near(configuration, margins + MARGIN_SLACK)
+        ]
+        deep = [touch for _, touch in near if touch.distance < -DEEPEST_START]
         if deep:
             raise PlanningFailed(
                 "START_STATE_IN_COLLISION",
@@ -93,16 +86,13 @@ class MotionChecker:
                 + approximation_note(deep, self.scene),
                 CollisionFailure(touch_records(deep)),
             )
-        for touch in near:
+        for index, touch in near:
             lowered = touch.distance - MARGIN_SLACK
             if touch.distance > TOUCHING:
                 lowered = max(lowered, 0.0)
-            margins[touch.first, touch.second] = lowered
+            margins[index] = lowered
             self.lowered.append(LoweredMargin((touch.first, touch.second), touch.distance, lowered))
         return margins
-
-    def _set_margins(self) -> None:
-        self._scene_model.set_margins(list(self._margins.values()), self._key)
 
     def state_free(self, positions: FloatArray) -> bool:
         """Whether every pair keeps its margin at group positions."""
@@ -158,17 +148,15 @@ class MotionChecker:
         return motion_arrays(self._scene_model, self.space, self._margins)
 
     @cached_property
-    def _manager(self) -> Any:
-        """Coal's broad phase with this checker's margins; it holds no reference to its model."""
-        self._set_margins()
-        return pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
-            self._robot, self._geometry, self._geometry_data
-        )
+    def _manager(self) -> tuple[Any, pin.GeometryData]:
+        """Coal's broad phase with this checker's margins, and its data, to which it only refers."""
+        geometry = self._scene_model.geometry
+        data = self._scene_model.check_data(self._margins)
+        manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(self._robot, geometry, data)
+        return manager, data
 
     def _exact(self, positions: FloatArray) -> bool:
-        manager = self._manager
-        if self._scene_model.shared.holder is not self._key:
-            self._set_margins()
+        manager, _ = self._manager
         configuration = self.space.configuration(positions)
         return not pin.computeCollisions(self._robot, self._data, manager, configuration, True)
 
@@ -181,7 +169,7 @@ class MotionChecker:
     def touches(self, positions: FloatArray) -> list[Touch]:
         """Pairs nearer than their margin at group positions, nearest first."""
         configuration = self.space.configuration(positions)
-        return self._scene_model.near(configuration, list(self._margins.values()))
+        return [touch for _, touch in self._scene_model.near(configuration, self._margins)]
 
     def first_block(
         self, first: FloatArray, second: FloatArray, resolution: float

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -14,13 +14,12 @@ import pinocchio as pin
 
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray, IntArray
-from harness.planning.collision.convex_tree import ConvexTree, shapes_tree
+from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.planning.collision.convex_tree import ConvexTree, concatenate
+from harness.planning.collision.near_pairs import PlacedShapes
+from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.model.robot_model import RobotModel, pin_from_se3
 from harness.ports.scene import Touch
-from harness.robot.solids import coal_geometry
-
-_MEASURED = 1e-4  # [m] extra margin within which found pairs are measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +36,7 @@ class SceneObject:
         inertia: The inertia about the centre of mass, object axes, shape (3, 3).
     """
 
+    name: str
     shapes: tuple[Shape, ...]
     pose: SE3
     link: str | None = None
@@ -62,121 +62,20 @@ class SceneState:
 
 
 @dataclass(frozen=True, eq=False)
-class Payload:
-    """What an attached object adds to the link that carries it; as in SceneObject."""
-
-    name: str
-    link: str
-    pose: SE3
-    mass: float
-    center_of_mass: FloatArray
-    inertia: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class RigidShapes:
-    """Shapes that move together; scenes share them as long as they are the same.
-
-    Attributes:
-        joint: Pinocchio's joint they move with; 0 stands still.
-        shapes: The shapes, placed on the joint.
-    """
-
-    joint: int
-    shapes: tuple[Shape, ...]
-
-    def add_to(self, geometry: pin.GeometryModel, name: str) -> range:
-        """Add the shapes to a geometry model; returns their indices there."""
-        start = geometry.ngeoms
-        for number, shape in enumerate(self.shapes):
-            solid, place = coal_geometry(shape), pin_from_se3(shape.pose)
-            added = pin.GeometryObject(f"{name}#{number}", self.joint, place, solid)
-            geometry.addGeometryObject(added)
-        return range(start, geometry.ngeoms)
-
-    @cached_property
-    def tree(self) -> ConvexTree:
-        """Their tree in the frame of the joint."""
-        return shapes_tree(self.shapes)
-
-    @cached_property
-    def box(self) -> FloatArray:
-        """The lower and the upper corner of the box about them in the joint's frame, shape (6,)."""
-        return self.tree.box()
-
-
-def rigid_shapes(
-    robot: RobotModel, link: str | None, pose: SE3, shapes: Sequence[Shape]
-) -> RigidShapes:
-    """Shapes of a body at a pose in a link's frame, or in the world where the link is None."""
-    joint, T_joint_body = 0, pose
-    if link is not None:
-        joint, T_joint_body = robot.parent_joint(link), robot.placement(link) @ pose
-    placed = tuple(replace(shape, pose=T_joint_body @ shape.pose) for shape in shapes)
-    return RigidShapes(joint, placed)
-
-
-@dataclass(frozen=True, eq=False)
 class Body:
     """A link or an object as a set of geometries that move together.
 
     Attributes:
         name: The name of the link or the object.
         rigid: Its shapes, and the joint that moves them.
-        geometries: Indices of the shapes in the geometry model.
         is_link: A link of the robot.
         is_held: Whether this is an attached object.
     """
 
     name: str
     rigid: RigidShapes
-    geometries: range
     is_link: bool
     is_held: bool
-
-
-@dataclass(frozen=True, eq=False)
-class BodyPair:
-    """Two bodies that are checked against each other.
-
-    Attributes:
-        first: Name; the robot's link or the held object where there is one.
-        second: The name of the second body.
-        keeps_padding: Between the robot (or what it holds) and an object of the world that it is
-            not about to grasp.
-        rows: Indices of the geometry model's collision pairs.
-    """
-
-    first: str
-    second: str
-    keeps_padding: bool
-    rows: list[int]
-
-
-def check_data(geometry: pin.GeometryModel) -> pin.GeometryData:
-    """Data for checks of collisions that begin anew at each state.
-
-    From the guess of the state before, Coal overlooks collisions of up to 5 cm.
-    """
-    data = geometry.createData()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        for request in data.collisionRequests:
-            request.enable_cached_gjk_guess = False
-    return data
-
-
-@dataclass(eq=False)
-class SharedData:
-    """Coal's data of a scene, which takes milliseconds to make.
-
-    Attributes:
-        geometry_data: The requests with their margins, and the results of the last check.
-        holder: The user whose margins the requests have.
-    """
-
-    geometry_data: pin.GeometryData
-    holder: object = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,57 +83,101 @@ class CollisionModel:
     """The scene as it is now, ready to be checked; not changed after it was made.
 
     Attributes:
-        rows: The geometries of each of the geometry model's collision pairs, shape (R, 2).
+        pairs: The indices of two bodies that are checked against each other, shape (K, 2); first
+            the robot's link or the held object where there is one.
+        keeps_padding: Whether a pair is the robot (or what it holds) and an object of the world
+            that it is not about to grasp, shape (K,).
     """
 
     robot: RobotModel
-    geometry: pin.GeometryModel
     bodies: tuple[Body, ...]
-    pairs: tuple[BodyPair, ...]
-    rows: IntArray
+    pairs: IntArray
+    keeps_padding: BoolArray
+
+    def names(self, pair: int) -> tuple[str, str]:
+        """The names of the two bodies of a pair."""
+        first, second = self.pairs[pair].tolist()
+        return self.bodies[first].name, self.bodies[second].name
+
+    def margins(self, padding: float) -> FloatArray:
+        """The margin of each pair of bodies without exceptions [m], shape (K,)."""
+        return np.where(self.keeps_padding, padding, 0.0)
 
     @cached_property
-    def shared(self) -> SharedData:
-        """The data that all checkers of this scene share."""
-        return SharedData(check_data(self.geometry))
+    def geometry(self) -> pin.GeometryModel:
+        """The shapes of all bodies, one after another, and their pairs."""
+        geometry = pin.GeometryModel()
+        for body in self.bodies:
+            joint, solids = body.rigid.joint, zip(body.rigid.shapes, body.rigid.solids, strict=True)
+            for number, (shape, solid) in enumerate(solids):
+                name, place = f"{body.name}#{number}", pin_from_se3(shape.pose)
+                geometry.addGeometryObject(pin.GeometryObject(name, joint, place, solid))
+        geometry.setCollisionPairs(self._pair_of_shapes >= 0)
+        return geometry
 
-    def margin_map(self, margins: Sequence[float]) -> FloatArray:
-        """The margins of all pairs of bodies, as Pinocchio takes them for pairs of geometries."""
-        found = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
-        of_row = np.zeros(len(self.rows))
-        for pair, margin in zip(self.pairs, margins, strict=True):
-            of_row[pair.rows] = margin
-        found[self.rows[:, 0], self.rows[:, 1]] = of_row
-        return found
+    @cached_property
+    def rows(self) -> IntArray:
+        """The two shapes of each of the geometry model's collision pairs, shape (R, 2)."""
+        return np.argwhere(self._pair_of_shapes >= 0)
 
-    def set_margins(self, margins: Sequence[float], holder: object = None) -> None:
-        """Let checks of collisions find pairs that are nearer than their margins [m]."""
-        found = self.margin_map(margins)
-        self.shared.geometry_data.setSecurityMargins(self.geometry, found, True, False)
-        self.shared.holder = holder
+    @cached_property
+    def pair_of_row(self) -> IntArray:
+        """The pair of bodies that each of them belongs to, shape (R,)."""
+        return self._pair_of_shapes[self.rows[:, 0], self.rows[:, 1]]
 
-    def near(self, configuration: FloatArray, margins: Sequence[float]) -> list[Touch]:
-        """Pairs that are not farther apart than their margins, nearest first.
+    @cached_property
+    def _pair_of_shapes(self) -> IntArray:
+        """The pair of bodies of each two shapes, the earlier one first, or -1, shape (G, G)."""
+        of_bodies = np.full((len(self.bodies), len(self.bodies)), -1)
+        of_bodies[self.pairs.min(axis=1), self.pairs.max(axis=1)] = np.arange(len(self.pairs))
+        body_of = np.repeat(np.arange(len(self.bodies)), [len(b.rigid.shapes) for b in self.bodies])
+        return of_bodies[body_of[:, None], body_of]
 
-        Only pairs that a check of collisions finds are measured, which takes half of the time.
+    def check_data(self, margins: FloatArray) -> pin.GeometryData:
+        """Data for checks that find pairs nearer than their margins [m]; takes milliseconds.
+
+        Checks begin anew at each state: from the guess of the state before, Coal overlooks
+        collisions of up to 5 cm.
+        """
+        data = self.geometry.createData()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)
+            for request in data.collisionRequests:
+                request.enable_cached_gjk_guess = False
+        of_shapes = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
+        of_shapes[self.rows[:, 0], self.rows[:, 1]] = margins[self.pair_of_row]
+        data.setSecurityMargins(self.geometry, of_shapes, True, False)
+        return data
+
+    @cached_property
+    def distance_data(self) -> pin.GeometryData:
+        """Data for the distances of all pairs."""
+        return self.geometry.createData()
+
+    def near(self, configuration: FloatArray, margins: FloatArray) -> list[tuple[int, Touch]]:
+        """Pairs that are not farther apart than their margins, with their index, nearest first.
 
         Args:
             configuration: The whole robot's, as Pinocchio has it.
-            margins: The margin of each pair of bodies [m].
+            margins: The margin of each pair of bodies [m], shape (K,).
         """
-        self.set_margins([margin + _MEASURED for margin in margins])
-        robot, geometry, found = self.robot, self.geometry, self.shared.geometry_data
-        if not pin.computeCollisions(
-            robot.model, robot.data, geometry, found, configuration, False
-        ):
-            return []
-        results, near = found.collisionResults, list[Touch]()
-        for pair, margin in zip(self.pairs, margins, strict=True):
-            if any(results[row].isCollision() for row in pair.rows):
-                distance = min(
-                    float(pin.computeDistance(geometry, found, row).min_distance)
-                    for row in pair.rows
-                )
-                if distance <= margin:
-                    near.append(Touch(pair.first, pair.second, distance, margin))
-        return sorted(near, key=lambda touch: (touch.distance, touch.first, touch.second))
+        robot, of_row = self.robot, self.pair_of_row
+        pin.forwardKinematics(robot.model, robot.data, configuration)
+        nearest: dict[int, float] = {}
+        for row, distance in self._shapes.near(robot.data.oMi, self.rows, margins[of_row]):
+            pair = int(of_row[row])
+            nearest[pair] = min(distance, nearest.get(pair, np.inf))
+        found = [
+            (pair, Touch(*self.names(pair), distance, float(margins[pair])))
+            for pair, distance in nearest.items()
+        ]
+        return sorted(found, key=lambda each: (each[1].distance, each[1].first, each[1].second))
+
+    @cached_property
+    def tree(self) -> ConvexTree:
+        """The trees of all bodies, one after another."""
+        return concatenate([body.rigid.tree for body in self.bodies])
+
+    @cached_property
+    def _shapes(self) -> PlacedShapes:
+        return PlacedShapes([body.rigid for body in self.bodies])

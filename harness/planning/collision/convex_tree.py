@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,10 @@ from harness.robot.mesh_file import convex_hull, read_triangles
 
 FEW_POINTS = 32
 """Number of points up to which comparing all of them finds the farthest one the fastest."""
+
+
+_CUBE = np.array(np.meshgrid(*([-0.5, 0.5],) * 3)).reshape(3, -1).T
+"""The corners of the box with sides of 1 about the origin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +57,7 @@ class ConvexTree:
 
     def box(self) -> FloatArray:
         """The lower and the upper corner of the box about all sets, shape (6,)."""
-        ends: list[FloatArray] = []
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
         node = 0
         while node < len(self.nodes):
             end, convex = self.nodes[node].tolist()
@@ -69,45 +74,46 @@ class ConvexTree:
                 axis = points[1] - points[0]
                 reach = np.abs(axis) * half + np.sqrt(np.maximum(1.0 - axis**2, 0.0)) * radius
                 points = points[:1]
-            ends += [points.min(axis=0) - reach, points.max(axis=0) + reach]
-        return np.concatenate([np.min(ends, axis=0), np.max(ends, axis=0)])
+            low = np.minimum(low, points.min(axis=0) - reach)
+            high = np.maximum(high, points.max(axis=0) + reach)
+        return np.concatenate([low, high])
 
 
-def shapes_tree(shapes: Sequence[Shape]) -> ConvexTree:
-    """The tree of shapes that move together, in their common frame.
+def shape_tree(shape: Shape) -> ConvexTree:
+    """The tree of a shape in the frame that it is placed in.
 
     Raises:
         RobotError: A mesh file cannot be read.
     """
-    trees = [
-        geometry_tree(shape.geometry).placed(shape.pose.rotation, shape.pose.translation)
-        for shape in shapes
-    ]
-    return _joined(trees)
+    tree = geometry_tree(shape.geometry)
+    return tree.placed(shape.pose.rotation, shape.pose.translation)
 
 
 def concatenate(trees: Sequence[ConvexTree]) -> ConvexTree:
     """Several trees one after another, their indices shifted."""
-    starts = {
-        name: np.cumsum([0, *(len(getattr(tree, name)) for tree in trees)])
-        for name in ("nodes", "convexes", "points", "edges")
-    }
-    nodes, convexes, places, edges = [], [], [np.zeros(0, dtype=np.int64)], []
-    for row, tree in enumerate(trees):
-        node, convex, point, edge = (int(starts[name][row]) for name in starts)
-        has_set = tree.nodes[:, 1] >= 0
-        nodes.append(tree.nodes + np.column_stack([np.full(len(has_set), node), convex * has_set]))
-        convexes.append(tree.convexes + np.array([point, point, 0]))
-        places.append(tree.edges_at[:-1] + edge)
-        edges.append(tree.edges + point)
+
+    def rows(name: str) -> Any:
+        return np.concatenate([getattr(tree, name) for tree in trees])
+
+    def starts(name: str, each: str) -> IntArray:
+        """Where the items of a tree begin, for each of its items of another kind."""
+        sizes = [len(getattr(tree, name)) for tree in trees]
+        return np.repeat(np.cumsum([0, *sizes[:-1]]), [len(getattr(tree, each)) for tree in trees])
+
+    nodes, convexes = rows("nodes"), rows("convexes")
+    has_set = nodes[:, 1] >= 0
+    nodes += np.column_stack([starts("nodes", "nodes"), starts("convexes", "nodes") * has_set])
+    convexes[:, :2] += starts("points", "convexes")[:, None]
+    edges_at = np.concatenate([tree.edges_at[:-1] for tree in trees])
+    edges = rows("edges") + starts("points", "edges")
     return ConvexTree(
-        np.concatenate([tree.spheres for tree in trees]),
-        np.concatenate(nodes),
-        np.concatenate(convexes),
-        np.concatenate([tree.sizes for tree in trees]),
-        np.concatenate([tree.points for tree in trees]),
-        np.append(np.concatenate(places), starts["edges"][-1]),
-        np.concatenate(edges),
+        rows("spheres"),
+        nodes,
+        convexes,
+        rows("sizes"),
+        rows("points"),
+        np.append(edges_at + starts("edges", "points"), len(edges)),
+        edges,
     )
 
 
@@ -120,8 +126,7 @@ def geometry_tree(geometry: Geometry) -> ConvexTree:
     """
     match geometry:
         case Box(size=size):
-            corners = np.array(np.meshgrid(*([-0.5, 0.5],) * 3)).reshape(3, -1).T * size
-            return _leaf(corners)
+            return _leaf(_CUBE * size)
         case Sphere(radius=radius):
             return _leaf(np.zeros((1, 3)), rounding=radius)
         case Capsule(radius=radius, length=length):
@@ -225,14 +230,14 @@ def _surface(vertices: FloatArray, faces: IntArray) -> ConvexTree:
     return replace(tree, nodes=np.column_stack([ends, tree.nodes[:, 1]]))
 
 
-def _joined(trees: Sequence[ConvexTree]) -> ConvexTree:
+def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
     """One tree above several, which are halved where there are many."""
     if len(trees) == 1:
         return trees[0]
     roots = np.array([tree.spheres[0] for tree in trees])
     if len(trees) > 2:
         halves = _halves(roots[:, :3], np.arange(len(trees)))
-        return _joined([_joined([trees[row] for row in half]) for half in halves])
+        return joined([joined([trees[row] for row in half]) for half in halves])
     centers, radii = roots[:, :3], roots[:, 3]
     if not np.isfinite(radii).all():
         root = np.array([0.0, 0.0, 0.0, np.inf])

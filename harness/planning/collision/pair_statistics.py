@@ -9,14 +9,15 @@ starts, always, or in no sample.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
 import pinocchio as pin
 
-from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
-from harness.planning.collision.collision_model import check_data, rigid_shapes
+from harness.planning.collision.collision_model import Body, CollisionModel
+from harness.planning.collision.rigid_shapes import link_shapes
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.srdf.srdf import link_pair
@@ -119,36 +120,27 @@ class _Checker:
 
     def __init__(self, description: RobotDescription) -> None:
         self._robot = RobotModel(description)
-        self._geometry = pin.GeometryModel()
-        shaped: dict[str, range] = {}
-        for link in description.links:
-            if link.collisions:
-                rigid = rigid_shapes(self._robot, link.name, SE3.identity(), link.collisions)
-                shaped[link.name] = rigid.add_to(self._geometry, link.name)
-        carrier = carriers(description.joints, WORLD)
-        names = list(shaped)
-        pairs = [
-            (first, second)
-            for place, first in enumerate(names)
-            for second in names[place + 1 :]
-            if carrier[first] != carrier[second]
+        bodies = [
+            Body(name, rigid, is_link=True, is_held=False)
+            for name, rigid in link_shapes(description).items()
         ]
-        self.pairs = tuple(link_pair(*pair) for pair in pairs)
-        owners: list[int] = []
-        for number, (first, second) in enumerate(pairs):
-            for one in shaped[first]:
-                for other in shaped[second]:
-                    self._geometry.addCollisionPair(pin.CollisionPair(one, other))
-                    owners.append(number)
-        self._owners = np.array(owners, dtype=np.intp)
-        self._data = check_data(self._geometry)
+        carrier = carriers(description.joints, WORLD)
+        numbers = [
+            (first, second)
+            for first, second in combinations(range(len(bodies)), 2)
+            if carrier[bodies[first].name] != carrier[bodies[second].name]
+        ]
+        pairs = np.array(numbers, dtype=np.int64).reshape(-1, 2)
+        unpadded = np.zeros(len(pairs), dtype=bool)
+        model = CollisionModel(self._robot, tuple(bodies), pairs, unpadded)
+        self.pairs = tuple(link_pair(*model.names(pair)) for pair in range(len(pairs)))
+        self._geometry, self._data = model.geometry, model.check_data(model.margins(0.0))
+        self._owners, self._ends = model.pair_of_row, model.rows
         shapes = [shape.geometry for shape in self._geometry.geometryObjects]
         for shape in shapes:
             shape.computeLocalAABB()
         self._centers = [np.array(shape.aabb_center).ravel() for shape in shapes]
         radii = np.array([shape.aabb_radius for shape in shapes])
-        ends = [(pair.first, pair.second) for pair in self._geometry.collisionPairs]
-        self._ends = np.array(ends, dtype=np.intp).reshape(-1, 2)
         self._near = radii[self._ends].sum(axis=1)
 
     def touching(self, joint_positions: FloatArray) -> BoolArray:

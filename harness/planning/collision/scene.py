@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pinocchio as pin
@@ -15,18 +16,15 @@ from harness.core.exact_key import exact_key
 from harness.core.geometry import Plane, Shape
 from harness.core.sharing import shared
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
 from harness.planning.collision.collision_model import (
     Body,
-    BodyPair,
     CollisionModel,
-    Payload,
-    RigidShapes,
     SceneObject,
     SceneState,
-    rigid_shapes,
 )
+from harness.planning.collision.rigid_shapes import RigidShapes, link_shapes, rigid_shapes
 from harness.planning.model.robot_model import RobotModel
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import ObjectFailure
@@ -49,11 +47,7 @@ class CoalScene:
         self.robot = RobotModel(description)
         self._objects: dict[str, SceneObject] = {}
         self._rigid: dict[str, tuple[SceneObject, RigidShapes]] = {}
-        self._links = {
-            link.name: rigid_shapes(self.robot, link.name, SE3.identity(), link.collisions)
-            for link in description.links
-            if link.collisions
-        }
+        self._links = link_shapes(description)
         self._allowed: set[tuple[str, str]] = {
             _sorted(*pair) for pair in description.allowed_collisions
         }
@@ -70,6 +64,7 @@ class CoalScene:
         if obj.name in self._objects:
             raise StepFailed("INVALID_OBJECT_NAME", f"object '{obj.name}' is in the scene already")
         self._objects[obj.name] = SceneObject(
+            obj.name,
             obj.shapes,
             pose,
             mass=obj.mass,
@@ -182,13 +177,10 @@ class CoalScene:
         """Link of each attached object."""
         return {name: obj.link for name, obj in self._objects.items() if obj.link is not None}
 
-    def payloads(self) -> tuple[Payload, ...]:
-        """Of attached objects that weigh something."""
-        return tuple(
-            Payload(name, found.link, found.pose, found.mass, found.center_of_mass, found.inertia)
-            for name, found in self._objects.items()
-            if found.link is not None and found.mass > 0
-        )
+    def payloads(self) -> tuple[SceneObject, ...]:
+        """The attached objects that weigh something."""
+        held = (found for found in self._objects.values() if found.link is not None)
+        return tuple(found for found in held if found.mass > 0)
 
     def object_pose(self, name: str, joint_positions: FloatArray) -> SE3:
         """T_world_object, attached or not."""
@@ -202,9 +194,8 @@ class CoalScene:
 
         def found() -> tuple[Touch, ...]:
             model = self.collision_model()
-            margins = [padding if pair.keeps_padding else 0.0 for pair in model.pairs]
             configuration = self.robot.configuration(np.asarray(joint_positions, dtype=float))
-            return tuple(model.near(configuration, margins))
+            return tuple(touch for _, touch in model.near(configuration, model.margins(padding)))
 
         return shared("state checks", lambda: (self.key, joint_positions, padding), found)
 
@@ -225,47 +216,42 @@ class CoalScene:
             return self._objects[body].shapes
         return next(each.collisions for each in self.description.links if each.name == body)
 
-    def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, BodyPair]]:
-        """Signed distance of every checked pair of bodies [m], nearest first."""
+    def distances(self, joint_positions: FloatArray) -> list[tuple[Touch, bool]]:
+        """Signed distance of every checked pair of bodies [m], nearest first.
+
+        With it, whether the pair is of the robot and an object, which keep the padding.
+        """
         model = self.collision_model()
-        robot, geometry = model.robot, model.geometry
-        data = model.shared.geometry_data
-        configuration = robot.configuration(np.asarray(joint_positions, dtype=float))
-        pin.computeDistances(robot.model, robot.data, geometry, data, configuration)
-        results = data.distanceResults
-        found: list[tuple[Touch, BodyPair]] = []
-        for pair in model.pairs:
-            nearest = min(float(results[row].min_distance) for row in pair.rows)
-            found.append((Touch(pair.first, pair.second, nearest), pair))
-        found.sort(key=lambda item: (item[0].distance, item[0].first, item[0].second))
-        return found
+        nearest = np.full(len(model.pairs), np.inf)
+        np.minimum.at(nearest, model.pair_of_row, self._row_distances(joint_positions))
+        found = [
+            (Touch(*model.names(pair), distance), bool(model.keeps_padding[pair]))
+            for pair, distance in enumerate(nearest.tolist())
+        ]
+        return sorted(found, key=lambda item: (item[0].distance, item[0].first, item[0].second))
 
     def nearest_points(self, joint_positions: FloatArray) -> tuple[Touch, FloatArray] | None:
         """The nearest pair, and its nearest points in the world, shape (2, 3).
 
         Pairs with an object come first; two links are always near each other.
         """
-        found = self.distances(joint_positions)
-        links = self.description.link_names
-        with_object = [each for each in found if not {each[0].first, each[0].second} <= {*links}]
-        if not found:
+        distances, model = self._row_distances(joint_positions), self.collision_model()
+        if not len(distances):
             return None
-        touch, pair = (with_object or found)[0]
-        results = self.collision_model().shared.geometry_data.distanceResults
-        nearest = min((results[row] for row in pair.rows), key=lambda each: each.min_distance)
+        is_object = np.array([not body.is_link for body in model.bodies], dtype=bool)
+        with_object = np.any(is_object[model.pairs], axis=1)[model.pair_of_row]
+        row = int(np.lexsort((distances, ~with_object))[0])
+        nearest = model.distance_data.distanceResults[row]
         points = np.stack([nearest.getNearestPoint1(), nearest.getNearestPoint2()])
-        return touch, points
+        return Touch(*model.names(int(model.pair_of_row[row])), float(distances[row])), points
 
-    def _allows(self, first: str, second: str, first_is_link: bool, second_is_link: bool) -> bool:
-        key = _sorted(first, second)
-        if key in self._allowed or key in self._extra:
-            return True
-        if not self._extra:
-            return False
-        names = [(ROBOT, second)] if first_is_link else []
-        names += [(first, ROBOT)] if second_is_link else []
-        names += [(ROBOT, ROBOT)] if first_is_link and second_is_link else []
-        return any(_sorted(*pair) in self._extra for pair in names)
+    def _row_distances(self, joint_positions: FloatArray) -> FloatArray:
+        """The signed distance of each pair of shapes that is checked [m], shape (R,)."""
+        model, robot = self.collision_model(), self.robot
+        configuration = robot.configuration(np.asarray(joint_positions, dtype=float))
+        data = model.distance_data
+        pin.computeDistances(robot.model, robot.data, model.geometry, data, configuration)
+        return np.array([each.min_distance for each in data.distanceResults], dtype=float)
 
     def collision_model(self) -> CollisionModel:
         """Geometries and pairs of the scene as it is now."""
@@ -274,40 +260,37 @@ class CoalScene:
         return self._model
 
     def _build(self) -> CollisionModel:
-        geometry = pin.GeometryModel()
         bodies = [
-            Body(name, rigid, rigid.add_to(geometry, name), is_link=True, is_held=False)
-            for name, rigid in self._links.items()
+            Body(name, rigid, is_link=True, is_held=False) for name, rigid in self._links.items()
         ]
-        for name, obj in self._objects.items():
-            if obj.shapes:
-                rigid, is_held = self._rigid_object(name), obj.link is not None
-                rows = rigid.add_to(geometry, name)
-                bodies.append(Body(name, rigid, rows, is_link=False, is_held=is_held))
-        checked = [
-            (first, second)
-            for later, second in enumerate(bodies)
-            for first in bodies[:later]
-            if self._is_checked(first, second)
+        bodies += [
+            Body(name, self._rigid_object(name), is_link=False, is_held=obj.link is not None)
+            for name, obj in self._objects.items()
+            if obj.shapes
         ]
-        is_checked = np.zeros((geometry.ngeoms, geometry.ngeoms), dtype=bool)
-        for first, second in checked:
-            is_checked[_block(first, second)] = True
-        geometry.setCollisionPairs(is_checked)
-        rows = np.argwhere(is_checked)
-        row_of = np.zeros(is_checked.shape, dtype=np.int64)
-        row_of[is_checked] = np.arange(len(rows))
-        pairs = tuple(self._pair(first, second, row_of) for first, second in checked)
-        return CollisionModel(self.robot, geometry, tuple(bodies), pairs, rows)
-
-    def _pair(self, first: Body, second: Body, row_of: IntArray) -> BodyPair:
-        rows = row_of[_block(first, second)].ravel().tolist()
-        robot_side = [body for body in (first, second) if body.is_link or body.is_held]
-        padded = _sorted(first.name, second.name) not in self._unpadded
+        joints = np.array([body.rigid.joint for body in bodies], dtype=np.int64)
+        checked = (joints[:, None] != joints) & ~_among(bodies, self._allowed_pairs())
+        second, first = np.nonzero(np.tril(checked))
         # Links come before objects; a held object comes before what it could hit.
-        if second.is_held and not first.is_link:
-            first, second = second, first
-        return BodyPair(first.name, second.name, padded and len(robot_side) == 1, rows)
+        is_link = np.array([body.is_link for body in bodies], dtype=bool)
+        is_held = np.array([body.is_held for body in bodies], dtype=bool)
+        swapped = is_held[second] & ~is_link[first]
+        pairs = np.column_stack([first, second])
+        pairs[swapped] = pairs[swapped, ::-1]
+        on_robot = (is_link | is_held)[pairs]
+        padded = ~_among(bodies, self._unpadded)[first, second]
+        keeps_padding = padded & (on_robot[:, 0] != on_robot[:, 1])
+        return CollisionModel(self.robot, tuple(bodies), pairs, keeps_padding)
+
+    def _allowed_pairs(self) -> Iterator[tuple[str, str]]:
+        """Pairs of names that are not checked, in any order."""
+        yield from self._allowed
+        robot = {ROBOT: (ROBOT, *self._links)}
+        for first, second in self._extra:
+            yield from product(robot.get(first, (first,)), robot.get(second, (second,)))
+        for name, obj in self._objects.items():
+            if obj.link is not None:
+                yield from ((name, link) for link in obj.touch_links)
 
     def _rigid_object(self, name: str) -> RigidShapes:
         """The shapes of an object where it is now; the same ones until it changes."""
@@ -317,16 +300,6 @@ class CoalScene:
             rigid = rigid_shapes(self.robot, obj.link, obj.pose, obj.shapes)
             known = self._rigid[name] = obj, rigid
         return known[1]
-
-    def _is_checked(self, first: Body, second: Body) -> bool:
-        if first.rigid.joint == second.rigid.joint or self._allows(
-            first.name, second.name, first.is_link, second.is_link
-        ):
-            return False
-        for held, other in ((first, second), (second, first)):
-            if held.is_held and other.is_link:
-                return other.name not in self._objects[held.name].touch_links
-        return True
 
     def _find(self, name: str) -> SceneObject:
         if name not in self._objects:
@@ -339,10 +312,14 @@ class CoalScene:
         return self._objects[name]
 
 
-def _block(first: Body, second: Body) -> tuple[slice, slice]:
-    """The geometries of two bodies as rows and columns."""
-    a, b = first.geometries, second.geometries
-    return slice(a.start, a.stop), slice(b.start, b.stop)
+def _among(bodies: Sequence[Body], pairs: Iterable[tuple[str, str]]) -> BoolArray:
+    """Whether two bodies are one of some pairs of names, shape (B, B)."""
+    index = {body.name: number for number, body in enumerate(bodies)}
+    known = [(index[a], index[b]) for a, b in pairs if a in index and b in index]
+    first, second = np.array(known, dtype=np.int64).reshape(-1, 2).T
+    found = np.zeros((len(bodies), len(bodies)), dtype=bool)
+    found[first, second] = found[second, first] = True
+    return found
 
 
 def _sorted(first: str, second: str) -> tuple[str, str]:

@@ -49,7 +49,7 @@ def start_finding(request: StageRequest) -> StageFinding:
         return StageFinding(stage, advice="start inside the limits: `robot: {start_state: ...}`")
     found = request.scene.distances(request.start)
     if request.checker is not None:
-        to_objects = [item for item, pair in found if pair.keeps_padding]
+        to_objects = [item for item, keeps_padding in found if keeps_padding]
         nearest = (to_objects or [item for item, _ in found])[:1]
         clause = f"; nearest are {touch(nearest[0])}" if nearest else ""
         return StageFinding(Stage("start state", "passed", f"free{clause}"))

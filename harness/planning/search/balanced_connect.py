@@ -19,11 +19,12 @@ DOMAIN = 4.0
 SMALLEST_DOMAIN = 1.0
 """Radius below which a domain does not shrink [rad]."""
 
+SHORTER, SHORTEST = 0.95, 1 / 16
+"""Factor by which a blocked edge shortens the next ones from its vertex, and the shortest edge as a
+share of the longest. Trees whose edges were halved took ten times as long in cages."""
+
 SHRINK = 1e-4
 """Share by which a free edge enlarges a domain and a blocked edge shrinks it."""
-
-SHORTEST = 1 / 16
-"""Shortest edge, as a share of the longest; edges shrink at vertices in narrow passages."""
 
 PATIENCE = 64
 """Consecutive samples outside the domains after which one is used anyway."""
@@ -162,15 +163,15 @@ class _Tree:
         self._steps: list[float] = []
         self._step = step
         for root in roots:
-            self._add(root, -1, step)
+            self._add(root, -1)
 
-    def _add(self, point: FloatArray, parent: int, step: float) -> int:
+    def _add(self, point: FloatArray, parent: int) -> int:
         if self.count == len(self.points):
             self.points = np.concatenate([self.points, np.empty_like(self.points)])
         self.points[self.count] = point
         self._parents.append(parent)
         self._domains.append(np.inf)
-        self._steps.append(step)
+        self._steps.append(self._step)
         self.count += 1
         return self.count - 1
 
@@ -190,8 +191,8 @@ class _Tree:
     ) -> int | None:
         """Add a vertex one step from another towards a sample; None when the edge is blocked.
 
-        Every blocked edge shortens the steps from its vertex, and every free edge lengthens the
-        steps from the new one, so that a tree leaves a narrow passage.
+        Every blocked edge shortens the steps from its vertex a little, so that a tree leaves a
+        place where no longer edge is free.
         """
         if distance < 1e-9:
             return None
@@ -201,10 +202,10 @@ class _Tree:
         if not is_free(here, there):
             smaller = max(domain * (1 - SHRINK), SMALLEST_DOMAIN)
             self._domains[near] = DOMAIN if domain == np.inf else smaller
-            self._steps[near] = max(0.5 * step, SHORTEST * self._step)
+            self._steps[near] = max(SHORTER * step, SHORTEST * self._step)
             return None
         self._domains[near] = domain * (1 + SHRINK)
-        return self._add(there, near, min(2 * step, self._step))
+        return self._add(there, near)
 
     def connect(self, point: FloatArray, is_free: _EdgeCheck) -> int | None:
         """Extend step by step to a point of the other tree; the vertex that reaches it, or None."""
@@ -215,7 +216,7 @@ class _Tree:
             there = point if is_last else here + self._step / distance * (point - here)
             if not is_free(here, there):
                 return None
-            near = self._add(there, near, self._step)
+            near = self._add(there, near)
             if is_last:
                 return near
             distance -= self._step

@@ -1,8 +1,9 @@
-"""Who plans: this project, with and without compiled code, and OMPL as written in Python."""
+"""Who plans: this project, and OMPL as written in Python."""
 
 # pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,19 +11,23 @@ import ompl.base as ob
 import ompl.geometric as og
 import ompl.util as ou
 
-from harness.planning.collision.compiled import When, use_compiled
+from harness.core.types import FloatArray
+from harness.planning.collision.compiled import use_compiled
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.verification.verify import FINAL_RESOLUTION, verified_resolution
 from harness.ports.motion_planning import PlanningOptions
-from tests.benchmarks.planning.problems import EveryPair, Problem
+from tests.benchmarks.planning.problems import Problem, free_by_broad_phase, free_by_pairs
 
 SPACING = 1 / 32
-"""Joint-space distance between the states that the naive planner checks [rad]."""
+"""Joint-space distance between the states that the other planners check [rad]."""
 
 RANGE = 1.5  # [rad]
-PATIENCE = 20.0
-"""Time after which the naive planner gives up [s]; what it did not solve counts with it."""
+PATIENCE = 5.0
+"""Processor time after which the other planners are stopped, to plan and to shorten [s]."""
+
+JUDGED = 1 / 512
+"""Joint-space distance between the states at which final paths are judged [rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,18 +35,17 @@ class Outcome:
     """The result of a contender.
 
     Attributes:
-        scene: Time of the process to take the problem's things and pairs up, the robot known [s].
-        plan: From there until a first path [s].
-        total: From there until the path was shortened and, if the contender does so, verified [s].
-        checks: States checked while planning.
+        scene: Processor time to load the problem's objects and pairs, the robot known [s].
+        plan: From there until a first path; `PATIENCE` where there is none [s].
+        total: From there until the path was shortened and, if the contender does so, verified [s];
+            at most `PATIENCE`, at which the others are stopped.
         waypoints: Shape (N, dof), or None when nothing was found.
     """
 
     scene: float
     plan: float
     total: float
-    checks: int
-    waypoints: np.ndarray | None
+    waypoints: FloatArray | None
 
     @property
     def length(self) -> float:
@@ -50,37 +54,47 @@ class Outcome:
         return float(np.linalg.norm(np.diff(self.waypoints, axis=0), axis=1).sum())
 
 
-def ours(problem: Problem, when: When, seed: int = 1) -> Outcome:
-    """Plan, verify and shorten as `move_to` does."""
-    use_compiled(when)
+def ours(problem: Problem, seed: int = 1) -> Outcome:
+    """Plan, verify and shorten as `move_to` does, with the code that is compiled."""
+    use_compiled("always")
     problem.forget()
     before = time.process_time()
     checker, effort = problem.checker(), Effort()
     checker.edge_free(problem.start, problem.start, SPACING)  # lays out what is checked
     begin = time.process_time()
-    scene = begin - before
-    options = PlanningOptions(seed=seed, max_state_checks=2_000_000)
-    planned, fine = None, verified_resolution(checker.padding)
+    scene, planned = begin - before, None
+    options, fine = PlanningOptions(seed=seed), verified_resolution(checker.padding)
     for found in verified_paths(checker, problem.start, [problem.goal], options, effort):
         planned = planned or time.process_time()
         for resolution in (FINAL_RESOLUTION, fine):
             short = shorten(found.waypoints, checker, resolution, found.seed)
             if checker.path_free(short, fine):
-                done = time.process_time()
-                return Outcome(scene, planned - begin, done - begin, effort.checks, short)
+                return Outcome(scene, planned - begin, time.process_time() - begin, short)
     spent = time.process_time() - begin
-    return Outcome(scene, spent, spent, effort.checks, None)
+    return Outcome(scene, spent, spent, None)
 
 
-def naive(problem: Problem, seed: int = 1) -> Outcome:
+def naive(problem: Problem) -> Outcome:
+    """Check the states of OMPL as it is usually written in Python."""
+    return _ompl(problem, free_by_pairs)
+
+
+def broad_phase(problem: Problem) -> Outcome:
+    """Check the states of OMPL in Python with Pinocchio's broad phase."""
+    return _ompl(problem, free_by_broad_phase)
+
+
+def _ompl(
+    problem: Problem, checked: Callable[[Problem], Callable[[FloatArray], bool]], seed: int = 1
+) -> Outcome:
     """OMPL's RRTConnect and `simplifySolution` with a validity checker in Python."""
     ou.noOutputHandler()
     ou.RNG.setSeed(seed)
     problem.forget()
     before = time.process_time()
-    checker, space = EveryPair(problem.scene, problem.space, problem.route.padding), problem.space
+    is_free, space = checked(problem), problem.space
     begin = time.process_time()
-    scene = begin - before
+    scene, end = begin - before, begin + PATIENCE
     states = ob.RealVectorStateSpace(space.dof)
     bounds = ob.RealVectorBounds(space.dof)
     for joint in range(space.dof):
@@ -90,42 +104,41 @@ def naive(problem: Problem, seed: int = 1) -> Outcome:
     setup = og.SimpleSetup(states)
     information = setup.getSpaceInformation()
     setup.setStateValidityChecker(
-        lambda state: checker.free(np.array([state[joint] for joint in range(space.dof)]))
+        lambda state: is_free(np.array([state[joint] for joint in range(space.dof)]))
     )
     information.setStateValidityCheckingResolution(SPACING / states.getMaximumExtent())
     setup.setStartAndGoalStates(_state(states, problem.start), _state(states, problem.goal))
     planner = og.RRTConnect(information)
     planner.setRange(RANGE)
     setup.setPlanner(planner)
-    end = begin + PATIENCE
-    setup.solve(ob.PlannerTerminationCondition(lambda: time.process_time() > end))
+    patience = ob.PlannerTerminationCondition(lambda: time.process_time() > end)
+    setup.solve(patience)
     planned = time.process_time()
-    checks = checker.checks
     if not setup.haveExactSolutionPath():
-        return Outcome(scene, PATIENCE, PATIENCE, checks, None)
-    setup.simplifySolution(PATIENCE)
-    done = time.process_time()
+        return Outcome(scene, PATIENCE, PATIENCE, None)
+    setup.simplifySolution(patience)
+    total = min(time.process_time() - begin, PATIENCE)
     path = setup.getSolutionPath().getStates()
     waypoints = np.array([[state[joint] for joint in range(space.dof)] for state in path])
-    return Outcome(scene, planned - begin, done - begin, checks, waypoints)
+    return Outcome(scene, planned - begin, total, waypoints)
 
 
-def _state(space: ob.RealVectorStateSpace, positions: np.ndarray) -> ob.State:
+def _state(space: ob.RealVectorStateSpace, positions: FloatArray) -> ob.State:
     state = space.allocState()
     for joint, value in enumerate(positions):
         state[joint] = float(value)
     return state
 
 
-def is_free(problem: Problem, waypoints: np.ndarray) -> bool:
-    """Whether a path keeps its margins at `FINAL_RESOLUTION`, by Coal alone.
+def is_free(problem: Problem, waypoints: FloatArray) -> bool:
+    """Whether a path keeps its margins at `JUDGED`, by Coal alone.
 
     States are taken evenly from the start on, whatever the waypoints: others than those that the
     planner checked edge by edge.
     """
-    checker = EveryPair(problem.scene, problem.space, problem.route.padding)
+    free = free_by_broad_phase(problem)
     lengths = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
     knots = np.concatenate([[0.0], np.cumsum(lengths)])
-    places = np.append(np.arange(0.0, knots[-1], FINAL_RESOLUTION), knots[-1])
+    places = np.append(np.arange(0.0, knots[-1], JUDGED), knots[-1])
     states = np.column_stack([np.interp(places, knots, column) for column in waypoints.T])
-    return all(checker.free(state) for state in (*states, *waypoints))
+    return all(free(state) for state in (*states, *waypoints))

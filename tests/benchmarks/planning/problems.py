@@ -2,46 +2,43 @@
 
 # pyright: reportAttributeAccessIssue=false
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
-from harness.core.geometry import Plane, Shape
+from harness.core.geometry import CollisionMode, Plane, Shape
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.planning.backend import make_planning
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal
-from tests.benchmarks.planning.arms import ARM_GROUP, FLANGE, arm
+from tests.benchmarks.planning.arms import ARMS, Arm
 from tests.benchmarks.planning.layouts import FAMILIES, Layout
 
 
 @dataclass(frozen=True)
 class Route:
-    """How the robot's shapes are taken.
+    """How the robot's meshes are taken.
 
     Attributes:
         name: What tables call it.
-        exact: Whether meshes are surfaces; otherwise they are their hulls, as for every user.
         padding: The distance kept from objects [m].
     """
 
     name: str
-    exact: bool
+    collision: CollisionMode
     padding: float
 
 
-DEFAULT = Route("hulls, padding of 2 mm", exact=False, padding=0.002)
-EXACT = Route("exact meshes", exact=True, padding=0.0)
+DEFAULT = Route("convex parts, padding of 2 mm", "parts", 0.002)
+"""What scenarios have when they say nothing."""
 
-HELD_OUT = 100
-"""Problems with this number and higher are measured, but the planner is never tuned on them."""
-
-READY = np.array([0.0, -2.0, 1.9, -1.5, -1.57, 0.0])
-"""Where half of the problems start, TCP in front of the arm, pointing down."""
+EXACT = Route("exact meshes", "exact", 0.0)
 
 FINE = 1 / 128  # [rad]
 GROUND_HEIGHT = -0.06  # [m]
@@ -53,17 +50,19 @@ class Problem:
     """An arm, what stands around it, and two free joint positions that no straight line joins.
 
     Attributes:
+        number: The problem's place among those of its arm and family, from 0.
         obstacles: All in the world frame, but for the ground.
     """
 
-    name: str
+    arm: Arm
     family: str
+    number: int
     route: Route
     obstacles: tuple[Shape, ...]
     scene: CoalScene
     space: GroupSpace
-    start: np.ndarray
-    goal: np.ndarray
+    start: FloatArray
+    goal: FloatArray
 
     def checker(self) -> MotionChecker:
         """A checker of motions from the start."""
@@ -74,82 +73,90 @@ class Problem:
         self.scene.set_allowed((), allowed=True)
 
 
-class EveryPair:
-    """Collision checking as it is usually written in Python: every pair, state by state."""
+def free_by_pairs(problem: Problem) -> Callable[[FloatArray], bool]:
+    """Collision checking as it is usually written in Python: all pairs, state by state."""
+    check = _CoalCheck(problem.scene, problem.space, problem.route.padding)
+    model, data, geometry, found = check.arrays
+    return lambda positions: (
+        not pin.computeCollisions(
+            model, data, geometry, found, check.configuration(positions), True
+        )
+    )
+
+
+def free_by_broad_phase(problem: Problem) -> Callable[[FloatArray], bool]:
+    """Collision checking by those who know Pinocchio well: a tree of boxes sorts pairs out."""
+    check = _CoalCheck(problem.scene, problem.space, problem.route.padding)
+    model, data, geometry, found = check.arrays
+    manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(model, geometry, found)
+    return lambda positions: (
+        not pin.computeCollisions(model, data, manager, check.configuration(positions), True)
+    )
+
+
+class _CoalCheck:
+    """What Pinocchio needs for checks with margins, apart from the data of the scene."""
 
     def __init__(self, scene: CoalScene, space: GroupSpace, padding: float) -> None:
         model = scene.collision_model()
-        self._robot, self._geometry = model.robot, model.geometry
-        self._data = self._robot.model.createData()
-        self._geometry_data = self._geometry.createData()
-        self._space = space
-        self.checks = 0
-        margins = [padding if pair.keeps_padding else 0.0 for pair in model.pairs]
-        found = model.margin_map(margins)
-        self._geometry_data.setSecurityMargins(self._geometry, found, True, False)
+        self._robot, self._space = model.robot, space
+        found = model.check_data(model.margins(padding))
+        self.arrays = self._robot.model, self._robot.model.createData(), model.geometry, found
 
-    def free(self, positions: np.ndarray) -> bool:
-        """Whether nothing is nearer than its margin."""
-        self.checks += 1
-        configuration = self._robot.configuration(self._space.whole(positions))
-        return not pin.computeCollisions(
-            self._robot.model,
-            self._data,
-            self._geometry,
-            self._geometry_data,
-            configuration,
-            False,
-        )
+    def configuration(self, positions: FloatArray) -> FloatArray:
+        return self._robot.configuration(self._space.whole(positions))
 
 
-def make_problems(route: Route, each: int, first: int = 0) -> list[Problem]:
-    """`each` problems of every family, from a number on."""
+def make_problems(route: Route, each: int, seed: int) -> list[Problem]:
+    """`each` problems of every arm and family."""
     return [
-        make_problem(route, family, number)
+        make_problem(route, arm, family, number, seed)
+        for arm in ARMS
         for family in FAMILIES
-        for number in range(first, first + each)
+        for number in range(each)
     ]
 
 
-def make_problem(route: Route, family: str, number: int) -> Problem:
+def make_problem(route: Route, arm: Arm, family: str, number: int, seed: int) -> Problem:
     """Draw until start and goal are free and the straight line between them is not.
 
     Raises:
         AssertionError: `MOST_DRAWS` draws had none.
     """
-    rng = np.random.default_rng([list(FAMILIES).index(family), number])
+    rng = np.random.default_rng([seed, ARMS.index(arm), list(FAMILIES).index(family), number])
     for _ in range(MOST_DRAWS):
-        problem = _problem(route, family, number, FAMILIES[family](rng, 1.0), rng)
+        drawn = FAMILIES[family](rng, arm.scale)
+        problem = _problem(route, arm, family, number, drawn, rng)
         if problem is not None:
             return problem
-    raise AssertionError(f"no problem: {family} {number}")
+    raise AssertionError(f"no problem: {arm.name}, {family} {number} of the seed {seed}")
 
 
 def _problem(
-    route: Route, family: str, number: int, made: Layout, rng: np.random.Generator
+    route: Route, arm: Arm, family: str, number: int, drawn: Layout, rng: np.random.Generator
 ) -> Problem | None:
-    description = arm(exact=route.exact)
+    description = arm.description(route.collision)
     scene, kinematics, _ = make_planning(description)
     add_object(scene, "ground", Shape(Plane()), GROUND_HEIGHT)
-    for index, shape in enumerate(made.shapes):
+    for index, shape in enumerate(drawn.shapes):
         add_object(scene, f"thing{index}", shape)
-    whole = np.array(description.start_positions())
-    whole[: len(READY)] = READY
-    space = GroupSpace(kinematics.robot, ARM_GROUP, whole)
-    free = EveryPair(scene, space, route.padding).free
-    ends = [READY] if number % 2 == 0 else []
-    if ends and not free(READY):
+    whole, ready = np.array(description.start_positions()), np.array(arm.ready)
+    whole[list(description.group_indices(arm.group))] = ready
+    space = GroupSpace(kinematics.robot, arm.group, whole)
+    made = Problem(arm, family, number, route, tuple(drawn.shapes), scene, space, ready, ready)
+    free = free_by_broad_phase(made)
+    ends = [ready] if rng.random() < 0.5 else []
+    if ends and not free(ready):
         return None
-    goals = list(made.goals)
+    goals = list(drawn.goals)
     rng.shuffle(goals)
     for pose in goals[: 2 - len(ends)]:
         seed = space.whole(ends[-1]) if ends else whole
-        answers = kinematics.solve(ARM_GROUP, PoseGoal(FLANGE, pose), seed, 0)
-        ends += [q for q in answers if _is_usual(q) and free(q)][:1]
+        answers = kinematics.solve(arm.group, PoseGoal(arm.flange, pose), seed, 0)
+        ends += [q for q in answers if _is_usual(arm, q) and free(q)][:1]
     if len(ends) < 2:
         return None
-    name = f"{family} {number}"
-    found = Problem(name, family, route, tuple(made.shapes), scene, space, ends[0], ends[1])
+    found = Problem(arm, family, number, route, made.obstacles, scene, space, *ends)
     return None if found.checker().edge_free(ends[0], ends[1], FINE) else found
 
 
@@ -161,6 +168,6 @@ def add_object(scene: CoalScene, name: str, shape: Shape, height: float = 0.0) -
     )
 
 
-def _is_usual(positions: np.ndarray) -> bool:
-    """Whether the arm faces what it works at, its upper arm raised: not wound through a shelf."""
-    return abs(positions[0]) < np.pi / 2 and -3.0 < positions[1] < -0.1
+def _is_usual(arm: Arm, positions: FloatArray) -> bool:
+    """Whether the arm faces what it works at: not wound through a shelf."""
+    return all(low < positions[joint] < high for joint, (low, high) in arm.usual.items())

@@ -11,7 +11,7 @@ import roboplan.rrt as rrt
 from harness.core.geometry import Box, Cylinder
 from harness.planning.verification.verify import FINAL_RESOLUTION, UNPADDED_RESOLUTION
 from harness.robot.urdf.write import write_urdf
-from tests.benchmarks.planning.arms import ARM_GROUP, arm, packages
+from tests.benchmarks.planning.arms import packages
 from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
 from tests.benchmarks.planning.problems import GROUND_HEIGHT, Problem
 
@@ -51,20 +51,22 @@ def _planned(
         if path is None:
             continue
         planned = planned or time.process_time()
-        options = core.PathShortcuttingOptions(group_name=ARM_GROUP, max_step_size=fine, seed=seed)
+        options = core.PathShortcuttingOptions(
+            group_name=problem.arm.group, max_step_size=fine, seed=seed
+        )
         short = np.array(core.PathShortcutter(scene, options).shortcut(path).positions)
         if verify is None or not any(
             core.hasCollisionsAlongPath(scene, first, second, verify)
             for first, second in pairwise(short)
         ):
             done = time.process_time()
-            return Outcome(begin - before, planned - begin, done - begin, 0, short)
-    return Outcome(begin - before, PATIENCE, PATIENCE, 0, None)
+            return Outcome(begin - before, planned - begin, done - begin, short)
+    return Outcome(begin - before, PATIENCE, PATIENCE, None)
 
 
 def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> core.JointPath | None:
     options = rrt.RRTOptions(
-        group_name=ARM_GROUP,
+        group_name=problem.arm.group,
         max_nodes=MOST_NODES,
         max_connection_distance=RANGE,
         collision_check_step_size=spacing,
@@ -85,8 +87,8 @@ def _plan(scene: core.Scene, problem: Problem, spacing: float, seed: int) -> cor
 
 def _robot(problem: Problem) -> core.Scene:
     """A scene with the arm alone."""
-    description = arm(exact=True)
-    arm_joints = description.groups[ARM_GROUP].joint_names
+    description = problem.arm.description("exact")
+    arm_joints = description.groups[problem.arm.group].joint_names
     joints = [  # the gripper stays open, as it does for the others
         joint if joint.name in arm_joints else replace(joint, kind="fixed", mimic=None)
         for joint in description.joints
@@ -94,13 +96,13 @@ def _robot(problem: Problem) -> core.Scene:
     urdf = write_urdf("arm", description.links, joints)
     folders = [str(place.parent) for place in packages().values()]
     scene = core.Scene("arm", core.loadUrdfSceneDescriptionFromXml(urdf, folders))
-    scene.addGroup(ARM_GROUP, list(problem.space.joint_names))
+    scene.addGroup(problem.arm.group, list(problem.space.joint_names))
     return scene
 
 
 def _load_scene(scene: core.Scene, problem: Problem) -> None:
     """Add things and ground; the same pairs are checked as by the others."""
-    description = arm(exact=True)
+    description = problem.arm.description("exact")
     solid = {link.name for link in description.links if link.collisions}
     allowed = [pair for pair in description.allowed_collisions if solid.issuperset(pair)]
     for number, shape in enumerate(problem.obstacles):
