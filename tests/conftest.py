@@ -4,8 +4,12 @@ import os
 import signal
 
 import pytest
+from xdist.scheduler import LoadFileScheduling
 
 pytest_plugins = ["pytester", "tests.reporting.browser"]
+
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+"""Hundreds of tests start a process: each would compile the package again, half a second long."""
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -23,3 +27,8 @@ def _signals_of_a_terminal():
 def pytest_xdist_auto_num_workers() -> int:
     """One worker more than processors: tests wait for browsers, timeouts and live robots."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_xdist_make_scheduler(config, log):
+    """Whole files to workers: what the tests of a file share is made once, not by each worker."""
+    return LoadFileScheduling(config, log) if config.option.dist == "load" else None

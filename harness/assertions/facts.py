@@ -18,7 +18,13 @@ _facts: ContextVar[dict[Any, Any] | None] = ContextVar("facts", default=None)
 
 @contextmanager
 def remembered_facts() -> Generator[None]:
-    """Compute each fact once in this context, in which all facts are of the same recording."""
+    """Compute each fact once in this context, in which all facts are of the same recording.
+
+    A context inside another one goes on with its facts.
+    """
+    if _facts.get() is not None:
+        yield
+        return
     token = _facts.set({})
     try:
         yield

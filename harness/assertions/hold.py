@@ -55,6 +55,7 @@ CLOSING_SHARE = 0.01
 """Share of its range by which a gripper's joint is commanded past where it stands if it presses."""
 
 
+@fact
 def held_by_fingers(run: Run, name: str, min_force: float = TOUCH_FORCE) -> BoolArray:
     """Samples at which every finger side touches an object that is between them, shape (N,)."""
     forces = list(side_forces(run, name).values())
@@ -197,6 +198,7 @@ def held_for(run: Run, held: BoolArray) -> FloatArray:
     return since
 
 
+@fact
 def moves_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """How far an object moved [m] and turned [rad] in the hand within `HOLD_TIME`, (N,) each."""
     return moved_since(run, name, first_within(run.signals.times, HOLD_TIME))

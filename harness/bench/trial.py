@@ -146,6 +146,6 @@ def _clearances(scene: CoalScene, group: str, start: FloatArray, path: FloatArra
     for positions in path:
         state[indices] = positions
         whole = scene.description.with_mimics(state)
-        found = [touch.distance for touch, pair in scene.distances(whole) if pair.keeps_padding]
+        found = [touch.distance for touch, padded in scene.distances(whole) if padded]
         nearest += found[:1]
     return np.array(nearest)

@@ -11,6 +11,7 @@ from harness.cameras.viewpoint import View, view_of
 from harness.core.camera import Camera
 from harness.core.geometry import Plane
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
@@ -123,6 +124,12 @@ class CameraScene:
     def pose(self, run: Run, sample: int) -> dict[str, SE3]:
         """Pose all bodies as in a sample; returns T_world_body of those present and of `world`."""
         poses = scene_poses(self._description, self._objects, run, sample)
+        self.picture.pose(poses)
+        return poses
+
+    def pose_robot(self, joint_positions: FloatArray, objects: Mapping[str, SE3]) -> dict[str, SE3]:
+        """Pose the robot and some objects; returns T_world_body of all of them and of `world`."""
+        poses = {**robot_poses(self._description, joint_positions), **objects}
         self.picture.pose(poses)
         return poses
 

@@ -190,7 +190,7 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> SuiteRun:
-    from harness.ros.launch import named_commands
+    from harness.session.run_request import named_commands
     from harness.suite.plan import SuiteRequest, planned_cases, record_of
     from harness.suite.shards import shard_of, write_shard_record
     from harness.suite.suite_run import SuiteOptions, SuiteRun
@@ -237,6 +237,8 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
         live=live,
     )
     plan = planned_cases(files, request)
+    if shard is not None and root is None:
+        complain("note: with --no-report a part leaves nothing to merge; use --no-page instead")
     if shard is not None and root is not None:
         write_shard_record(record_of(files, request, shard, root))
         if conditions is not None:

@@ -192,12 +192,21 @@ def chain(kind: str) -> KeyChain | None:
     return None if _shared is None else KeyChain(_shared, kind)
 
 
+def was_seen(*inputs: object) -> bool:
+    """Whether a case had the same inputs before; not where nothing is shared."""
+    try:
+        return _shared is not None and _shared.was_seen(exact_key(*inputs))
+    except NoKeyError:
+        return False
+
+
 def shared(
     kind: str,
     inputs: Callable[[], tuple[object, ...]],
     compute: Callable[[], T],
     *,
     is_often_needed: bool = True,
+    may_be_known: bool = True,
 ) -> T:
     """The result of a computation, from a case that had the same inputs or computed here.
 
@@ -207,8 +216,12 @@ def shared(
         compute: A pure function of the inputs, whose result can be pickled.
         is_often_needed: Whether the first case keeps the result; else the second one that has the
             same inputs does, which costs less where most inputs are different in every case.
+        may_be_known: Whether the result is looked up, and kept for others.
     """
     if _shared is None:
+        return compute()
+    if not may_be_known:
+        _shared.tally.computed[kind] += 1
         return compute()
     try:
         key = exact_key(kind, *inputs())

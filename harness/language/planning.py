@@ -102,7 +102,7 @@ class Planning(SpecModel):
         default=None,
         description="Measured poses of objects, and the measured position of the gripper, are "
         "rounded to multiples of this before motions are planned [m, and the same number in rad]; "
-        "the default is not to round. The samples of `randomize` round to 10 um.",
+        "the default is not to round. The samples of `randomize` round to 0.1 mm.",
     )
     parameters: dict[Name, Number] | None = Field(
         default=None,

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import coal
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from harness.core.geometry import Shape
 from harness.core.pose_arrays import times_each
 from harness.core.spatial import rotation_from_quat_wxyz
-from harness.core.types import BoolArray, FloatArray
+from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.forward_kinematics import LinkPoses
@@ -48,9 +48,9 @@ class BodyTrack:
         """Samples with a pose, shape (N,)."""
         return np.isfinite(self.translations[:, 0])
 
-    def part(self, samples: BoolArray | slice) -> BodyTrack:
+    def part(self, samples: BoolArray | IntArray) -> BodyTrack:
         """The same body at some samples only."""
-        if not isinstance(samples, slice) and samples.all():
+        if samples.dtype == bool and samples.all():
             return self
         return BodyTrack(self.rotations[samples], self.translations[samples])
 
@@ -206,16 +206,65 @@ def travels(seen: BodyTrack, centers: FloatArray, radii: FloatArray) -> FloatArr
 
 
 @dataclass(frozen=True, eq=False)
+class Looks:
+    """Samples at which gaps are computed, and for how long each gap serves.
+
+    Attributes:
+        at: The samples of the looks, ascending, shape (looks,).
+        counts: How many samples each serves, from its own on, shape (looks,).
+        ends: The last samples before which they must hold: that of the next look, or the last one
+            of the stretch, shape (looks,).
+        follows: Whether each sample but the first is of the stretch before, shape (N - 1,).
+    """
+
+    at: IntArray
+    counts: IntArray
+    ends: IntArray
+    follows: BoolArray
+
+    @classmethod
+    def of(cls, stretches: IntArray) -> Looks:
+        """A look every `LOOKS` samples of each stretch.
+
+        Args:
+            stretches: The number of the stretch of each sample, ascending, shape (N,).
+        """
+        follows = np.diff(stretches) == 0
+        begins = np.append(0, np.flatnonzero(~follows) + 1)
+        place = np.arange(len(stretches)) - np.repeat(
+            begins, np.diff(begins, append=len(stretches))
+        )
+        at = np.flatnonzero(place % LOOKS == 0)
+        following = np.append(at[1:], len(stretches))
+        return cls(at, following - at, following - np.append(place[at[1:]] == 0, True), follows)
+
+
+@lru_cache(maxsize=16)
+def _looks_at_one_stretch(count: int) -> Looks:
+    return Looks.of(np.zeros(count, dtype=np.int64))
+
+
+@dataclass(frozen=True, eq=False)
 class MovingBody:
     """The shapes of a body, and where the body is at N samples.
 
     Attributes:
         shapes: The collision shapes of the body.
         track: T_world_body at every sample; absent at none.
+        stretches: The number of the stretch of consecutive samples that each is in, ascending,
+            shape (N,); None where all are one.
     """
 
     shapes: Sequence[TrackedShape]
     track: BodyTrack
+    stretches: IntArray | None = None
+
+    @cached_property
+    def looks(self) -> Looks:
+        """The looks at these samples."""
+        if self.stretches is None:
+            return _looks_at_one_stretch(len(self.track.translations))
+        return Looks.of(self.stretches)
 
     @cached_property
     def radii(self) -> FloatArray:
@@ -225,15 +274,12 @@ class MovingBody:
     @cached_property
     def centers_at_looks(self) -> FloatArray:
         """The centres of these balls in the world, at every look [m], shape (looks, 3, shapes)."""
-        return centers_of(self.track.part(slice(None, None, LOOKS)), self.shapes)
+        return centers_of(self.track.part(self.looks.at), self.shapes)
 
     @cached_property
     def reach(self) -> FloatArray:
-        """The most that a point of a shape moves from each look to the next [m], shape (looks,)."""
-        travelled = self.travelled
-        ends = np.append(travelled[LOOKS::LOOKS], travelled[-1])
-        begins = travelled[::LOOKS]
-        return ends[: len(begins)] - begins
+        """The most that a point of a shape moves until the next look [m], shape (looks,)."""
+        return self.travelled[self.looks.ends] - self.travelled[self.looks.at]
 
     @cached_property
     def travelled(self) -> FloatArray:
@@ -252,7 +298,10 @@ class MovingBody:
 
     def part(self, samples: BoolArray) -> MovingBody:
         """The same body at some samples only."""
-        return self if samples.all() else MovingBody(self.shapes, self.track.part(samples))
+        if samples.all():
+            return self
+        stretches = None if self.stretches is None else self.stretches[samples]
+        return MovingBody(self.shapes, self.track.part(samples), stretches)
 
 
 def links_with_shapes(

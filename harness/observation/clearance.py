@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.geometry import Shape
-from harness.core.sharing import shared
+from harness.core.sharing import shared, was_seen
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.observation.body_tracks import (
     BodyTrack,
@@ -90,7 +90,10 @@ class CoalClearance:
             inside_of(samples, largest_dip(found.dips()) > LARGEST_ERROR),
         )
         if len(near):
-            finer = self._measured(motion.at(near), objects, attachments, cutoff, only)
+            stretches = np.cumsum(np.diff(near, prepend=near[:1]) > 1, dtype=np.int64)
+            finer = self._measured(
+                motion.at(near), objects, attachments, cutoff, only, stretches=stretches
+            )
             samples = found.refined(finer, samples, near)
         distances = {
             key: between(samples, values, count) for key, values in found.distances.items()
@@ -160,18 +163,22 @@ class CoalClearance:
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
         only: Collection[Pair] | None = None,
+        stretches: IntArray | None = None,
     ) -> MeasuredClearance:
         """Distances at every given sample; None measures all pairs."""
+        found = MeasuredClearance(len(motion.times), only=only, stretches=stretches)
         is_of_robot = only is None or any(ROBOT in pair for pair in only)
         if not (is_of_robot or any(_during(each, motion).any() for each in attachments)):
-            return MeasuredClearance(len(motion.times), only=only)
+            return found
+        found.may_be_known = was_seen(
+            "motion", self.description.key, motion.joint_positions, cutoff, only, stretches
+        )
         links = LinkPoses(self.description, motion.joint_positions)
         tracks = {
             record.name: object_track(record, attachments, motion, links) for record in objects
         }
-        found = MeasuredClearance(len(motion.times), only=only)
         bodies = {
-            link: MovingBody(shapes, link_track(links, link))
+            link: MovingBody(shapes, link_track(links, link), stretches)
             for link, shapes in self._shapes.items()
         }
         self._robot_to_itself(found, bodies, motion, cutoff)
@@ -215,7 +222,8 @@ class CoalClearance:
 
         def bodies() -> Iterator[Bodies]:
             standing = self.description.static_links if record.is_static else frozenset()
-            other = MovingBody(tracked_shapes(record.name, record.shapes), track)
+            shapes = tracked_shapes(record.name, record.shapes)
+            other = MovingBody(shapes, track, found.stretches_of(there))
             yield [body.part(there) for link, body in links.items() if link not in standing], other
 
         inputs = (
@@ -266,7 +274,7 @@ class CoalClearance:
 
         def bodies() -> Iterator[Bodies]:
             first, second = (
-                MovingBody(tracked_shapes(*each), track)
+                MovingBody(tracked_shapes(*each), track, found.stretches_of(there))
                 for each, track in zip(shapes, tracks, strict=True)
             )
             yield [first] if first.shapes else [], second
@@ -298,7 +306,10 @@ class CoalClearance:
             of_pair = np.array([self._index.get(pair.first.body, -1) for pair in every] + [-1])
             return distances, of_pair[which], largest_travel(every, cutoff, count)
 
-        result = shared("distances", lambda: (*inputs, cutoff), measured, is_often_needed=False)
+        def facts() -> tuple[object, ...]:
+            return *inputs, cutoff, found.stretches
+
+        result = shared("distances", facts, measured, may_be_known=found.may_be_known)
         if result:
             distances, links, moved = result
             found.put(key, there, distances, links if key[0] == ROBOT else None, moved)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from harness.core.sharing import shared
 from harness.core.types import FloatArray, Pair
 from harness.observation.body_tracks import (
     MovingBody,
@@ -36,10 +37,17 @@ def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signa
     count = len(signals.times)
     if not count:
         return signals
+    shapes = links_with_shapes({link.name: link.collisions for link in description.links})
+    apart = shared(
+        "distances",
+        lambda: ("at zero", description.key),
+        lambda: _pairs_apart_by_design(description, shapes),
+    )
     samples = knots(signals.times, (), ())
     moving = LinkPoses(description, signals.joint_positions[samples])
     overlaps: dict[Pair, FloatArray] = {}
-    for pair, pairs in _pairs_apart_by_design(description, moving):
+    for pair in apart:
+        pairs = _shape_pairs(shapes, moving, *pair, cutoff=0.0)
         distances, _ = smallest_distances(pairs, 0.0, len(samples))
         if float(distances.min()) < -LEAST_DEPTH:
             overlaps[pair] = np.maximum(-between(samples, distances, count), 0.0)
@@ -47,22 +55,23 @@ def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signa
 
 
 def _pairs_apart_by_design(
-    description: RobotDescription, moving: LinkPoses
-) -> Iterator[tuple[Pair, list[ShapePair]]]:
-    """Excluded pairs of links, and those of their shapes that may overlap along the run."""
+    description: RobotDescription, shapes: Mapping[str, tuple[TrackedShape, ...]]
+) -> list[Pair]:
+    """Excluded pairs of links that are apart with all joints at zero."""
     robot = RobotModel(description)
-    shapes = links_with_shapes({link.name: link.collisions for link in description.links})
     lower = np.array([joint.lower for joint in description.movable_joints])
     upper = np.array([joint.upper for joint in description.movable_joints])
     zero = description.with_mimics(np.clip(np.zeros(len(lower)), lower, upper))
     still = LinkPoses(description, zero[None])
     fingers = set() if description.gripper is None else set(description.gripper.links)
+    found: list[Pair] = []
     for first, second in sorted(description.allowed_collisions):
         is_rigid = robot.parent_joint(first) == robot.parent_joint(second)
         if {first, second} <= set(shapes) and not is_rigid and not {first, second} <= fingers:
             at_zero = _shape_pairs(shapes, still, first, second)
             if min(pair.distance(0) for pair in at_zero) > LEAST_DEPTH:
-                yield (first, second), _shape_pairs(shapes, moving, first, second, cutoff=0.0)
+                found.append((first, second))
+    return found
 
 
 def _shape_pairs(

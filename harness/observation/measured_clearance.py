@@ -21,6 +21,9 @@ class MeasuredClearance:
         travels: The most that the bodies moved against each other since the sample before [m],
             shape (count,).
         only: The pairs that are measured; None measures all.
+        stretches: The number of the stretch of consecutive samples that each is in, shape (count,);
+            None where all are one.
+        may_be_known: Whether the robot moved like this in another case before.
     """
 
     count: int
@@ -28,6 +31,8 @@ class MeasuredClearance:
     links: dict[Pair, IntArray] = field(default_factory=dict[Pair, IntArray])
     travels: dict[Pair, FloatArray] = field(default_factory=dict[Pair, FloatArray])
     only: Collection[Pair] | None = None
+    stretches: IntArray | None = None
+    may_be_known: bool = False
 
     @classmethod
     def joined(cls, parts: Sequence[MeasuredClearance]) -> MeasuredClearance:
@@ -43,6 +48,10 @@ class MeasuredClearance:
                 whole.put(key, rows, distances[skipped:], links, travels)
             begin += part.count - 1
         return whole
+
+    def stretches_of(self, rows: BoolArray) -> IntArray | None:
+        """The numbers of the stretches of some samples."""
+        return None if self.stretches is None else self.stretches[rows]
 
     def put(
         self,

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from operator import attrgetter
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.observation.body_tracks import (
-    LOOKS,
     BodyTrack,
     MovingBody,
     TrackedShape,
@@ -59,13 +59,17 @@ class ShapePair:
 
     def distance(self, sample: int) -> float:
         """Signed distance at a sample [m]."""
-        seen = coal.Transform3s(self.seen.rotations[sample], self.seen.translations[sample])
-        a, b = self.first, self.second
+        _SEEN.setTransform(self.seen.rotations[sample], self.seen.translations[sample])
         _RESULT.clear()
-        return coal.distance(a.geometry, seen * a.pose, b.geometry, b.pose, _REQUEST, _RESULT)
+        return self._compute(_SEEN * self.first.pose, self.second.pose, _REQUEST, _RESULT)
+
+    @cached_property
+    def _compute(self) -> coal.ComputeDistance:
+        return coal.ComputeDistance(self.first.geometry, self.second.geometry)
 
 
 _REQUEST, _RESULT = coal.DistanceRequest(), coal.DistanceResult()
+_SEEN = coal.Transform3s()  # set for each measurement: half the time of making another one
 
 
 def pairs_between(
@@ -85,7 +89,8 @@ def pairs_between(
         near = begin + np.flatnonzero(is_near[begin : begin + len(first.shapes)])
         if len(near):
             shapes = [first.shapes[index] for index in (near - begin).tolist()]
-            found += _pairs_of(MovingBody(shapes, first.track), second, gaps[:, :, near], cutoff)
+            some = MovingBody(shapes, first.track, first.stretches)
+            found += _pairs_of(some, second, gaps[:, :, near], cutoff)
         begin += len(first.shapes)
     return found
 
@@ -100,7 +105,7 @@ def _gaps_at_looks(
         about all K shapes of the first bodies at every look [m], shape (shapes, looks, K); then
         whether a ball may come that near before the last sample, shape (K,).
     """
-    looks = second.track.part(slice(None, None, LOOKS))
+    looks = second.track.part(second.looks.at)
     centers = np.concatenate([body.centers_at_looks for body in firsts], axis=2)
     turned = np.swapaxes(looks.rotations, 1, 2)
     seen = turned @ (centers - looks.translations[:, :, None])
@@ -117,13 +122,14 @@ def _pairs_of(
     """The pairs of two bodies that come nearer than the cutoff; gaps as of `_gaps_at_looks`."""
     seen = relative_track(first.track, second.track)
     travelled = travels(seen, centers_of(seen, first.shapes), first.radii)
-    since = travelled - np.repeat(travelled[::LOOKS], LOOKS, axis=0)[: len(travelled)]
+    looks = first.looks
+    since = travelled - np.repeat(travelled[looks.at], looks.counts, axis=0)
     since += first.radii
-    ends = np.concatenate([since[LOOKS - 1 :: LOOKS], since[-1:]])[: gaps.shape[1]]
+    ends = since[looks.at + looks.counts - 1]
     lowest = (gaps - ends).min(axis=1)  # each bound is lowest just before the next look
-    margin = np.diff(travelled, axis=0).max(axis=0, initial=0.0)
+    margin = np.diff(travelled, axis=0)[looks.follows].max(axis=0, initial=0.0)
     which, other = np.nonzero((lowest - margin < cutoff).T)
-    least = np.repeat(gaps[other, :, which], LOOKS, axis=1)[:, : len(travelled)] - since.T[which]
+    least = np.repeat(gaps[other, :, which], looks.counts, axis=1) - since.T[which]
     return [
         ShapePair(first.shapes[i], second.shapes[j], seen, travelled[:, i], bound, lowest[j, i])
         for i, j, bound in zip(which.tolist(), other.tolist(), least, strict=True)

@@ -35,7 +35,7 @@ def nodes_of(config: pytest.Config) -> dict[str, str]:
     given = [*config.getini("harness_nodes"), *(config.getoption("--harness-node") or ())]
     if not given:
         return {}
-    from harness.ros.launch import named_commands
+    from harness.session.run_request import named_commands
 
     return named_commands(given)
 

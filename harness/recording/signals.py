@@ -9,6 +9,12 @@ import numpy as np
 
 from harness.core.types import FloatArray, Floats, IntArray, Pair
 
+UNPUBLISHED = (
+    *("contact_forces", "presses", "frictions", "support_forces"),
+    *("link_overlaps", "planned_clearances"),
+)
+"""Signals that no topic of a robot carries, and that no recording of its topics contains."""
+
 
 @dataclass(frozen=True)
 class ContactRecord:

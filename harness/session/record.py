@@ -97,6 +97,13 @@ def library_versions() -> Mapping[str, str]:
     return {name: version(name) for name in LIBRARIES}
 
 
+def resolved_scenario(request: RunRequest, prepared: Prepared) -> str:
+    """The scenario as a report has it: every value written out, with the seeds of its steps."""
+    program = prepared.program
+    seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
+    return resolved_text(prepared.loaded, seeds, folder=request.report_dir)
+
+
 def executed_run(
     request: RunRequest,
     prepared: Prepared,
@@ -104,7 +111,7 @@ def executed_run(
     signals: Signals,
     overlaps: Sequence[Touch],
 ) -> Run:
-    """What was executed and recorded, without what is observed on it afterwards.
+    """What was executed and recorded, without what is observed on it and what only a report has.
 
     Args:
         request: The request of the case.
@@ -116,7 +123,6 @@ def executed_run(
     program = prepared.program
     robot = robot_record(program.description, prepared.kinematics)
     steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
-    seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
     return Run(
         scenario=program.title,
         file=str(request.file),
@@ -138,7 +144,6 @@ def executed_run(
             *faults,
         ),
         source=prepared.loaded.text,
-        resolved=resolved_text(prepared.loaded, seeds, folder=request.report_dir),
         versions=library_versions(),
         ended_early=execution.ended_early,
         cameras=tuple(program.cameras.values()),

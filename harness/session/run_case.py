@@ -8,6 +8,7 @@ from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 
+from harness.assertions.facts import remembered_facts
 from harness.assertions.judge import judge
 from harness.cell.program import ProgramStep
 from harness.core import sharing
@@ -29,7 +30,7 @@ from harness.session.observe import explained_run, observed_run, with_believed_p
 from harness.session.pictures import Drawings, Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
-from harness.session.record import executed_run
+from harness.session.record import executed_run, resolved_scenario
 from harness.session.run_request import RunRequest
 from harness.session.start import Start, overlap_note, start_case
 from harness.session.timing import Clock
@@ -76,7 +77,8 @@ def run_case(
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
             with clock.part("judge"):
-                judged = replace(judged, run=explained_run(prepared, judged.run))
+                run = replace(judged.run, resolved=resolved_scenario(request, prepared))
+                judged = replace(judged, run=explained_run(prepared, run))
             return _reported(request, request.report_dir, judged, result, pictures, clock, progress)
     except HarnessError as error:
         return _broken(request, prepared, clock, error)
@@ -123,6 +125,7 @@ def _executed(
     )
 
 
+@remembered_facts()
 def _judged(
     request: RunRequest,
     executed: Run,

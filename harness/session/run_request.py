@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
+
+from harness.core.errors import Problem, SpecError
 
 
 class Draw(Protocol):
@@ -74,3 +76,23 @@ class RunRequest:
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     share: bool = True
     live: str = ""
+
+
+def named_commands(given: Iterable[str]) -> dict[str, str]:
+    """Commands by name, from `NAME=COMMAND` or `COMMAND`.
+
+    Raises:
+        SpecError: A command is empty, or two have the same name.
+    """
+    commands: dict[str, str] = {}
+    for text in given:
+        name, equals, command = text.partition("=")
+        if not (equals and name.isidentifier()):
+            name, command = "node", text
+        reason = "" if command.strip() else "it has no command"
+        if name in commands:
+            reason = f"two commands are called '{name}'; write NAME=COMMAND"
+        if reason:
+            raise SpecError([Problem(f"the node '{text}'", 0, 0, reason)])
+        commands[name] = command
+    return commands

@@ -249,9 +249,12 @@ class ContactRecord:
         codes = np.minimum(one, other) * size + np.maximum(one, other)
         codes = codes.astype(np.min_scalar_type(size * size))  # 16 bits are sorted in linear time
         order = np.argsort(codes, kind="stable")
-        pairs, starts = np.unique(codes[order], return_index=True)
-        parts = np.split(order + begin, starts[1:])
-        for code, contacts in zip(pairs.tolist(), parts, strict=True):
+        codes = codes[order]
+        starts = np.flatnonzero(codes[1:] != codes[:-1]) + 1
+        order += begin
+        for code, contacts in zip(
+            codes[[0, *starts]].tolist(), np.split(order, starts), strict=True
+        ):
             yield divmod(code, size), contacts
 
     def _signs(self, contacts: Array, body: int) -> Array:

@@ -43,7 +43,8 @@ class Servoed(Protocol):
     def joint_positions(self) -> FloatArray: ...
     def commanded_positions(self) -> FloatArray: ...
     def whole(self, points: SetPoints, columns: IntArray) -> SetPoints: ...
-    def follow(self, whole: SetPoints, begin: int, end: int) -> None: ...
+    def controls(self, points: SetPoints) -> FloatArray: ...
+    def follow(self, points: SetPoints, controls: FloatArray | None) -> None: ...
     def command(self, positions: FloatArray) -> None: ...
     def hold_samples(self, count: int) -> None: ...
     def limit_grip(self, actuator: int, effort: float) -> None: ...
@@ -93,6 +94,7 @@ class GripperDrive:
         simulator, timestep = self._simulator, self._recording.timestep
         points = self._ramp(position)
         whole = simulator.whole(points, np.array([self._actuator]))
+        controls = simulator.controls(whole)
         first = self._recording.count
         stall_samples = round(STALL_TIME / timestep)
         begin, reached, stalled = 0, False, False
@@ -100,7 +102,7 @@ class GripperDrive:
             simulator.limit_grip(self._actuator, max_effort)
             if begin < len(whole) - 1:
                 end = min(begin + CHECK_EVERY, len(whole) - 1)
-                simulator.follow(whole, begin, end)
+                simulator.follow(whole.part(begin, end), controls[begin : end + 1])
                 begin = end
             else:
                 simulator.command(whole.positions[-1])
@@ -122,19 +124,14 @@ class GripperDrive:
         )
 
     def _ramp(self, position: float) -> SetPoints:
-        joint = self._simulator.description.movable_joints[self._joint]
-        start, timestep = self._start(position), self._recording.timestep
-        return ramp(start, position, self._speed, joint.acceleration, timestep)
+        simulator = self._simulator
+        measured = float(simulator.joint_positions()[self._joint])
+        commanded = float(simulator.commanded_positions()[self._joint])
+        timestep = self._recording.timestep
+        return gripper_ramp(simulator.description, measured, commanded, position, timestep)
 
     def _miss(self, position: float) -> float:
         return abs(float(self._simulator.joint_positions()[self._joint]) - position)
-
-    def _start(self, position: float) -> float:
-        """The last command, or the joint's position where the command is in the other direction."""
-        measured = float(self._simulator.joint_positions()[self._joint])
-        commanded = float(self._simulator.commanded_positions()[self._joint])
-        turns_back = (position - measured) * (commanded - measured) < 0
-        return measured if turns_back else commanded
 
     def _contacts(self) -> dict[str, tuple[str, ...]]:
         last = self._recording.count
@@ -169,6 +166,21 @@ class GripperDrive:
             if any(is_antipodal(*pair, thickness)[0] for pair in combinations(sides, 2)):
                 found.append(name)
         return tuple(sorted(found))
+
+
+def gripper_ramp(
+    description: RobotDescription, measured: float, commanded: float, goal: float, timestep: float
+) -> SetPoints:
+    """The motion of the gripper's joint to a goal.
+
+    It begins at the last command, or at the joint's position where the command is in the other
+    direction.
+    """
+    gripper = description.gripper
+    assert gripper is not None
+    joint, speed = description.joint_by_name[gripper.joint], joint_speed(description, gripper)
+    turns_back = (goal - measured) * (commanded - measured) < 0
+    return ramp(measured if turns_back else commanded, goal, speed, joint.acceleration, timestep)
 
 
 def joint_speed(description: RobotDescription, gripper: Gripper) -> float:

@@ -111,7 +111,7 @@ class MujocoSimulator:
     def _first_control(self) -> FloatArray:
         """Inputs of the motors at the start."""
         try:
-            return self._controls(self._still(self._command))[0]
+            return self.controls(self._still(self._command))[0]
         except StepFailed as failed:
             refresh(self._model, self._data)
             self._refuse_unusable_start()  # the cause, if forces at the start are infinite
@@ -172,7 +172,7 @@ class MujocoSimulator:
         whole = self.whole(points, columns)
         if self._gripper is not None:
             whole = self._gripper.join(whole)
-        controls = self._controls(whole)
+        controls = self.controls(whole)
         for begin in range(0, len(whole) - 1, CHECK_EVERY):
             end = min(begin + CHECK_EVERY, len(whole) - 1)
             first = self._recording.count
@@ -279,7 +279,7 @@ class MujocoSimulator:
     def command(self, positions: FloatArray) -> None:
         """Set the servos to hold actuated joints at positions, shape (m,)."""
         self._command = np.array(positions)
-        self._control = self._controls(self._still(self._command))[0]
+        self._control = self.controls(self._still(self._command))[0]
 
     def hold_samples(self, count: int) -> None:
         """Hold the last commands for a number of samples."""
@@ -303,11 +303,15 @@ class MujocoSimulator:
         if self._grip is not None:
             self.limit_grip(*self._grip)
 
-    def follow(self, whole: SetPoints, begin: int, end: int) -> None:
-        """Advance along set points of all actuated joints from row `begin` to row `end`."""
-        part = whole.part(begin, end)
-        self._advance(part, self._controls(part))
-        self._command = part.positions[-1]
+    def follow(self, points: SetPoints, controls: FloatArray | None = None) -> None:
+        """Advance along set points of all actuated joints.
+
+        Args:
+            points: The set points, the first where the command stands.
+            controls: What `controls` says of them; computed by default.
+        """
+        self._advance(points, self.controls(points) if controls is None else controls)
+        self._command = points.positions[-1]
 
     @property
     def timestep(self) -> float:
@@ -326,7 +330,7 @@ class MujocoSimulator:
         points = SetPoints(*rows)
         self._recording.refuse_beyond(len(points) - 1)
         self.renew_grip_limit()
-        self.follow(points, 0, len(points) - 1)
+        self.follow(points)
 
     def measured(self, first: int) -> tuple[FloatArray, FloatArray]:
         """Positions and velocities from a sample on, description order, shape (N, n) each."""
@@ -380,8 +384,8 @@ class MujocoSimulator:
         still = np.zeros((1, len(command)))
         return SetPoints(command[None], still, still)
 
-    def _controls(self, points: SetPoints) -> FloatArray:
-        """Inputs of the motors; those of a controller that measures are not known beforehand."""
+    def controls(self, points: SetPoints) -> FloatArray:
+        """Inputs of the motors at set points; zero where the controller measures first."""
         if self._drive.cycle is not None:
             return np.zeros_like(points.positions)
         return self._drive.inputs(points)

@@ -149,7 +149,9 @@ class Recording:
 
     def touching_geoms(self, first: int, last: int) -> IntArray:
         """Pairs of geoms that touch in samples first to last - 1, in order, shape (K, 2)."""
-        return np.unique(self._contacts.geoms(first, last), axis=0)
+        size = self._physics.model.ngeom
+        one, other = self._contacts.geoms(first, last).astype(np.int64).T
+        return np.column_stack(np.divmod(np.unique(one * size + other), size))
 
     def refuse_beyond(self, steps: int) -> None:
         """Check that a number of further samples can be recorded.

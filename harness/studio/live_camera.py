@@ -13,7 +13,6 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.errors import HarnessError
-from harness.core.spatial import SE3
 from harness.studio.live_cell import LiveCell
 from harness.studio.newest import Newest
 
@@ -74,18 +73,13 @@ def camera_picture(cell: LiveCell, camera: Camera, most_pixels: int) -> str:
     """
     from harness.cameras.camera_scene import CameraScene
     from harness.cameras.ray_renderer import RayRenderer
-    from harness.robot.forward_kinematics import robot_poses
 
     program = cell.prepared.program
     shrink = min(1.0, (most_pixels / (camera.width * camera.height)) ** 0.5)
     width, height = max(1, round(shrink * camera.width)), max(1, round(shrink * camera.height))
     camera = replace(camera, width=width, height=height)
     scene = CameraScene(program.description, program.all_objects(), [camera])
-    poses: dict[str, SE3] = {"world": SE3.identity()}
-    poses |= robot_poses(program.description, cell.joint_positions())
-    poses |= cell.object_poses()
-    scene.picture.pose(poses)
-    view = scene.view(camera, poses)
+    view = scene.view(camera, scene.pose_robot(cell.joint_positions(), cell.object_poses()))
     if view is None:
         raise HarnessError(f"'{camera.frame}', which carries it, is not there")
     picture = RayRenderer(scene.picture, width, height).render(view)

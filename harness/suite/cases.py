@@ -64,14 +64,14 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
 
 
 def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
-    """Do once what every run does: import steps, read the robots that are named, look up versions.
+    """Do once what every run does: import steps, read robots and worlds, look up versions.
 
     Args:
         words: The words of the scenarios.
-        some: Cases whose bundled robots other cases have too.
+        some: Cases whose bundled robots and worlds other cases have too.
     """
     from harness.core.registry import import_built_in
-    from harness.language.reading.load import read_scenario
+    from harness.language.reading.load import is_foreign_world, load_world, read_scenario
     from harness.robot.load import load_ahead, read_bundled
     from harness.session.record import library_versions
 
@@ -83,6 +83,8 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
             read = read_scenario(job.file, job.overrides, job.seed, job.text).loaded
             if read is not None:
                 load_ahead(read.scenario.robot, read.scenario.collision)
+                if not is_foreign_world(read.scenario.world.name):
+                    load_world(read.scenario.world.name, read.path.parent)
 
 
 def share_results() -> None:

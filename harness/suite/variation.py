@@ -21,8 +21,9 @@ from harness.core.quantity import common_unit, share_of, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, Parametrize, count_of
 
 DEFAULT_SAMPLES = 20
-POSE_RESOLUTION = "1.0e-05"
-"""Resolution [m] of measured poses in samples: objects at rest differ less with other friction."""
+POSE_RESOLUTION = "1.0e-04"
+"""Resolution [m] of measured poses in samples: with other friction objects differ less, at rest and
+in a hand. It is a twentieth of the default padding."""
 LONGEST_NAME = 60
 SMALLEST_SHARE = 1e-12
 """Smallest tail share of a normal distribution whose quantile is still finite."""

@@ -258,3 +258,29 @@ def test_a_body_that_comes_near_while_the_nearest_one_stands_still_is_found(leng
         near = distances < 0.1 - 1e-5
         assert {order[index] is found[1] for index in which[near].tolist()} == {True}
         assert near.any()
+
+
+def test_stretches_of_samples_far_apart_leave_the_same_pairs_as_each_alone():
+    """A jump between two stretches brings no pair nearer."""
+    poses = random_poses(5, 120, 0.002)
+    poses[:, 0] += 0.5
+    poses[60:, 0] += 3.0
+    shapes, others = tracked_shapes("a", SHAPES), tracked_shapes("b", SHAPES[::-1])
+    alone = [
+        pairs_between([MovingBody(shapes, track_of_poses(part))], standing(others, 60), 0.4)
+        for part in (poses[:60], poses[60:])
+    ]
+    assert alone[0]
+    assert not alone[1]
+    stretches = np.repeat([0, 1], 60)
+    body = standing(others, 120)
+    both = pairs_between(
+        [MovingBody(shapes, track_of_poses(poses), stretches)],
+        MovingBody(others, body.track, stretches),
+        0.4,
+    )
+    assert [(pair.first, pair.second) for pair in both] == [
+        (pair.first, pair.second) for pair in alone[0]
+    ]
+    apart, joined = smallest_distances(alone[0], 0.4, 60), smallest_distances(both, 0.4, 120)
+    assert joined[0].tolist() == pytest.approx([*apart[0], *[0.4] * 60], abs=2e-6)

@@ -147,6 +147,13 @@ def test_parts_of_different_suites_are_refused(parts, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_part_that_leaves_nothing_to_merge_says_so(tmp_path):
+    (tmp_path / "grid.scenario.yaml").write_text(GRID)
+    words = ("run", ".", "--shard", "1/9", "--no-report")
+    assert "a part leaves nothing to merge; use --no-page" in harness(*words, cwd=tmp_path).stderr
+    assert not (tmp_path / "reports").exists()
+
+
 def test_parts_of_two_versions_are_refused(parts, tmp_path):
     old = shutil.copytree(parts / "at2", tmp_path / "old")
     text = (old / "shard.json").read_text()

@@ -45,15 +45,10 @@ from harness.grading.bag.sampling import Trace, gap_limit, sample_times
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Finding, ObjectRecord, Run
-from harness.recording.signals import Signals
+from harness.recording.signals import UNPUBLISHED, Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
-NEVER_THERE = (
-    *("contact_forces", "presses", "frictions", "support_forces"),
-    *("clearances", "planned_clearances", "link_overlaps"),
-)
-"""Signals that no recording contains."""
 JOINT_SIGNALS = (
     "joint_velocities",
     "joint_efforts",
@@ -279,7 +274,7 @@ def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tu
     names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
     if not _is_of_this_program(events):
         names += ["attachments"] if has_steps else ["attachments", "steps"]
-    return (*names, *NEVER_THERE)
+    return (*names, *UNPUBLISHED, "clearances")
 
 
 def _object_record(

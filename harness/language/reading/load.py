@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Generic, Literal, TypeVar, cast
 
@@ -196,13 +197,20 @@ def load_world(name_or_path: str, base_dir: Path) -> LoadedWorld:
         SpecError: No such world, or with every problem of its file.
     """
     path = world_path(name_or_path, base_dir)
-    problems: list[Problem] = []
     try:
-        text = read_text(path)
-        require_key(text, ("world",), str(path), "world file")
-        written = parse_yaml(text, Source.of_text(str(path), text), problems)
+        return _read_world(path, read_text(path))
+    except _BrokenError:
+        raise
     except SpecError as error:
         raise SpecError(_of_world(problem, name_or_path) for problem in error.problems) from error
+
+
+@lru_cache(maxsize=8)
+def _read_world(path: Path, text: str) -> LoadedWorld:
+    """The world in a text; cases that are forked by this process find the one that it has read."""
+    problems: list[Problem] = []
+    require_key(text, ("world",), str(path), "world file")
+    written = parse_yaml(text, Source.of_text(str(path), text), problems)
     model, lines = _model(written, WorldSpec, problems)
     return LoadedWorld(model, path, text, lines, written)
 
