@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -31,8 +32,7 @@ def coal_geometry(shape: Shape) -> Any:
 
     match shape.geometry:
         case Box(size=size):
-            _settle_boxes()
-            return coal.Box(*size)
+            return _box(size)
         case Cylinder(radius=radius, length=length):
             return coal.Cylinder(radius, length)
         case Sphere(radius=radius):
@@ -76,18 +76,30 @@ def nearest_point(shapes: Iterable[Shape], point: FloatArray) -> FloatArray:
     return np.array(nearest.getNearestPoint1())
 
 
-@cache
-def _settle_boxes() -> None:
-    """Make Coal use the exact size of boxes in this process.
+def _box(size: tuple[float, float, float]) -> Any:
+    """A box as a convex body of eight corners.
 
-    Coal 3.0 inflates all boxes by 1e-10 if the direction of the process's first support query for a
-    box has a zero component (a static variable). Distances and digests would depend on the first
-    query, so this function makes that query with a direction without zeros.
+    Coal 3.0 makes one side of each `coal.Box` longer by 1e-10 if the first support query that any
+    code of the process made for a box was along one of its axes (a static variable). Distances and
+    digests would depend on what ran before.
     """
     import coal
 
-    turned = np.array([[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [-2.0, -1.0, 2.0]]) / 3.0
-    apart = coal.Transform3s(turned, np.array([3.0, 4.0, 5.0]))
-    origin = coal.Transform3s(np.eye(3), np.zeros(3))
-    cylinder, box = coal.Cylinder(0.1, 0.2), coal.Box(1.0, 1.0, 1.0)
-    coal.distance(cylinder, origin, box, apart, coal.DistanceRequest(), coal.DistanceResult())
+    corners = coal.StdVec_Vec3s()
+    corners.extend(list(_UNIT_CORNERS * size))
+    return coal.Convex(corners, _sides())
+
+
+_UNIT_CORNERS = np.array([*product((-0.5, 0.5), repeat=3)])
+
+
+@cache
+def _sides() -> Any:
+    """The sides of a box as triangles of `_UNIT_CORNERS`, seen counterclockwise from outside."""
+    import coal
+
+    corners = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    sides = coal.StdVec_Triangle()
+    for a, b, c, d in corners:
+        sides.extend([coal.Triangle(a, b, c), coal.Triangle(a, c, d)])
+    return sides

@@ -22,13 +22,18 @@ SMALLEST_MOMENT = 2e-14
 ELEMENT = re.compile(r"Element name '(?P<name>.*)', id \d+")
 """The part of MuJoCo's message that names what cannot be compiled."""
 
+CALLBACKS = ("control", "passive", "act_dyn", "act_gain", "act_bias", "sensor", "contactfilter")
+"""MuJoCo's callbacks that change a simulation; they act on each model of the process."""
+
 
 def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
     """Compile a specification.
 
     Raises:
-        ModelRefused: MuJoCo rejects a body or one of its geoms; the error names the body.
+        ModelRefused: MuJoCo rejects a body or one of its geoms; the error names the body. Or other
+            code of this process has set a callback of MuJoCo.
     """
+    _refuse_callbacks()
     try:
         return spec.compile()
     except ValueError as error:
@@ -41,6 +46,16 @@ def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
         body = next((name for name in (element, owner) if name in bodies), "")
         about = f" ('{element}')" if element and not body else ""
         raise ModelRefused(body, f"the physics refuses it: {reason}{about}") from error
+
+
+def _refuse_callbacks() -> None:
+    for name in CALLBACKS:
+        if getattr(mujoco, f"get_mjcb_{name}")() is not None:
+            raise ModelRefused(
+                "",
+                f"other code in this process called mujoco.set_mjcb_{name}, which would change the"
+                f" physics of this run too: call mujoco.set_mjcb_{name}(None) before it",
+            )
 
 
 def refuse_unusable_masses(objects: Iterable[WorldObject]) -> None:
