@@ -49,57 +49,69 @@ class Stills:
     note: str = ""
 
 
-def draw_stills(
-    description: RobotDescription,
-    world_objects: Sequence[WorldObject],
-    run: Run,
-    *,
-    backend: str = "auto",
-    activity: Activity = unobserved,
-) -> Stills:
-    """Draw a JPEG of every executed step, 640 x 480, in the state at its end.
+class StepRenderer:
+    """Draws the state at the end of every executed step; it is set up before the run is known."""
 
-    Objects that only the planning scene has are translucent.
+    def __init__(
+        self,
+        description: RobotDescription,
+        world_objects: Sequence[WorldObject],
+        backend: str = "auto",
+    ) -> None:
+        """Load the shapes and the graphics library.
 
-    Args:
-        backend: `auto`, `egl`, `osmesa` or `rays`.
-    """
-    steps = [step for step in run.steps if step.status != "not reached"]
-    if not steps or not len(run.signals.times):
-        return Stills()
-    picture = build_picture_model(
-        description,
-        world_objects,
-        floor_height=floor_height(description, world_objects),
-        width=WIDTH,
-        height=HEIGHT,
-    )
-    quality = picture.model.vis.quality
-    quality.shadowsize, quality.offsamples = SHADOW_SIZE, 0  # half of the time on a processor
-    view = overview(description, world_objects, run).view
-    renderer = make_renderer(picture, WIDTH, HEIGHT, backend)
-    files: dict[str, bytes] = {}
-    try:
+        Args:
+            description: The robot.
+            world_objects: All objects; those that only the planning scene has are translucent.
+            backend: `auto`, `egl`, `osmesa` or `rays`.
+        """
+        self._description, self._objects = description, world_objects
+        self._picture = build_picture_model(
+            description,
+            world_objects,
+            floor_height=floor_height(description, world_objects),
+            width=WIDTH,
+            height=HEIGHT,
+        )
+        quality = self._picture.model.vis.quality
+        quality.shadowsize, quality.offsamples = SHADOW_SIZE, 0  # half of the time on a processor
+        self._renderer = make_renderer(self._picture, WIDTH, HEIGHT, backend)
+        if self._renderer.backend != "rays":  # the first picture takes twice as long as others
+            self._renderer.render(fit_viewpoint(np.zeros((1, 3)), np.ones(1), WIDTH, HEIGHT).view)
+        self._notes: list[str] = []
+        if self._renderer.backend == "rays" and backend == "auto":
+            self._notes.append(
+                "pictures by the ray camera: this machine has neither EGL nor OSMesa"
+            )
+        missing = undrawn(description, world_objects)
+        if missing:
+            self._notes.append(
+                f"not in the pictures: {', '.join(missing)}; save them as OBJ or STL"
+            )
+
+    def draw(self, run: Run, activity: Activity = unobserved) -> Stills:
+        """Draw a JPEG of every executed step, 640 x 480."""
+        steps = [step for step in run.steps if step.status != "not reached"]
+        if not steps or not len(run.signals.times):
+            return Stills()
+        view = overview(self._description, self._objects, run).view
+        files: dict[str, bytes] = {}
         for number, step in enumerate(steps, start=1):
             activity("drawing a picture of each step", number - 1, len(steps))
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-            picture.pose(scene_poses(description, world_objects, run, sample, step))
+            self._picture.pose(scene_poses(self._description, self._objects, run, sample, step))
             files[f"{number:02d}-{step_slug(step.id)}.jpg"] = captioned_jpeg(
-                renderer.render(view),
+                self._renderer.render(view),
                 f"{number}/{len(steps)}  {step.summary or step.verb}",
                 ink=DARK,
                 status=f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}",
                 status_ink=INK.get(step.status, (60, 60, 60)),
             )
-    finally:
-        renderer.close()
-    notes: list[str] = []
-    if renderer.backend == "rays" and backend == "auto":
-        notes.append("pictures by the ray camera: this machine has neither EGL nor OSMesa")
-    missing = undrawn(description, world_objects)
-    if missing:
-        notes.append(f"not in the pictures: {', '.join(missing)}; save them as OBJ or STL")
-    return Stills(renderer.backend, files, "; ".join(notes))
+        return Stills(self._renderer.backend, files, "; ".join(self._notes))
+
+    def close(self) -> None:
+        """Free the resources of the graphics library."""
+        self._renderer.close()
 
 
 def overview(
@@ -113,8 +125,7 @@ def overview(
         link.name: max((bounding_radius(shape) for shape in link.collisions), default=0.03)
         for link in description.links
     }
-    samples = np.unique(np.linspace(0, last, STATES).astype(int))
-    for sample in samples:
+    for sample in np.unique(np.linspace(0, last, STATES).astype(int)):
         poses = robot_poses(description, run.signals.joint_positions[sample])
         for name, size in link_sizes.items():
             if name != "world":

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import ClassVar
 
@@ -21,31 +22,65 @@ class Reporter(Plugin, ABC):
 
     plugin_kind: ClassVar[str] = "reporter"
 
+    def begin(self, stored: StoredRun) -> None:
+        """Prepare what does not depend on pictures; by default nothing.
+
+        Args:
+            stored: The run, its verdicts and its outcome, while its pictures are being drawn: its
+                meshes, videos, files, and findings about these are not known yet.
+        """
+
     @abstractmethod
     def write(self, folder: Path, stored: StoredRun) -> None:
         """Write files into a case's report folder, which has `run.json` already.
 
         Args:
             folder: The folder, under the temporary name that it has until it is complete.
+            stored: The complete run.
         """
 
 
-def write_with(
-    names: Sequence[str], folder: Path, stored: StoredRun, activity: Activity = unobserved
-) -> None:
-    """Let reporters write into a folder.
+class Reports:
+    """The reports of one case."""
 
-    Raises:
-        HarnessError: There is no such reporter, or one fails; names it and its package.
-    """
-    reporters = registry(Reporter.plugin_kind)
-    for name in names:
-        activity(f"writing the report `{name}`", 0, 0)
-        reporter: type[Reporter] = reporters[name]
-        try:
-            reporter().write(folder, stored)
-        except HarnessError:
-            raise
-        except Exception as error:
-            who = described(Reporter.plugin_kind, name)
-            raise HarnessError(f"{who} raised {raised(error)}") from error
+    def __init__(self, names: Sequence[str]) -> None:
+        """Load reporters.
+
+        Raises:
+            HarnessError: There is no reporter of that name.
+        """
+        reporters = registry(Reporter.plugin_kind)
+        self._reporters: dict[str, Reporter] = {name: reporters[name]() for name in names}
+
+    def begin(self, stored: StoredRun) -> None:
+        """Prepare all reports.
+
+        Raises:
+            HarnessError: A reporter fails; names it and its package.
+        """
+        for name, reporter in self._reporters.items():
+            with _blames(name):
+                reporter.begin(stored)
+
+    def write(self, folder: Path, stored: StoredRun, activity: Activity = unobserved) -> None:
+        """Let all reporters write into a folder.
+
+        Raises:
+            HarnessError: A reporter fails; names it and its package.
+        """
+        for name, reporter in self._reporters.items():
+            activity(f"writing the report `{name}`", 0, 0)
+            with _blames(name):
+                reporter.write(folder, stored)
+
+
+@contextmanager
+def _blames(name: str) -> Generator[None]:
+    """Names the reporter that fails."""
+    try:
+        yield
+    except HarnessError:
+        raise
+    except Exception as error:
+        who = described(Reporter.plugin_kind, name)
+        raise HarnessError(f"{who} raised {raised(error)}") from error

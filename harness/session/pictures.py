@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
+
+import numpy as np
 
 from harness.assertions.looks import looks_of_expectations
 from harness.core.activity import Activity
 from harness.core.details import Details
+from harness.core.memory import free_memory
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
 from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Finding, Run
-from harness.recording.signals import CaptureRecord, VideoRecord
+from harness.recording.signals import CaptureRecord, Signals, VideoRecord
 from harness.recording.step_record import StepRecord
-from harness.session.background import Background
+from harness.session.background import Background, Later
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 FOLDER = "images"
+STATES = 40
+"""States of a run that its pictures show in addition to the ends of its steps."""
+
 Files = Mapping[str, bytes]
 """Content of files by path in the run's folder."""
 
@@ -49,23 +56,42 @@ class Drawings:
 
 
 class Pictures:
-    """The pictures of an executed run, drawn in other processes while this one observes it."""
+    """The pictures of a run, drawn in other processes while this one executes and observes it."""
 
-    def __init__(self, request: RunRequest, prepared: Prepared, run: Run) -> None:
-        """Begin to draw what the verdicts read, and what is certain to be kept.
+    _run: Run
+
+    def __init__(self, request: RunRequest, prepared: Prepared) -> None:
+        """Begin to set up the drawing of what is certain to be kept, before the run is executed.
 
         Args:
             request: The request of the case.
             prepared: The scenario: its expectations, its videos, and the visuals of its bodies.
+        """
+        self._request, self._prepared = request, prepared
+        self._is_kept = request.report_dir is not None and not request.only_failed
+        self._captures: Background[Captures] | None = None
+        self._drawings: Background[Drawings] | None = None
+        self._later = Later[Run]()
+        if self._is_kept and not prepared.program.videos:
+            drawings = self._begin_drawings(self._later.wait)
+            self._drawings = drawings if drawings.is_apart else None
+
+    def executed(self, run: Run) -> None:
+        """Begin to draw what the verdicts read, and what is certain to be kept.
+
+        Args:
             run: What was executed and recorded.
         """
-        self._request, self._prepared, self._run = request, prepared, run
-        is_kept = request.report_dir is not None and not request.only_failed
-        self._captures = self._begin_captures(is_kept=is_kept)
-        self._drawings = self._begin_drawings() if is_kept else None
+        self._run = run
+        self._captures = self._begin_captures(is_kept=self._is_kept)
+        if self._drawings is not None:
+            self._later.set(_shown(run))
+        elif self._is_kept:
+            self._drawings = self._begin_drawings(lambda: _shown(run), run)
 
     def close(self) -> None:
         """End the processes that are at work."""
+        self._later.close()
         for background in (self._captures, self._drawings):
             if background is not None:
                 background.close()
@@ -79,7 +105,8 @@ class Pictures:
         if self._request.only_failed:
             self._captures = self._begin_captures(is_kept=True)
         if self._drawings is None:
-            self._drawings = self._begin_drawings()
+            run = self._run
+            self._drawings = self._begin_drawings(lambda: _shown(run), run)
 
     def drawn(self, run: Run, activity: Activity) -> tuple[Run, Drawings]:
         """The run as it is kept, with all pictures of its cameras; and its drawings."""
@@ -107,9 +134,11 @@ class Pictures:
         looks = merged_looks([*taken, *looked])
         return Background(partial(_captures, self._prepared, run, looks)) if looks else None
 
-    def _begin_drawings(self) -> Background[Drawings]:
-        request, prepared = self._request, self._prepared
-        return Background(partial(_drawings, prepared, self._run, are_steps_drawn=request.stills))
+    def _begin_drawings(
+        self, get_shown: Callable[[], Run], run: Run | None = None
+    ) -> Background[Drawings]:
+        draw = partial(_drawings, self._prepared, get_shown, run)
+        return Background(partial(draw, are_steps_drawn=self._request.stills))
 
 
 def _with_captures(run: Run, captures: Background[Captures] | None, activity: Activity) -> Run:
@@ -126,21 +155,58 @@ def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Act
     return take_pictures(program.description, program.all_objects(), run, looks, activity)
 
 
+def _shown(run: Run) -> Run:
+    """The run with the samples and the signals that pictures of its steps show.
+
+    These are the ends of the steps, the samples after them, and `STATES` others.
+    """
+    signals, none = run.signals, np.empty(0)
+    last = len(signals.times) - 1
+    ends = np.clip([step.end_index - 1 for step in run.steps], 0, last).astype(np.int64)
+    spread = np.linspace(0, last, STATES).astype(np.int64)
+    rows = np.unique(np.concatenate([ends, np.minimum(ends + 1, last), spread]))[: last + 1]
+    new_ends = np.searchsorted(rows, ends) + 1
+    moved = signals.times[rows], signals.joint_positions[rows], none, none, none, none, none
+    poses = {name: poses[rows] for name, poses in signals.object_poses.items()}
+    steps = [
+        replace(step, end_index=end) for step, end in zip(run.steps, new_ends.tolist(), strict=True)
+    ]
+    return replace(run, signals=Signals(*moved, object_poses=poses), steps=tuple(steps))
+
+
 def _drawings(
-    prepared: Prepared, run: Run, activity: Activity, *, are_steps_drawn: bool
+    prepared: Prepared,
+    get_shown: Callable[[], Run],
+    run: Run | None,
+    activity: Activity,
+    *,
+    are_steps_drawn: bool,
 ) -> Drawings:
-    from harness.cameras.stills import Stills, draw_stills
+    """Draw what people look at.
+
+    Args:
+        prepared: The scenario.
+        get_shown: Waits for what pictures of steps show.
+        run: The whole run, which videos show.
+        activity: Receives the progress.
+        are_steps_drawn: Whether there are pictures of steps.
+    """
+    from harness.cameras.stills import StepRenderer
     from harness.observation.visuals import mesh_records
 
     program = prepared.program
     description, objects = program.description, program.all_objects()
-    stills, images = Stills(), {}
     if are_steps_drawn:
-        stills = draw_stills(description, objects, run, activity=activity)
+        with closing(StepRenderer(description, objects)) as renderer:
+            free_memory()  # of what a picture is made of
+            shown = get_shown()
+            stills = renderer.draw(shown, activity)
         images = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
-        images |= _failures(prepared, run, activity)
-    drawings = Drawings(meshes=mesh_records(run), images=images, note=stills.note)
-    if not program.videos:
+        images |= _failures(prepared, shown, activity)
+        drawings = Drawings(meshes=mesh_records(shown), images=images, note=stills.note)
+    else:
+        drawings = Drawings(meshes=mesh_records(get_shown()))
+    if run is None or not program.videos:
         return drawings
     from harness.cameras.videos import record_videos  # loads a video library
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
@@ -13,6 +12,7 @@ from harness.assertions.judge import judge
 from harness.cell.program import ProgramStep
 from harness.core import sharing
 from harness.core.errors import HarnessError, SpecError
+from harness.core.memory import free_memory
 from harness.engine.execute import ProgramExecution, StepEvent
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
@@ -21,7 +21,7 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import PAGE, StoredRun
 from harness.recording.write_run import write_run
-from harness.reporting.reporter import write_with
+from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
 from harness.session.distances_ahead import DistancesAhead
@@ -62,12 +62,13 @@ def run_case(
     try:
         with ExitStack() as stack:
             ahead = stack.enter_context(closing(DistancesAhead(prepared)))
+            pictures = stack.enter_context(closing(Pictures(request, prepared)))
             session = make_session(prepared, begun.simulator)
             executed = _executed(request, begun, clock, progress, session, ahead)
             refusal = session.refusal()
             del begun, session  # the simulator is the largest object; the run holds its recording
-            gc.collect()  # parts of the simulator refer to each other
-            pictures = stack.enter_context(closing(Pictures(request, prepared, executed)))
+            free_memory()
+            pictures.executed(executed)
             judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
@@ -198,9 +199,12 @@ def _reported(
     progress.activity("writing the report")
     pictures.begin()
     drawings, rendered = Drawings(), clock.seconds.get("render", 0.0)
+    names = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
+    reports = Reports(names)
 
     def complete() -> StoredRun:
         nonlocal judged, drawings
+        reports.begin(judged)
         with clock.part("render"):
             run, drawings = pictures.drawn(judged.run, progress.activity)
         judged = replace(judged, run=run)
@@ -208,8 +212,7 @@ def _reported(
 
     def add(target: Path) -> None:
         write_files(target, drawings.images)
-        reporters = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
-        write_with(reporters, target, judged, progress.activity)
+        reports.write(target, judged, progress.activity)
 
     with clock.part("write"):
         write_run(folder, judged, add, complete)

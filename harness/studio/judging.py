@@ -59,7 +59,8 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     execution = cell.execution.finish()
     signals = with_believed_poses(prepared, execution, cell.simulator.finish())
     run = executed_run(request, prepared, execution, signals, cell.simulator.overlaps_at_start)
-    with closing(Pictures(request, prepared, run)) as pictures:
+    with closing(Pictures(request, prepared)) as pictures:
+        pictures.executed(run)
         run = pictures.captured(observed_run(prepared, run), unobserved)
     verdicts = judge(run, prepared.expectations)
     is_over = cell.steps_done >= cell.document.step_count or bool(execution.ended_early)

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import closing
 from dataclasses import replace
 
 import cv2
@@ -13,7 +14,7 @@ import pytest
 from harness.cameras.camera_scene import scene_poses
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
-from harness.cameras.stills import draw_stills, overview
+from harness.cameras.stills import StepRenderer, overview
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.details import Details
 from harness.core.geometry import Mesh, Shape
@@ -88,8 +89,13 @@ def test_rays_and_graphics_library_draw_the_same_picture(ur3e):
     assert np.abs(first - second).mean() < 25
 
 
+def stills_of(robot, objects, backend="auto"):
+    with closing(StepRenderer(robot, objects, backend)) as renderer:
+        return renderer.draw(a_run(robot))
+
+
 def test_one_picture_is_drawn_for_each_executed_step(ur3e):
-    stills = draw_stills(ur3e, OBJECTS, a_run(ur3e))
+    stills = stills_of(ur3e, OBJECTS)
     assert list(stills.files) == [f"0{i + 1}-step-{i}.jpg" for i in range(4)]
     for content in stills.files.values():
         picture = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
@@ -100,12 +106,12 @@ def test_one_picture_is_drawn_for_each_executed_step(ur3e):
 def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so():
     """PyOpenGL with the name of a missing library stands for a machine without one."""
     program = """
-from harness.cameras.stills import draw_stills
+from harness.cameras.stills import StepRenderer
 from harness.robot.load import load_robot
 from harness.language.scenario import RobotSpec
 from tests.cameras.recorded_runs import OBJECTS, a_run
 robot = load_robot(RobotSpec(model="open_manipulator_x"))
-stills = draw_stills(robot, OBJECTS, a_run(robot))
+stills = StepRenderer(robot, OBJECTS).draw(a_run(robot))
 print(stills.backend, len(stills.files), stills.note, sep="|")
 """
     environment = {
@@ -191,8 +197,8 @@ def test_the_overview_holds_every_point():
 def test_a_mesh_that_cannot_be_drawn_is_named_in_the_note(ur3e, tmp_path):
     collada = Shape(Mesh(tmp_path / "mug.dae"), rgba=(1, 0, 0, 1))
     mug = replace(IMAGINED, name="mug", shapes=(collada,))
-    assert draw_stills(ur3e, OBJECTS, a_run(ur3e), backend="rays").note == ""
-    stills = draw_stills(ur3e, (*OBJECTS, mug), a_run(ur3e), backend="rays")
+    assert stills_of(ur3e, OBJECTS, "rays").note == ""
+    stills = stills_of(ur3e, (*OBJECTS, mug), "rays")
     assert stills.note == "not in the pictures: mug.dae; save them as OBJ or STL"
 
 

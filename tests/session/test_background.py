@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 import threading
+import time
+from pathlib import Path
 
 from harness.core.activity import unobserved
 from harness.session.background import Background
@@ -55,6 +57,29 @@ def test_a_process_that_crashes_is_an_error_of_the_case():
         "try: Background(lambda _: os.kill(os.getpid(), 11)).result(unobserved)\n"
         "except HarnessError as error: print(error)"
     ) == ["the", "process", "in", "the", "background", "ended", "with", "code", "-11"]
+
+
+LATER = (
+    "from harness.session.background import Later\n"
+    "later = Later()\n"
+    "background = Background(lambda _: (os.getpid(), len(later.wait())))\n"
+)
+
+
+def test_a_process_that_was_begun_before_receives_a_value_later():
+    here, there, length = in_a_process_without_threads(
+        f"{LATER}later.set('x' * 3_000_000)\nprint(os.getpid(), *background.result(unobserved))"
+    )
+    assert here != there
+    assert length == "3000000"
+
+
+def test_a_process_whose_value_never_comes_ends_with_the_one_that_was_to_send_it():
+    (pid,) = in_a_process_without_threads(f"{LATER}print(background._pid)")
+    deadline = time.monotonic() + 20
+    while Path("/proc", pid).exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not Path("/proc", pid).exists()
 
 
 def test_a_process_that_is_closed_ends_at_once():

@@ -38,3 +38,32 @@ def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_pa
         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
     )
     assert done.stdout.split("\n")[0] == "failed [True] 1"
+
+
+BEFORE_OR_HERE = """
+import sys
+from pathlib import Path
+from harness.session import background, run_case as session
+from harness.session.run_request import RunRequest
+
+found = []
+for name in ("before", "here"):
+    folder = Path(sys.argv[1]).parent / name
+    session.run_case(RunRequest(Path(sys.argv[1]), report_dir=folder, page=False))
+    found.append({file.name: file.read_bytes() for file in (folder / "images").iterdir()})
+    background.compute_here()
+print(len(found[0]), found[0] == found[1])
+"""
+
+
+def test_pictures_are_the_same_from_a_process_begun_before_the_run_and_from_its_own(tmp_path):
+    steps = "- ptp: {joints: {joint1: 0.5}}\n- ptp: {joints: {joint1: 0.1}}"
+    file = file_of(tmp_path, steps, robot="open_manipulator_x", rest="")
+    done = subprocess.run(
+        [sys.executable, "-c", BEFORE_OR_HERE, str(file)],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+    )
+    assert done.stdout.split("\n")[0] == "2 True"

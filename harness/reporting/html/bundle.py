@@ -82,14 +82,15 @@ def rendered(file: Path, *, script: str, style: str, **content: object) -> str:
 
     policy = content_policy(file.read_text(encoding="utf-8"), script=script, style=style)
     return (
-        _templates(file.parent)
+        templates(file.parent)
         .get_template(file.name)
         .render(policy=policy, script=Markup(script), style=Markup(style), **content)
     )
 
 
 @cache
-def _templates(folder: Path) -> Environment:
+def templates(folder: Path) -> Environment:
+    """The templates of a folder, each of which is compiled when it is used first."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined  # not before it is needed
 
     environment = Environment(

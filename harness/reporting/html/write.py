@@ -36,54 +36,81 @@ from harness.reporting.html.summary import (
 )
 
 
+class Page:
+    """One self-contained page; equal text for equal runs but for their wall times.
+
+    What does not depend on the run's pictures is packed at once, while they are being drawn.
+    """
+
+    def __init__(self, stored: StoredRun) -> None:
+        run = stored.run
+        self._packer = Packer()
+        pack_tcp_path(run, self._packer)
+        self._plans = [
+            pack_plan(run, step, index, self._packer)
+            for index, step in enumerate(ordered_steps(run))
+        ]
+        self._facts = {
+            "groups": pack_groups(run, stored.verdicts, self._packer),
+            "presses": pack_presses(run, self._packer),
+        }
+        bundle.templates(bundle.TEMPLATE.parent)
+
+    def html(self, stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
+        """The text of the page, which is made once.
+
+        Args:
+            stored: The same run with its pictures.
+            pictures: What the summary shows.
+        """
+        text = rendered(
+            bundle.TEMPLATE,
+            script=bundle.script(),
+            style=bundle.style(),
+            run=stored.run,
+            outcome=stored.outcome,
+            tone="good" if stored.outcome == "passed" else "bad",
+            header=[(name, value, _short(value)) for name, value in header_facts(stored) if value],
+            facts=summary_facts(stored),
+            pictures=pictures,
+            tables=summary_tables(stored),
+            data=self._data(stored),
+        )
+        return text.encode(errors="replace").decode()  # names of files may have half characters
+
+    def _data(self, stored: StoredRun) -> str:
+        run, packer = stored.run, self._packer
+        steps = [
+            step_facts(run, step, stored.verdicts) | plan
+            for step, plan in zip(ordered_steps(run), self._plans, strict=True)
+        ]
+        return packer.text(
+            {
+                "title": run.scenario,
+                "outcome": stored.outcome,
+                "duration": float(run.signals.times[-1]),
+                "steps": steps,
+                "verdicts": [verdict_facts(verdict) for verdict in stored.verdicts],
+                "findings": findings_facts(run),
+                "contacts": contact_facts(run),
+                "joints": joint_facts(run),
+                "environment": environment(stored),
+                "source": run.source,
+                **self._facts,
+                "cameras": pack_cameras(run, packer),
+                **pack_scene(run, packer),
+            }
+        )
+
+
 def page_html(stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
-    """One self-contained page; equal text for equal runs but for their wall times."""
-    text = rendered(
-        bundle.TEMPLATE,
-        script=bundle.script(),
-        style=bundle.style(),
-        run=stored.run,
-        outcome=stored.outcome,
-        tone="good" if stored.outcome == "passed" else "bad",
-        header=[(name, value, _short(value)) for name, value in header_facts(stored) if value],
-        facts=summary_facts(stored),
-        pictures=pictures,
-        tables=summary_tables(stored),
-        data=_data(stored),
-    )
-    return text.encode(errors="replace").decode()  # names of files may have half characters
+    """The page of a run whose pictures are all drawn."""
+    return Page(stored).html(stored, pictures)
 
 
 def _short(value: str) -> str:
     """A path's last part, or the value."""
     return value.replace("\\", "/").rstrip("/").rpartition("/")[2] or value
-
-
-def _data(stored: StoredRun) -> str:
-    run, packer = stored.run, Packer()
-    pack_tcp_path(run, packer)
-    steps = [
-        step_facts(run, step, stored.verdicts) | pack_plan(run, step, index, packer)
-        for index, step in enumerate(ordered_steps(run))
-    ]
-    return packer.text(
-        {
-            "title": run.scenario,
-            "outcome": stored.outcome,
-            "duration": float(run.signals.times[-1]),
-            "steps": steps,
-            "verdicts": [verdict_facts(verdict) for verdict in stored.verdicts],
-            "findings": findings_facts(run),
-            "contacts": contact_facts(run),
-            "joints": joint_facts(run),
-            "environment": environment(stored),
-            "source": run.source,
-            "groups": pack_groups(run, stored.verdicts, packer),
-            "cameras": pack_cameras(run, packer),
-            "presses": pack_presses(run, packer),
-            **pack_scene(run, packer),
-        }
-    )
 
 
 PICTURES = 6
@@ -95,8 +122,13 @@ CAPTION_SHARE = 26 / 480
 QUALITY = 70
 
 
-def write_page(folder: Path, stored: StoredRun | None = None) -> Path:
+def write_page(folder: Path, stored: StoredRun | None = None, begun: Page | None = None) -> Path:
     """Write `report.html` into a run's folder, from the saved run if none is given.
+
+    Args:
+        folder: The folder of the run, with its pictures.
+        stored: The run.
+        begun: Its page, which was begun before.
 
     Raises:
         HarnessError: The folder holds no run.
@@ -104,7 +136,7 @@ def write_page(folder: Path, stored: StoredRun | None = None) -> Path:
     stored = stored or read_run(folder)
     page = folder / PAGE
     with blames_changes(folder, stored):
-        text = page_html(stored, _pictures(folder, stored))
+        text = (begun or Page(stored)).html(stored, _pictures(folder, stored))
     page.write_text(text, encoding="utf-8", newline="")
     return page
 
