@@ -61,7 +61,7 @@ class StepRenderer:
         """Load the shapes and the graphics library.
 
         Args:
-            description: The robot.
+            description: The robot, with its visuals.
             world_objects: All objects; those that only the planning scene has are translucent.
             backend: `auto`, `egl`, `osmesa` or `rays`.
         """

@@ -36,7 +36,7 @@ class Reporter(Plugin, ABC):
 
         Args:
             folder: The folder, under the temporary name that it has until it is complete.
-            stored: The complete run.
+            stored: The run with all its pictures.
         """
 
 

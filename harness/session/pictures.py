@@ -185,10 +185,10 @@ def _drawings(
     """Draw what people look at.
 
     Args:
-        prepared: The scenario.
+        prepared: The scenario with its program and videos.
         get_shown: Waits for what pictures of steps show.
         run: The whole run, which videos show.
-        activity: Receives the progress.
+        activity: Called with the progress of the drawing.
         are_steps_drawn: Whether there are pictures of steps.
     """
     from harness.cameras.stills import StepRenderer

@@ -21,7 +21,7 @@ PARTS = ("compile", "plan", "simulate", "judge", "write")
 GOAL = 1.08
 REPETITIONS = 5
 LIBRARIES = "numpy, mujoco, pinocchio, ompl.base, pydantic"
-"""What a run cannot do without; how long it takes to import them tells how fast a machine is."""
+"""What a run cannot do without; the time to import them shows how fast a machine is."""
 
 
 class Raced(Recording):

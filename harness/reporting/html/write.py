@@ -127,7 +127,7 @@ def write_page(folder: Path, stored: StoredRun | None = None, begun: Page | None
 
     Args:
         folder: The folder of the run, with its pictures.
-        stored: The run.
+        stored: The run that is shown; read from the folder if none is given.
         begun: Its page, which was begun before.
 
     Raises:
