@@ -54,7 +54,8 @@ does not.
 def row(arm: PackageArm, trial: Trial) -> str:
     """The arm's line of the table."""
     mass = "" if trial.mass != trial.mass else f"{trial.mass:.3f}"
-    mass += " (estimated)" if trial.is_mass_estimated else ""
+    if trial.is_mass_estimated:  # volumes of convex parts differ by rounding between processors
+        mass = f"{trial.mass:.3g} (estimated)"
     joints = trial.joints or ""
     moved = "yes" if trial.moved else "no"
     reason = trial.reason.replace("|", "/")
