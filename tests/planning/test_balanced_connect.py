@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 
+from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.balanced_connect import (
     BEYOND,
     DOMAIN,
     RANGE,
     _Samples,  # pyright: ignore[reportPrivateUsage]
     _Tree,  # pyright: ignore[reportPrivateUsage]
+    search_connect,
 )
+from harness.ports.path_planning import PathRequest
+from tests.planning.lesson import ARM, Cell, ur
 
 WIDE = np.array([[-9.0], [9.0]])
 
@@ -59,3 +63,34 @@ def test_no_sample_is_used_twice_and_those_in_a_domain_come_first(seed):
         away = np.linalg.norm(tree.points[:2] - sample, axis=1)
         assert (near, distance) == (int(away.argmin()), pytest.approx(away.min()))
     assert sum(distance <= DOMAIN for _, _, distance in drawn) > 0
+
+
+@pytest.mark.parametrize("budget", [10_000, 200_000, 1_000_000])
+@pytest.mark.parametrize("closed", [0, 1])
+def test_a_search_from_or_to_a_closed_place_gives_up_before_its_budget_is_used(closed, budget):
+    """With a larger budget it tries for longer."""
+    cell = Cell(ur("ur5e"))
+    space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
+    ends = np.array([[0.0, -1.0, 0.5, 0.0, 0.0, 0.0], [2.0, -1.5, 1.0, 0.5, 0.0, 0.0]])
+    used = 0
+
+    def is_edge_free(first, second):
+        nonlocal used
+        used += max(1, int(np.ceil(space.distance(first, second) * 32)))
+        return not any(np.array_equal(ends[closed], end) for end in (first, second))
+
+    request = PathRequest(
+        planner_id="BalancedConnect",
+        space=space,
+        start=ends[0],
+        goals=(ends[1],),
+        is_state_free=lambda _: True,
+        is_edge_free=is_edge_free,
+        state_checks=lambda: used,
+        max_state_checks=budget,
+        resolution=1 / 32,
+        seed=1,
+        parameters={},
+    )
+    assert search_connect(request).waypoints is None
+    assert 0.002 * budget < used < max(3_000, 0.1 * budget)
