@@ -1,18 +1,25 @@
-"""The fast planner gets out of tight places, and samples every way that an arm can stand."""
+"""The fast planner gets out of tight places, and samples the surroundings of what it knows."""
 
 import numpy as np
+import pytest
 
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.balanced_connect import (
+    BEYOND,
+    DOMAIN,
     RANGE,
+    _Samples,  # pyright: ignore[reportPrivateUsage]
     _Tree,  # pyright: ignore[reportPrivateUsage]
-    sampling_bounds,
+    search_connect,
 )
+from harness.ports.path_planning import PathRequest
 from tests.planning.lesson import ARM, Cell, ur
+
+WIDE = np.array([[-9.0], [9.0]])
 
 
 def test_a_tree_in_a_narrow_bend_grows_by_shorter_steps_until_it_is_outside():
-    tree = _Tree([np.zeros(2)], RANGE)
+    tree = _Tree([np.zeros(2)], RANGE, np.tile(WIDE, 2))
 
     def in_the_bend(first, second):
         """Whether an edge stays in a corridor 0.2 wide, 1 along x and then 1 along y."""
@@ -25,17 +32,65 @@ def test_a_tree_in_a_narrow_bend_grows_by_shorter_steps_until_it_is_outside():
     for _ in range(2000):
         angle = rng.uniform(0.0, 2 * np.pi)
         sample = 4.0 * np.array([np.cos(angle), np.sin(angle)])
-        near, distance = tree.nearest(sample)
+        (near,), (distance,) = tree.nearest(sample[None])
         tree.grow(near, sample, distance, in_the_bend)
     assert tree.points[: tree.count, 1].max() > 2.0
 
 
-def test_samples_are_drawn_inside_the_limits_and_half_a_turn_about_start_and_goal():
+def test_samples_are_drawn_about_the_tree_and_inside_the_limits():
+    limits = np.array([[-1.5, -1.5], [4.0, 3.0]])
+    tree, samples = _Tree([np.zeros(2), np.array([1.0, 1.2])], RANGE, limits), _Samples(2, 1)
+    drawn = np.array([tree.draw(samples)[0] for _ in range(200)])
+    assert np.allclose(drawn.min(axis=0), [-BEYOND, -BEYOND], atol=0.05)
+    assert np.allclose(drawn.max(axis=0), [1.0 + BEYOND, 1.2 + BEYOND], atol=0.05)
+    for sample in ([2.4, 1.2], [1.0, 2.6], [-1.0, -1.0]):
+        (near,), (distance,) = tree.nearest(np.array([sample]))
+        assert tree.grow(near, np.array(sample), distance, lambda *_: True) is not None
+    drawn = np.array([tree.draw(samples)[0] for _ in range(200)])
+    assert np.allclose(drawn.min(axis=0), limits[0], atol=0.05)
+    assert np.allclose(drawn.max(axis=0), [2.4 + BEYOND, 3.0], atol=0.05)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 1_000_000])
+def test_no_sample_is_used_twice_and_those_in_a_domain_come_first(seed):
+    samples = _Samples(7, seed)
+    tree = _Tree([np.zeros(7), np.full(7, 4.0)], RANGE, np.tile(WIDE, 7))
+    for vertex in range(2):
+        assert tree.grow(vertex, np.full(7, 2.0), 1.0, lambda *_: False) is None
+    drawn = [tree.draw(samples) for _ in range(100)]
+    assert len({tuple(sample) for sample, _, _ in drawn}) == 100
+    for sample, near, distance in drawn:
+        away = np.linalg.norm(tree.points[:2] - sample, axis=1)
+        assert (near, distance) == (int(away.argmin()), pytest.approx(away.min()))
+    assert sum(distance <= DOMAIN for _, _, distance in drawn) > 0
+
+
+@pytest.mark.parametrize("budget", [10_000, 200_000, 1_000_000])
+@pytest.mark.parametrize("closed", [0, 1])
+def test_a_search_from_or_to_a_closed_place_gives_up_before_its_budget_is_used(closed, budget):
+    """With a larger budget it tries for longer."""
     cell = Cell(ur("ur5e"))
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
-    ends = np.array([[0.5] * 6, [-0.5] * 6])
-    lower, upper = sampling_bounds(space, ends)
-    assert np.all(lower >= space.lower)
-    assert np.all(upper <= space.upper)
-    assert np.allclose(lower, np.maximum(space.lower, -0.5 - np.pi))
-    assert np.allclose(upper, np.minimum(space.upper, 0.5 + np.pi))
+    ends = np.array([[0.0, -1.0, 0.5, 0.0, 0.0, 0.0], [2.0, -1.5, 1.0, 0.5, 0.0, 0.0]])
+    used = 0
+
+    def is_edge_free(first, second):
+        nonlocal used
+        used += max(1, int(np.ceil(space.distance(first, second) * 32)))
+        return not any(np.array_equal(ends[closed], end) for end in (first, second))
+
+    request = PathRequest(
+        planner_id="BalancedConnect",
+        space=space,
+        start=ends[0],
+        goals=(ends[1],),
+        is_state_free=lambda _: True,
+        is_edge_free=is_edge_free,
+        state_checks=lambda: used,
+        max_state_checks=budget,
+        resolution=1 / 32,
+        seed=1,
+        parameters={},
+    )
+    assert search_connect(request).waypoints is None
+    assert 0.002 * budget < used < max(3_000, 0.1 * budget)

@@ -53,7 +53,9 @@ class ConvexTree:
         """The tree of the moved shape."""
         spheres = self.spheres.copy()
         spheres[:, :3] = self.spheres[:, :3] @ rotation.T + translation
-        return replace(self, spheres=spheres, points=self.points @ rotation.T + translation)
+        points = self.points @ rotation.T + translation
+        same = self.edges_at, self.edges
+        return ConvexTree(spheres, self.nodes, self.convexes, self.sizes, points, *same)
 
     def box(self) -> FloatArray:
         """The lower and the upper corner of the box about all sets, shape (6,)."""
@@ -126,7 +128,8 @@ def geometry_tree(geometry: Geometry) -> ConvexTree:
     """
     match geometry:
         case Box(size=size):
-            return _leaf(_CUBE * size)
+            reach = 0.5 * float(np.linalg.norm(size))
+            return _node([0.0, 0.0, 0.0, reach], POINTS, (0.0, 0.0, 0.0), _CUBE * size)
         case Sphere(radius=radius):
             return _leaf(np.zeros((1, 3)), rounding=radius)
         case Capsule(radius=radius, length=length):
@@ -147,34 +150,31 @@ def _along_z(*heights: float) -> FloatArray:
     return np.column_stack([np.zeros((len(heights), 2)), heights])
 
 
-def _formula(kind: int, sizes: tuple[float, float, float], reach: float) -> ConvexTree:
+def _formula(kind: int, sizes: Sequence[float], reach: float) -> ConvexTree:
     """A solid about the origin whose farthest points follow from a formula."""
-    tree = _leaf(_along_z(0.0, 1.0))
-    return replace(
-        tree,
-        spheres=np.array([[0.0, 0.0, 0.0, reach]]),
-        convexes=np.array([[0, 2, kind]]),
-        sizes=np.array([sizes]),
-    )
+    return _node([0.0, 0.0, 0.0, reach], kind, sizes, _along_z(0.0, 1.0))
 
 
 def _leaf(points: FloatArray, faces: IntArray | None = None, rounding: float = 0.0) -> ConvexTree:
     """A single node: a few points, or a polytope with its triangles, shape (F, 3)."""
-    edges_at, edges = np.zeros(len(points) + 1, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    if faces is not None:
-        edges_at, edges = _neighbours(faces, len(points))
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     radius = float(np.linalg.norm(points - middle, axis=1).max()) + rounding
-    kind = POINTS if faces is None else POLYTOPE
-    return ConvexTree(
-        np.append(middle, radius)[None],
-        np.array([[1, 0]]),
-        np.array([[0, len(points), kind]]),
-        np.array([[rounding, 0.0, 0.0]]),
-        points,
-        edges_at,
-        edges,
-    )
+    kind, edges = (POINTS, None) if faces is None else (POLYTOPE, _neighbours(faces, len(points)))
+    return _node([*middle, radius], kind, (rounding, 0.0, 0.0), points, edges)
+
+
+def _node(
+    sphere: Sequence[float],
+    kind: int,
+    sizes: Sequence[float],
+    points: FloatArray,
+    edges: tuple[IntArray, IntArray] | None = None,
+) -> ConvexTree:
+    """A single node."""
+    edges = edges or (np.zeros(len(points) + 1, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    convexes = np.array([[0, len(points), kind]])
+    node = np.array([[1, 0]])
+    return ConvexTree(np.array([sphere]), node, convexes, np.array([sizes]), points, *edges)
 
 
 def _neighbours(faces: IntArray, count: int) -> tuple[IntArray, IntArray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -63,7 +63,7 @@ def rigid_shapes(
     joint, T_joint_body = 0, pose
     if link is not None:
         joint, T_joint_body = robot.parent_joint(link), robot.placement(link) @ pose
-    placed = tuple(replace(shape, pose=T_joint_body @ shape.pose) for shape in shapes)
+    placed = tuple(Shape(shape.geometry, T_joint_body @ shape.pose) for shape in shapes)
     return RigidShapes(joint, placed)
 
 
