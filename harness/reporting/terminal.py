@@ -121,7 +121,9 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
         if wall := sum(result.wall_times.values()):
             simulated += f" at {speed_text(result.sim_time / wall)}"
         parts.append(f"{counted(len(result.steps), 'step')}, {simulated}")
-        held_of = f"{held} of {counted(len(result.verdicts), 'expectation')} hold"
+        count = len(result.verdicts)
+        holds = "holds" if count == 1 else "hold"
+        held_of = f"{held} of {counted(count, 'expectation')} {holds}"
         parts.append(held_of if result.verdicts else "expects nothing")
         parts.append(style.quiet(f"digest {result.digest[:12]}"))
     return printable("  ".join(parts))
