@@ -209,20 +209,10 @@ def execute_program(
     planner: MotionPlanner,
     simulator: Simulator,
     on_step: OnStep,
-    *,
-    keep_going: bool = False,
-    external: ExternalControl | None = None,
 ) -> Execution:
-    """Run a whole program; the arguments are those of `ProgramExecution`."""
+    """Run a whole program, whether or not steps fail; see `ProgramExecution` for the arguments."""
     execution = ProgramExecution(
-        program,
-        scene,
-        kinematics,
-        planner,
-        simulator,
-        on_step,
-        keep_going=keep_going,
-        external=external,
+        program, scene, kinematics, planner, simulator, on_step, keep_going=True
     )
     execution.run(program.steps)
     return execution.finish()

@@ -49,7 +49,6 @@ def predict_with_poses(
         DryPlanner(planner, program.description),
         simulator,
         watch,
-        keep_going=True,
     )
     return execution.steps, poses
 

@@ -32,16 +32,12 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
         notes: Places in the file, as the language found them.
     """
     found = [Finding("note", noted(problem)) for problem in notes]
-    found += [Finding("note", text) for obj in _added(program) if (text := _too_large(obj))]
-    found += [Finding("note", text) for obj in _added(program) if (text := _too_inert(obj))]
+    found += [Finding("note", text) for obj in program.all_objects() if (text := _too_large(obj))]
+    found += [Finding("note", text) for obj in program.all_objects() if (text := _too_inert(obj))]
     expects_errors = any(step.spec.expect_error for step in program.all_steps())
     if not program.expectations and not expects_errors:
         found.append(Finding("nothing_expected", NOTHING_EXPECTED))
     return tuple(found)
-
-
-def _added(program: Program) -> tuple[WorldObject, ...]:
-    return (*program.world.objects, *program.later_objects.values())
 
 
 def _too_large(obj: WorldObject) -> str:
