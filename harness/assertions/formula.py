@@ -152,7 +152,7 @@ class Evaluation:
         self._known: dict[int, tuple[Node, Bounds]] = {}
 
     def bounds(self, node: Node) -> Bounds:
-        """Of a part of the formula, at every sample."""
+        """The bounds of a part of the formula, at every sample."""
         if id(node) not in self._known:
             self._known[id(node)] = (node, self._calculated(node))
         return self._known[id(node)][1]
@@ -288,7 +288,7 @@ class Evaluation:
         return Observed(known, int(unknown.sum()), premises=min(premises, default=None))
 
     def warnings(self, root: Node) -> tuple[VerdictWarning, ...]:
-        """What makes a formula that holds say less than it seems to."""
+        """Warnings about a formula that holds, but shows less than it seems to."""
         found = [
             VerdictWarning(
                 "premise never held",

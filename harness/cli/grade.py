@@ -145,7 +145,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
 
 
 def _code(grade: Grade) -> int:
-    """0 when every point is earned; what is worth none decides nothing."""
+    """The exit code: 0 when every point is earned; expectations without points do not count."""
     is_full = bool(grade.rows) and all(row.earned == row.points for row in grade.rows)
     return 0 if is_full else EXIT_CODES["failed"]
 

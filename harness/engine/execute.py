@@ -1,4 +1,4 @@
-"""Carry out a program step by step, and record what became of each."""
+"""Executes a program step by step, and records the result of each step."""
 
 from __future__ import annotations
 

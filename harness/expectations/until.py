@@ -100,7 +100,7 @@ class Until(TemporalWord):
         hold: float | None,
         within: float | None,
     ) -> None:
-        """Refuse a verdict that unknown samples would turn round if they were favourable.
+        """Refuse a verdict that favourable values of the unknown samples would reverse.
 
         Raises:
             NotObservable: They would.

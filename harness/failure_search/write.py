@@ -156,7 +156,7 @@ def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
 
 
 def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> dict[str, object]:
-    """What `search.json` and `--json` say."""
+    """The content of `search.json` and `--json`."""
     exploration = found.exploration
     return {
         "format": FORMAT,

@@ -1,4 +1,4 @@
-"""Objects and worlds as files say them."""
+"""Objects and worlds as files describe them."""
 
 from __future__ import annotations
 

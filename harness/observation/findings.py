@@ -1,4 +1,4 @@
-"""What a person should know of a run that is no verdict."""
+"""Findings: what users should know of a run besides its verdicts."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def noted(problem: Problem) -> str:
 
 
 def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
-    """What of the robot's and the world's files was left out or assumed."""
+    """What was left out of the robot's and the world's files, or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
 
 
@@ -104,7 +104,7 @@ def overlap_findings(touches: Sequence[Touch]) -> tuple[Finding, ...]:
 
 
 def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
-    """Pairs that a motion was let start nearer than planned, as an object on the table it leaves.
+    """Pairs that may start a motion nearer than planned, such as an object on a table.
 
     Task Constructor allows the pair object-support while lifting; here it may stay as near as it
     stood, and no nearer.

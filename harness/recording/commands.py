@@ -1,4 +1,4 @@
-"""What external programs commanded while the arm was theirs, in the order of arrival."""
+"""Commands of external programs, in the order of arrival."""
 
 from __future__ import annotations
 

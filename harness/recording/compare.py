@@ -303,6 +303,6 @@ def line_changes(one: Run, two: Run) -> list[tuple[str, str]]:
 
 
 def _lines(text: str) -> list[str]:
-    """Without indentation, the dashes of lists and comments, which say the seeds of steps."""
+    """The lines without indentation, list dashes and comments, which hold the seeds of steps."""
     lines = (line.strip().removeprefix("- ") for line in text.splitlines())
     return [line for line in lines if line and not line.startswith("#")]

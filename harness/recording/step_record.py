@@ -1,4 +1,4 @@
-"""What became of one step: its times, its motion and its failure."""
+"""The record of one step: its times, its motion and its failure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of one expectation: its status, its numbers and how much it observed."""
+"""The verdict on one expectation: its status, its numbers and how much it observed."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from harness.reporting.explanation import explanation_lines
 
 @dataclass(frozen=True)
 class ProgressEvent:
-    """A sign of life of a running case.
+    """A progress event of a running case.
 
     Attributes:
         kind: `activity` is work on the report or the verdicts, which takes time after the steps.

@@ -1,4 +1,4 @@
-"""What the command line and pytest say of results, as text for people."""
+"""Results as text for people, on the command line and in pytest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is looked at in a robot, one function a finding."""
+"""The checks of a robot: one function for each finding."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ DISCOVERY = 0.5
 
 @dataclass(frozen=True)
 class BridgeResult:
-    """The judged run, the number of commands, and what is said of wall time, names and programs."""
+    """The judged run, the number of commands, and remarks on wall time, names and programs."""
 
     case: CaseResult
     commands: int = 0

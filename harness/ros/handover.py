@@ -114,7 +114,7 @@ class HandOver(ABC):
 
 
 def _said(end: CommandRecord) -> str:
-    """What is said of a program that ended."""
+    """The remark on a program that ended."""
     code = end.content.get("code")
     how = "without an error" if code == 0 else f"with exit code {code}"
     return f"the launched program ended {how} at t={end.time:.2f} s"

@@ -109,7 +109,7 @@ class LiveControl(HandOver):
         return sum(command.kind != "end" for command in self.cell.commands)
 
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
-        """What is said of wall time, names and the launched program; nothing of it is judged."""
+        """Remarks on wall time, names and the launched program; none of them is judged."""
         said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
         codes = [each.content["code"] for each in self.cell.commands if "code" in each.content]
         code = codes[-1] if codes else 0

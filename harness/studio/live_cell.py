@@ -106,7 +106,7 @@ class LiveCell:
 
     @property
     def cell(self) -> Cell:
-        """What steps work with."""
+        """The cell that steps work with."""
         return self.execution.cell
 
     @property

@@ -1,4 +1,4 @@
-"""What a page is sent of steps and verdicts, as plain data."""
+"""Messages about steps and verdicts to a page, as plain data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Objects of a file made whole: shapes, mass, inertia, friction."""
+"""Resolves the objects of a file: shapes, mass, inertia, friction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What libyaml says of a file that is not YAML, as a person would say it."""
+"""Plain messages for libyaml's errors on files that are not YAML."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ class Cause:
 
 
 def cause_of(result: CaseResult) -> Cause | None:
-    """Of a case; None when it passed."""
+    """The cause why a case did not pass; None when it passed."""
     if result.outcome == "passed":
         return None
     if result.outcome == "error":

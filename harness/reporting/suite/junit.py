@@ -201,7 +201,7 @@ def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
 
 
 def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
-    """Of samples together: seed and digest of each, the smallest margins and whose they are."""
+    """Properties of samples together: seed and digest of each, the smallest margins by sample."""
     found = [item for case in cases[:1] for item in _said_of(case)]
     found += [(f"seed:{case.result.case}", str(case.result.seed)) for case in cases]
     found += [(f"digest:{case.result.case}", case.result.digest) for case in cases]

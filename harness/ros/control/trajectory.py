@@ -142,7 +142,7 @@ class TrajectoryMotion:
         return Outcome(self.goal, code == Code.SUCCESSFUL, follow_result(code, reason), hold)
 
     def _first_beyond(self, errors: FloatArray, bounds: FloatArray) -> tuple[int, str] | None:
-        """The first sample with an error beyond a bound, and what is said of its worst joint."""
+        """The first sample with an error beyond a bound, and a text about its worst joint."""
         excess = errors - bounds[:, None]
         beyond = (excess > 0).any(axis=(0, 2))
         if not beyond.any():
