@@ -140,7 +140,7 @@ class Evaluation:
 
     Args:
         window: The samples of the window.
-        is_open: Whether the window goes on after its last sample in a way that is not known.
+        is_open: Whether the window continues after its last sample in an unknown way.
         is_near: Whether distances at the cutoff of the recording are no larger than it.
     """
 

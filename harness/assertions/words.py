@@ -254,7 +254,7 @@ def _could_hold(
     applies: np.ndarray,
     progress: FloatArray | None,
 ) -> bool:
-    """Whether the expectation holds if a window that was cut short goes on in the best way."""
+    """Whether the expectation holds if a window that was cut short continues in the best way."""
     best = -np.inf if terms.word == "never" else np.inf
     return _holds_after(terms, best, values, times, applies, progress)
 

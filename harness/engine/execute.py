@@ -118,7 +118,7 @@ class ProgramExecution:
     Attributes:
         program: What is executed; one that differs only in steps and expectations may replace it.
         cell: What the steps work with.
-        records: What became of the steps so far, in the order of execution.
+        records: The records of the steps so far, in the order of execution.
         ended_early: The failure that ended the execution; empty while there is none.
     """
 
@@ -144,7 +144,7 @@ class ProgramExecution:
             simulator: The simulator at the start state, with every object of the program prepared
                 and the world's objects present.
             on_step: Called before and after each step.
-            keep_going: Whether a failed step of the file lets the next one begin all the same; a
+            keep_going: Whether a failed step of the file does not prevent the next one; a
                 step made of others ends with the first of them that fails.
             external: Programs to which a step may hand the robot over; None: such a step does
                 nothing.

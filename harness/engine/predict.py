@@ -56,8 +56,8 @@ def predict_with_poses(
 def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...]:
     """The world's objects that the robot touches at its start, deepest first.
 
-    A gripper that opens may leave what it touched, so that no step fails of it; the physics pushes
-    it away all the same.
+    A gripper that opens may leave what it touched, so that no step fails because of it; the physics
+    pushes the object away nevertheless.
 
     Args:
         program: The program whose start state is checked.

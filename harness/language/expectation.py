@@ -51,7 +51,7 @@ class TimeFields(SpecModel):
     )
     within: PositiveDuration | None = Field(
         default=None,
-        description="The time after the window's start by which it must have come true [s].",
+        description="The time after the window's start by which it must have become true [s].",
     )
 
 

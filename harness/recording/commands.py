@@ -20,7 +20,7 @@ class CommandRecord:
         controller: The controller that it addresses, such as `arm_controller`.
         goal: The goal's identifier in hex; empty for what came on a topic.
         content: The values of the message.
-        answer: What became of it at once: `accepted`, or why not.
+        answer: The immediate result: `accepted`, or why not.
     """
 
     sample: int

@@ -27,7 +27,7 @@ from harness.session.run_request import RunRequest
 from harness.simulation.mujoco_simulator import MujocoSimulator
 
 GRACE = 1.0
-"""Simulated time that a step goes on after its program has ended and the arm stands [s]."""
+"""Simulated time that a step continues after its program has ended and the arm stands [s]."""
 
 LOOK_EVERY, LOOK_SHARE = 0.5, 0.05
 """Simulated time between two looks at `until` [s], and at least this share of the step's time: a

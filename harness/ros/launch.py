@@ -72,7 +72,7 @@ class Program:
         return self._process.poll()
 
     def stop(self) -> None:
-        """End the program and what it started: interrupt, then kill what goes on."""
+        """End the program and what it started: interrupt, then kill what still runs."""
         if self._printed.closed:
             return
         for number, patience in ((signal.SIGINT, 2.0), (signal.SIGKILL, 5.0)):

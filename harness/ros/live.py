@@ -37,7 +37,7 @@ LOOK_EVERY = 50
 """Ticks between two looks at how nodes use topics."""
 
 MOST_NOTES = 50
-"""Notes that are given of a run while it goes on."""
+"""Notes that are given of a run while it continues."""
 
 
 @dataclass(frozen=True)

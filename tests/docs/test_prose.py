@@ -46,6 +46,9 @@ FRAGMENT = re.compile(
     "(?:Of|That|Which|Whose|By|From|In|As|For|To|On|At|About|Not|Below|Before|Shape) "
 )
 
+NO_SUBJECT = re.compile("(?:Of|That|Whose|To|About|Not|Below|Before|Shape|By) ")
+"""How a docstring begins that makes no sense without the name."""
+
 
 def texts():
     """Each text file of the repository that people read, with its path."""
@@ -155,6 +158,18 @@ def test_every_argument_attribute_and_result_is_described():
                         found.append(f"{name}:{line}: '{entry}': {reason}")
     assert not found, "\n".join(found)
     assert count > 1500
+
+
+def test_every_docstring_names_its_subject():
+    found = [
+        f"{name}: '{text}'"
+        for name, content in texts()
+        if name.startswith("harness/") and name.endswith(".py")
+        for node in ast.walk(ast.parse(content))
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+        if NO_SUBJECT.match(text := (ast.get_docstring(node) or "").partition("\n")[0])
+    ]
+    assert not found, "\n".join(found)
 
 
 @pytest.mark.parametrize(

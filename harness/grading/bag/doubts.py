@@ -99,7 +99,7 @@ def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iter
 
 @dataclass(frozen=True, eq=False)
 class _Moves:
-    """From message to message of an object, shape (N - 1,): time [s], way [m] and turn [rad]."""
+    """Changes between messages of an object, shape (N - 1,): time [s], way [m] and turn [rad]."""
 
     times: FloatArray
     spans: FloatArray

@@ -130,7 +130,7 @@ def parse_value(text: str, source: Source) -> Located:
 
 
 class _Composer:
-    """Composes events into located values; goes on after a mistake, collecting problems."""
+    """Composes events into located values; continues after a mistake, collecting problems."""
 
     def __init__(self, source: Source) -> None:
         self.source = source

@@ -101,7 +101,7 @@ def read_scenario(
     seed: int | None = None,
     text: str | None = None,
 ) -> Reading:
-    """A scenario file with its mistakes, for whoever goes on to find more.
+    """A scenario file with its mistakes, for callers that find more.
 
     Args:
         overrides: Dotted path -> YAML value, as given with `--set`.

@@ -2,7 +2,7 @@
 
 Guided by the models: a verb or predicate becomes a tag, a bare value the field it is short for.
 Unknown words are refused here, where it is known what could stand in their place; what is wrong
-is left out, so that pydantic goes on with the rest. Every value keeps its place in the file.
+is left out, so that pydantic continues with the rest. Every value keeps its place in the file.
 """
 
 from __future__ import annotations
