@@ -34,8 +34,8 @@ class SearchRequest:
         case: Name of the parametrised case; empty where there is one.
         seed: Seed of every run and of the search; None takes the file's.
         runs: How many runs the search may take; shrinking takes further ones.
-        start: How many of them are low-discrepancy samples.
-        batch: How many runs the optimiser proposes together; None: as many as CMA-ES recommends.
+        start: The number of runs that are low-discrepancy samples.
+        batch: Runs that the optimiser proposes together; None: as many as CMA-ES recommends.
         minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
         workers: Runs side by side.
         hard_cap: Wall seconds a run may take; None: the program's own.
