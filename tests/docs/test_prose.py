@@ -9,6 +9,7 @@ import pytest
 from docs import ROOT
 from harness.cli.main import main
 from harness.language.schema import schema_text, world_schema_text
+from harness.robot.robot_yaml import RobotYaml
 
 INSTEAD = {
     "told|tells?|telling": "report, show, print or log",
@@ -124,7 +125,11 @@ def test_help_has_no_word_of_the_dialect(capsys):
     assert not list(dialect("help", text))
 
 
-@pytest.mark.parametrize("text", [schema_text, world_schema_text])
+def robot_yaml_schema():
+    return json.dumps(RobotYaml.model_json_schema())
+
+
+@pytest.mark.parametrize("text", [schema_text, world_schema_text, robot_yaml_schema])
 def test_every_description_in_the_schema_stands_alone(text):
     found = []
 
