@@ -131,8 +131,8 @@ class Predicate(Expectation, PredicateFields):
         except (NotReached, NotObservable, HarnessError):
             raise
         except Exception as error:
-            said = f"{type(self).__name__}.signal raised {type(error).__name__}: {error}"
-            raise ExpectationError(said) from error
+            reason = f"{type(self).__name__}.signal raised {type(error).__name__}: {error}"
+            raise ExpectationError(reason) from error
         return found if isinstance(found, MarginSignal) else self._with_measures(found, window)
 
     def unchanged(self, window: Window) -> str:  # noqa: ARG002 - subclasses read it

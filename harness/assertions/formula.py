@@ -108,13 +108,13 @@ def formula_verdict(text: str, window: Window) -> Verdict:
     left = values_of(comparison.left, window)
     right = values_of(comparison.right, window)
     unit = left.unit or right.unit or "1"
-    said, limit = float(left.values[index]), float(right.values[index])
+    actual, limit = float(left.values[index]), float(right.values[index])
     way = "holds" if holds == (sign > 0) else "does not hold"
-    reason = f"{comparison.text} {way}: {' against '.join(amounts(said, limit, unit))}"
+    reason = f"{comparison.text} {way}: {' against '.join(amounts(actual, limit, unit))}"
     above = comparison.operator.startswith(">") == (sign > 0)
     measure = Measure(
         str(comparison.left) if isinstance(comparison.left, Signal) else comparison.text,
-        said,
+        actual,
         limit,
         ">=" if above else "<=",
         unit,

@@ -102,9 +102,9 @@ def _largest(tolerance: GoalTolerance) -> float:
     return max(given) if isinstance(given, tuple) else given
 
 
-def path_constraints(said: ConstraintsSpec, cell: Cell) -> PathConstraints:
+def path_constraints(spec: ConstraintsSpec, cell: Cell) -> PathConstraints:
     """The path constraints of a motion, in the world, for the present state of the cell."""
-    band, box = said.orientation, said.position
+    band, box = spec.orientation, spec.position
     tcp = cell.description.tcp_link
     orientation = position = None
     if band is not None:
@@ -118,7 +118,7 @@ def path_constraints(said: ConstraintsSpec, cell: Cell) -> PathConstraints:
         JointBand(
             name, joint.position - joint.tolerance_below, joint.position + joint.tolerance_above
         )
-        for name, joint in (said.joints or {}).items()
+        for name, joint in (spec.joints or {}).items()
     )
     return PathConstraints(orientation, position, joints)
 

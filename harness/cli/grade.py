@@ -126,8 +126,8 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
         show_remarks(result)
         problems = [str(problem) for problem in case.problems]
         code = EXIT_CODES[case.outcome]
-        said = {"outcome": case.outcome, "message": case.message, "problems": problems}
-        return code, {"format": "armharness-grade/1", "exit_code": code, **said}
+        failed = {"outcome": case.outcome, "message": case.message, "problems": problems}
+        return code, {"format": "armharness-grade/1", "exit_code": code, **failed}
     run = read_run(Path(case.report_dir)).run if case.report_dir else None
     grade = Grade(run, graded(case.verdicts), case.notes)
     code = _code(grade) if case.outcome == "passed" else EXIT_CODES["failed"]

@@ -92,8 +92,8 @@ def show_results(
         for runs in suite.repetitions():
             name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
             say(f"{name}: {repeats(runs, style)}")
-        for index, said in suite.differences.items():
-            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
+        for index, difference in suite.differences.items():
+            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {difference}")
     else:
         _print_rates(suite, columns, style)
     rates = missed(suite.rates)

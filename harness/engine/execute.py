@@ -229,8 +229,8 @@ def _details(failure: StepFailed | None, cell: Cell) -> Details:
     """A failure's details, with what to do about it where that is known."""
     if failure is None:
         return Details()
-    said = advice(failure, cell)
-    return failure.details + Details.of(Explanation(advice=said) if said else None)
+    text = advice(failure, cell)
+    return failure.details + Details.of(Explanation(advice=text) if text else None)
 
 
 def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:

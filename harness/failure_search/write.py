@@ -174,7 +174,7 @@ def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> d
         "failures": [
             {
                 "kind": each.failure.kind,
-                "cause": cause.said if (cause := cause_of(each.result)) else "",
+                "cause": cause.text if (cause := cause_of(each.result)) else "",
                 "runs": len(each.failure.samples),
                 "shrink_runs": each.failure.shrink_runs,
                 "values": found.space.values(each.failure.nearest.point),

@@ -49,8 +49,8 @@ class Measure:
         value, limit = distinct(
             self.value, self.limit, lambda number, more: f"{number:.{6 + more}g}"
         )
-        said = f"{self.name}: {value}{unit} (must be {sign} {limit})"
-        return f"{said} at t={self.time:.3f} s{where}"
+        text = f"{self.name}: {value}{unit} (must be {sign} {limit})"
+        return f"{text} at t={self.time:.3f} s{where}"
 
 
 @dataclass(frozen=True)

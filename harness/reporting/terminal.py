@@ -204,8 +204,8 @@ def root_failures(steps: Sequence[StepLine]) -> list[StepLine]:
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
     """Place, step, error code, message, source line, and the explanation where there is one."""
     place = f"{file}:{step.line}" if step.line else file
-    said = step.message
-    why = ": ".join(part for part in (step.error_code, said) if part)
+    message = step.message
+    why = ": ".join(part for part in (step.error_code, message) if part)
     explained = [f"    {line}" for line in step.explanation]
     return _joined([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
 
@@ -268,8 +268,8 @@ def summary(outcomes: Iterable[str], seconds: float, style: Style = PLAIN) -> st
         for outcome in OUTCOMES
         if counts[outcome]
     ]
-    said = ", ".join(parts) or "nothing was run"
-    return f"{said} of {counted(counts.total(), 'case')} in {seconds:.1f} s"
+    text = ", ".join(parts) or "nothing was run"
+    return f"{text} of {counted(counts.total(), 'case')} in {seconds:.1f} s"
 
 
 def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:

@@ -63,8 +63,8 @@ class Program:
         except (OSError, ValueError) as error:
             self._printed.close()
             reason = error.strerror if isinstance(error, OSError) else error
-            said = f"`{command}` cannot be started: {reason}"
-            raise StepFailed("COMMUNICATION_FAILURE", said) from error
+            reason = f"`{command}` cannot be started: {reason}"
+            raise StepFailed("COMMUNICATION_FAILURE", reason) from error
 
     @property
     def exit_code(self) -> int | None:

@@ -110,15 +110,15 @@ class LiveControl(HandOver):
 
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """Remarks on wall time, names and the launched program; none of them is judged."""
-        said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
+        remarks = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
         codes = [each.content["code"] for each in self.cell.commands if "code" in each.content]
         code = codes[-1] if codes else 0
         output = self._program.output if self._program is not None else ""
         if code and has_passed:
-            said.append(f"the launched program ended with exit code {code}")
+            remarks.append(f"the launched program ended with exit code {code}")
         if output and (code or not has_passed):
-            said.append(f"the launched program printed:\n{indent(output, '  ')}")
-        return tuple(said)
+            remarks.append(f"the launched program printed:\n{indent(output, '  ')}")
+        return tuple(remarks)
 
     def feed(self) -> None:
         """Receive until the next tick is due."""

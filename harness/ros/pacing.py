@@ -67,9 +67,9 @@ class Pace:
 
     def text(self) -> str:
         """One sentence for a person."""
-        said = (
+        text = (
             f"{self.ticks * TICK:.1f} s of simulated time at {self.factor:g} times wall time:"
             f" {self.late} of {self.ticks} updates and {self.late_commands} commands were more than"
             f" {1e3 * LATE:.0f} ms late (at most {1e3 * self.worst:.0f} ms)"
         )
-        return f"{said}; {self.lost:.1f} s were lost" if self.lost else said
+        return f"{text}; {self.lost:.1f} s were lost" if self.lost else text

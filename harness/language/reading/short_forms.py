@@ -126,8 +126,8 @@ class _Shaper:
                 near = nearest(key, inside)
                 place = "" if near else _place_of(key, {each: keys[each] for each in inside})
                 known = did_you_mean(key, inside, "keys") if inside else "it has no keys"
-                said = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
-                hint = said or "; ".join(filter(None, [place, known]))
+                advice = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
+                hint = advice or "; ".join(filter(None, [place, known]))
                 self.problems.append(entry.key.problem(message, hint))
                 if near is not None and near not in item.value:  # go on as if it said so
                     shaped = self.field(entry.value, keys[near])
