@@ -86,7 +86,7 @@ class HandOver(ABC):
         count = sum(command.kind != "end" for command in cell.commands[before:])
         cell.finish()
         self.after()
-        detail = _said(cell.end) if cell.end and ended_by in ("timeout", "exit") else ""
+        detail = _end_text(cell.end) if cell.end and ended_by in ("timeout", "exit") else ""
         return ExternalResult(ended_by, count, detail)
 
     def _holds(self, request: ExternalRequest, begin: float, first: int) -> bool:
@@ -113,7 +113,7 @@ class HandOver(ABC):
         return judge(run, [placed])[0].status == "passed"
 
 
-def _said(end: CommandRecord) -> str:
+def _end_text(end: CommandRecord) -> str:
     """The remark on a program that ended."""
     code = end.content.get("code")
     how = "without an error" if code == 0 else f"with exit code {code}"

@@ -78,7 +78,7 @@ class LiveControl(HandOver):
         self._wiring = Wiring(graph, self.cell, self._note)
         self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None
-        self._said: set[str] = set()
+        self._noted: set[str] = set()
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Serve the robot until the request's end; start the program that it names."""
@@ -155,13 +155,13 @@ class LiveControl(HandOver):
         self._names = tuple(unserved(*uses)) or self._names
 
     def _note(self, record: CommandRecord) -> None:
-        """A command took effect; say it, where it did not."""
+        """Count a command; note a command that was refused."""
         self._pace.command()
         if record.answer != "accepted":
             what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
             self._say_once(record.answer, what)
 
     def _say_once(self, key: str, note: str) -> None:
-        if key not in self._said and len(self._said) < MOST_NOTES:
-            self._said.add(key)
+        if key not in self._noted and len(self._noted) < MOST_NOTES:
+            self._noted.add(key)
             self._request.say(note)

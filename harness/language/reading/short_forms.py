@@ -129,7 +129,7 @@ class _Shaper:
                 advice = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
                 hint = advice or "; ".join(filter(None, [place, known]))
                 self.problems.append(entry.key.problem(message, hint))
-                if near is not None and near not in item.value:  # go on as if it said so
+                if near is not None and near not in item.value:  # continue with the valid key
                     shaped = self.field(entry.value, keys[near])
                     entries[near] = Entry(entry.key, shaped)
         return Located(entries, item.place)

@@ -188,7 +188,7 @@ def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
     result = case.result
     found = [("seed", str(result.seed)), ("digest", result.digest)]
     found.append(("simulated", f"{result.sim_time:.3f} s"))
-    found += _said_of(case)
+    found += [("verifies", each) for each in case.verifies]
     found += [(f"value:{path}", str(value)) for path, value in case.values.items()]
     found += [
         (f"margin:{verdict.expectation}", _margin(verdict))
@@ -202,7 +202,7 @@ def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
 
 def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
     """Properties of samples together: seed and digest of each, the smallest margins by sample."""
-    found = [item for case in cases[:1] for item in _said_of(case)]
+    found = [("verifies", each) for case in cases[:1] for each in case.verifies]
     found += [(f"seed:{case.result.case}", str(case.result.seed)) for case in cases]
     found += [(f"digest:{case.result.case}", case.result.digest) for case in cases]
     least: dict[str, tuple[Verdict, str]] = {}
@@ -218,10 +218,6 @@ def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
     if nearest is not None:
         found.append(("worst_margin", nearest.expectation))
     return found
-
-
-def _said_of(case: SuiteCase) -> list[tuple[str, str]]:
-    return [("verifies", each) for each in case.verifies]
 
 
 def _margin(verdict: Verdict) -> str:
