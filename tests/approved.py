@@ -5,10 +5,10 @@ A test states what matters in a verdict on a hand-made run, or in a problem of a
 warning its numbers and its quoted names, as they were last approved. Words are free to change.
 After a change of a fact,
 
-    APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation tests/engine
+    APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation \\
+        tests/engine tests/steps
 
-writes the file again, in one process (without `-n`); the difference shows what changed, and is to
-be read.
+writes the file again, in one process (without `-n`). Read the difference: it shows what changed.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ not in the scene, and `not observable` if the signal was not recorded.
 
 Every verdict states how much it observed: the number of known and of unknown samples, the pairs of
 bodies, and how often a premise held. Where the unknown samples could change the verdict it is `not
-observable`; a violation at a known sample has failed all the same. A verdict that passes and shows
+observable`; a violation at a known sample has failed nevertheless. A verdict that passes and shows
 little carries a named warning. `harness run --strict`, `harness judge --strict` and `pytest
 --harness-strict` turn warnings into failures:
 
@@ -107,7 +107,7 @@ W of `within`. With `during`, their window is that step.
 | `always: A` | `always A`; with a deadline `eventually[0, W] always A` |
 | `{always: A, until: B}` | `A until[0, W] always[0, T] B` |
 
-They differ where the window ends before W or T is over. What must come true and was not seen to
+They differ where the window ends before W or T is over. What must become true and was not seen to
 do so has failed, while its formula is `not reached`. `never` is `not reached`, as its formula is,
 where A holds at the end and could go on for T, or could still begin by W."""
 FORMULA_TEXT = """\

@@ -1,4 +1,4 @@
-"""Who touched whom: forces between sets of bodies, debounced.
+"""Forces between sets of bodies, debounced.
 
 A contact between stiff bodies flickers from sample to sample. Gaps of up to `DEBOUNCE` seconds
 between two contacts do not end it, and the robot touches for that much longer.
@@ -137,7 +137,7 @@ def was_in_robot(run: Run, name: str, samples: slice) -> bool:
 
 
 def bodies(run: Run, word: str) -> frozenset[str]:
-    """Links and objects that a word of `between` means: `robot`, `gripper`, `any`, or a name.
+    """Links and objects that a word of `between` names: `robot`, `gripper`, `any`, or a name.
 
     Raises:
         NotObservable: The run knows no such body, or only the planner knows it.

@@ -19,7 +19,7 @@ MEASURED_WORDS = ("robot", "any")
 
 
 def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:
-    """Recorded distances that two words of `between` mean, sorted by key."""
+    """Recorded distances that two words of `between` select, sorted by key."""
     if first == "any" or (second == "robot" and first != "robot"):
         first, second = second, first
     clearances = run.signals.clearances

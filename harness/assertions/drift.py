@@ -24,7 +24,7 @@ from harness.recording.step_record import is_nested
 
 
 def released_at(run: Run, record: AttachmentRecord) -> float:
-    """When the gripper began to release an attached object: inf where it did not [s].
+    """Time at which the gripper began to release an attached object [s]; inf where it did not.
 
     `release` opens the gripper and then detaches the object; `gripper` and `detach_object` one
     after the other do the same. In between the object leaves the hand as it should.
@@ -52,7 +52,7 @@ def released_at(run: Run, record: AttachmentRecord) -> float:
 
 
 def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, BoolArray]:
-    """Drift [m], turn [rad] and where they mean something, of the physical object with a name."""
+    """Name, drift [m] and turn [rad] of a physical object, and where the two are defined."""
     records = [record for record in run.attachments if name in (record.object, record.represents)]
     if not records:
         object_record(run, name)

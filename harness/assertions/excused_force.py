@@ -1,4 +1,4 @@
-"""What excuses of a contact explain: how hard a hand or what it holds may press, and how far drag.
+"""Forces and distances that excuse a contact of the hand, or of an object that it holds.
 
 A contact that gripping, carrying or putting down excuses is one only while its force, on average
 over `SPAN`, stays below `FACTOR` times what they explain, plus `SLACK`:

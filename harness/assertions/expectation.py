@@ -1,4 +1,4 @@
-"""The base classes of expectations: what each of them does besides being read from a file."""
+"""The base classes of expectations: how they are checked, observed and judged."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Expectation(ExpectationFields):
     word: ClassVar[str] = ""
 
     def check(self, at: At) -> None:
-        """Report what is wrong with it for this robot and scene; not what is inside it.
+        """Report what is wrong with the expectation itself for this robot and scene.
 
         Args:
             at: The robot, the objects and the place in the file.
@@ -67,7 +67,7 @@ class Expectation(ExpectationFields):
         return merged(inner.observations() for inner in self.predicates().values())
 
     def verdict(self, run: Run, step: str) -> Verdict:
-        """What became of it, without its text and its place in the file.
+        """The verdict, without the expectation's text and its place in the file.
 
         Args:
             run: The run with its recorded signals.
@@ -80,7 +80,7 @@ class Expectation(ExpectationFields):
         raise NotImplementedError(f"{type(self).__name__} has no method `verdict`")
 
     def readable(self, run: Run) -> Run:
-        """The run, of which it reads what its `observations` declare."""
+        """The run, restricted to what `observations` declare."""
         return restricted(run, self.observations(), type(self).__name__)
 
 
@@ -131,8 +131,8 @@ class Predicate(Expectation, PredicateFields):
         except (NotReached, NotObservable, HarnessError):
             raise
         except Exception as error:
-            said = f"{type(self).__name__}.signal raised {type(error).__name__}: {error}"
-            raise ExpectationError(said) from error
+            reason = f"{type(self).__name__}.signal raised {type(error).__name__}: {error}"
+            raise ExpectationError(reason) from error
         return found if isinstance(found, MarginSignal) else self._with_measures(found, window)
 
     def unchanged(self, window: Window) -> str:  # noqa: ARG002 - subclasses read it
@@ -156,7 +156,7 @@ class Predicate(Expectation, PredicateFields):
         return answer
 
     def terms(self, step: str) -> Terms:
-        """How it is judged where it stands bare."""
+        """How the predicate is judged without a temporal word."""
         return terms_of(
             self.judged, (self,), step, is_opposed=self.is_opposed, is_change=self.is_change
         )

@@ -32,14 +32,14 @@ def _described(spec: ExpectationFields) -> str:
         text += "".join(f" {key} {_described(inner)}" for key, inner in others)
     elif subject and getattr(spec, subject) is not None:
         text += f" {_subject(subject, getattr(spec, subject))}"
-    said = [
+    parts = [
         f"{_key(key)} {_value(spec, key)}"
         for key in type(spec).model_fields
         if key in spec.model_fields_set
         and key not in (*OMITTED, *predicates, subject)
         and getattr(spec, key) is not None
     ]
-    return ", ".join([text, *said])
+    return ", ".join([text, *parts])
 
 
 def _subject(key: str, value: Any) -> str:

@@ -20,7 +20,7 @@ _facts: ContextVar[dict[Any, Any] | None] = ContextVar("facts", default=None)
 def remembered_facts() -> Generator[None]:
     """Compute each fact once in this context, in which all facts are of the same recording.
 
-    A context inside another one goes on with its facts.
+    A context inside another one continues with its facts.
     """
     if _facts.get() is not None:
         yield

@@ -108,13 +108,13 @@ def formula_verdict(text: str, window: Window) -> Verdict:
     left = values_of(comparison.left, window)
     right = values_of(comparison.right, window)
     unit = left.unit or right.unit or "1"
-    said, limit = float(left.values[index]), float(right.values[index])
+    actual, limit = float(left.values[index]), float(right.values[index])
     way = "holds" if holds == (sign > 0) else "does not hold"
-    reason = f"{comparison.text} {way}: {' against '.join(amounts(said, limit, unit))}"
+    reason = f"{comparison.text} {way}: {' against '.join(amounts(actual, limit, unit))}"
     above = comparison.operator.startswith(">") == (sign > 0)
     measure = Measure(
         str(comparison.left) if isinstance(comparison.left, Signal) else comparison.text,
-        said,
+        actual,
         limit,
         ">=" if above else "<=",
         unit,
@@ -140,7 +140,7 @@ class Evaluation:
 
     Args:
         window: The samples of the window.
-        is_open: Whether the window goes on after its last sample in a way that is not known.
+        is_open: Whether the window continues after its last sample in an unknown way.
         is_near: Whether distances at the cutoff of the recording are no larger than it.
     """
 
@@ -152,7 +152,7 @@ class Evaluation:
         self._known: dict[int, tuple[Node, Bounds]] = {}
 
     def bounds(self, node: Node) -> Bounds:
-        """Of a part of the formula, at every sample."""
+        """The bounds of a part of the formula, at every sample."""
         if id(node) not in self._known:
             self._known[id(node)] = (node, self._calculated(node))
         return self._known[id(node)][1]
@@ -288,7 +288,7 @@ class Evaluation:
         return Observed(known, int(unknown.sum()), premises=min(premises, default=None))
 
     def warnings(self, root: Node) -> tuple[VerdictWarning, ...]:
-        """What makes a formula that holds say less than it seems to."""
+        """Warnings about a formula that holds, but shows less than it seems to."""
         found = [
             VerdictWarning(
                 "premise never held",

@@ -262,7 +262,7 @@ def welded(run: Run, name: str) -> BoolArray:
 
 
 def weld_note(run: Run, name: str) -> str:
-    """What a verdict says of an object that a grasp with `mode: weld` fixed in the physics too."""
+    """The note in a verdict about an object that a grasp with `mode: weld` fixes in the physics."""
     return "; welded to the hand by `mode: weld`" if welded(run, name).any() else ""
 
 

@@ -31,7 +31,7 @@ POSITION_ERROR = Quantity(
 
 
 def check_tolerance(at: At, targets: Mapping[str, float], tolerance: float, is_given: bool) -> None:
-    """Report a tolerance that no position which the joints can have is beyond; as for `near`."""
+    """Report a tolerance that no possible joint position exceeds; arguments as of `near`."""
     joints = at.scope.description.joint_by_name
     reaches = [
         np.pi
@@ -85,7 +85,7 @@ def resting_joints(run: Run) -> frozenset[str]:
 
 
 def is_measured(recorded: FloatArray, joint: JointRecord, what: str) -> bool:
-    """Whether something is known of a joint in a run; one that follows another has no sensor.
+    """Whether a run has measurements of a joint; a mimic joint has no sensor.
 
     Raises:
         NotObservable: Nothing is, of a joint of its own.

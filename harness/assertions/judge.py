@@ -1,4 +1,4 @@
-"""From a recorded run and what was expected to verdicts, and nothing else is needed."""
+"""Judges a recorded run: a run and its expectations in, verdicts out."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
 
 
 def points_of(spec: Expectation) -> float | None:
-    """What an expectation is worth in a graded scenario; None where it says nothing of it."""
+    """The points of an expectation in a graded scenario; None where it states none."""
     for model in (spec, spec.predicates().get("predicate")):
         if model is not None and model.points is not None:
             return float(model.points)

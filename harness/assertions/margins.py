@@ -132,7 +132,7 @@ class Part:
         return expected, actual
 
     def margins(self) -> FloatArray:
-        """Not negative where the part holds, in `unit` (1 or -1 for equality), shape (n,)."""
+        """Margins, not negative where the part holds, in `unit` (equality: 1 or -1), shape (n,)."""
         match self.comparison:
             case "<=":
                 return self.limit - self.values

@@ -68,7 +68,7 @@ def merged(several: Iterable[Observations]) -> Observations:
 
 
 class ExpectationError(HarnessError):
-    """The class of an expectation does not do what it must: an error of the program."""
+    """The class of an expectation breaks its contract: an error of the program."""
 
 
 class UndeclaredObservation(ExpectationError):

@@ -28,7 +28,7 @@ def against(measures: Sequence[Measure], *, is_passed: bool) -> tuple[Measure, .
 
 
 def holds(measure: Measure) -> bool:
-    """Whether a value stands to its limit as it must."""
+    """Whether a value satisfies its limit."""
     value, limit = measure.value, measure.limit
     match measure.comparison:
         case "<=":
@@ -40,7 +40,7 @@ def holds(measure: Measure) -> bool:
 
 
 def turned(measure: Measure) -> Measure:
-    """The same with its limit turned round; one without a limit, or an equality, as it is."""
+    """The measure with its limit reversed; unchanged without a limit, or for an equality."""
     match measure.comparison:
         case "<=":
             return replace(measure, comparison=">=")

@@ -12,7 +12,7 @@ from harness.language.files.source import Loc
 
 @dataclass(frozen=True)
 class PlacedExpectation:
-    """What is expected, where it is judged, and where the file says so.
+    """An expectation, the step that it is judged over, and its place in the file.
 
     Attributes:
         spec: The model of the expectation.
@@ -59,7 +59,7 @@ def check_expectation(spec: Expectation, loc: Loc, scope: Scope) -> None:
 
 
 def _check_step_is_named(spec: Expectation, loc: Loc, scope: Scope) -> None:
-    """Report what can be judged over a step alone and is expected of the whole run."""
+    """Report an expectation of the whole run that can be judged only over a step."""
     parts = (spec, *spec.predicates().values())
     why = next((part.needs_step() for part in parts if part.needs_step()), "")
     if why and not any(part.during for part in parts):

@@ -1,4 +1,4 @@
-"""Where links, objects and frames stood at each sample."""
+"""Poses of links, objects and frames at each sample."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def object_poses(run: Run, name: str) -> FloatArray:
 
 
 def physical_poses(run: Run, name: str) -> FloatArray:
-    """As `object_poses`, of an object that is in the physics: no belief of the planner is judged.
+    """Poses as of `object_poses`, of an object that is in the physics; never the planner's belief.
 
     Raises:
         NotObservable: The planner alone knows it, or the run does not.

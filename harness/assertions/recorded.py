@@ -84,7 +84,7 @@ class _Guarded:
 
 
 def guard_unrecorded(run: Run) -> Run:
-    """The same run; what it does not have cannot be read as if nothing had happened."""
+    """The same run, in which reading what was not recorded raises an error."""
     if not run.unrecorded:
         return run
     if "attachments" in run.unrecorded:

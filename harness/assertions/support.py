@@ -100,7 +100,7 @@ def riders(run: Run, carrier: str) -> dict[str, BoolArray]:
 
 
 def _connected(run: Run, start: str, names: Collection[str]) -> list[str]:
-    """Those of some bodies that ever touch another one, or what touches it, and so on; sorted."""
+    """The bodies that contacts connect with another one at some time, sorted."""
     reached, added = {start}, {start}
     while added:
         near = {body for pair in run.signals.contact_forces if added & set(pair) for body in pair}

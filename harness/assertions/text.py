@@ -30,7 +30,7 @@ def amounts(value: float, limit: float, unit: str) -> tuple[str, str]:
 
 
 def percentages(value: float, limit: float) -> tuple[str, str]:
-    """The same of two shares, in percent."""
+    """Two shares in percent, in digits that differ where the two do."""
     return distinct(value, limit, lambda share, more: f"{100 * share:.{1 + more}f} %")
 
 

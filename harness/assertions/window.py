@@ -16,11 +16,11 @@ D = TypeVar("D", bound=np.dtype[Any])
 
 
 class NotReached(Exception):
-    """There was nothing to judge; says why."""
+    """There was nothing to judge; the message says why."""
 
 
 class NotObservable(Exception):
-    """The record lacks what the expectation is about; says what."""
+    """The record lacks what the expectation is about; the message says what."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Window:
 
     @property
     def times(self) -> FloatArray:
-        """Of the window's samples [s], shape (n,)."""
+        """Times of the window's samples [s], shape (n,)."""
         return self.run.signals.times[self.start : self.stop]
 
     @property
@@ -51,7 +51,7 @@ class Window:
         return values[self.start : self.stop]
 
     def time(self, index: int) -> float:
-        """Of a sample of the window [s]."""
+        """Time of a sample of the window [s]."""
         return float(self.run.signals.times[self.start + index])
 
     @property

@@ -175,7 +175,7 @@ def _refuse_unknown(
     chosen: IntArray,
     arguments: tuple[FloatArray, FloatArray, BoolArray, FloatArray | None],
 ) -> None:
-    """Refuse a verdict that the unknown samples would turn round if they were favourable.
+    """Refuse a verdict that favourable values of the unknown samples would reverse.
 
     Raises:
         NotObservable: They would.
@@ -254,7 +254,7 @@ def _could_hold(
     applies: np.ndarray,
     progress: FloatArray | None,
 ) -> bool:
-    """Whether the expectation holds if a window that was cut short goes on in the best way."""
+    """Whether the expectation holds if a window that was cut short continues in the best way."""
     best = -np.inf if terms.word == "never" else np.inf
     return _holds_after(terms, best, values, times, applies, progress)
 
@@ -280,7 +280,7 @@ def _is_undecided(
     applies: np.ndarray,
     progress: FloatArray | None,
 ) -> bool:
-    """Whether what must never be could still come true, in its time, after the window's end."""
+    """Whether what must never hold could still hold, within its time, after the window's end."""
     if terms.word != "never" or (terms.hold is None and terms.within is None):
         return False
     within = float(times[-1] - times[0]) if terms.within is None else terms.within
@@ -300,7 +300,7 @@ def _ended_before(terms: Terms, times: FloatArray) -> str:
 
 
 def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None) -> int:
-    """The sample that came nearest to what never held at all: it says most about why."""
+    """The sample that came nearest to fulfilling what never held."""
     known = np.where(np.isnan(values), -np.inf, values)
     return temporal.eventually(known, times, progress=progress).index
 

@@ -88,7 +88,6 @@ def collect(
         bench,
         simulator,
         watch,
-        keep_going=True,
     )
     return bench.motions
 

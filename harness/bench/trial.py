@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from harness.core.errors import PlanningFailed
+from harness.core.trajectory import path_length
 from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlanner, MotionRequest
@@ -95,7 +96,7 @@ def try_plan(
         seed,
         "",
         statistics.state_checks,
-        path_length=length(plan.trajectory.positions),
+        path_length=path_length(plan.trajectory.positions),
         duration=plan.trajectory.duration,
         smoothness=smoothness(path),
         clearance=float(nearest.min()) if len(nearest) else float("nan"),
@@ -103,11 +104,6 @@ def try_plan(
         planning_time=spent,
         is_straight=statistics.planner_id == STRAIGHT,
     )
-
-
-def length(positions: FloatArray) -> float:
-    """Joint-space length of a path through rows (N, dof) [rad]."""
-    return float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
 
 
 def even(positions: FloatArray) -> FloatArray:

@@ -29,8 +29,6 @@ def draw_failure(
     world_objects: Sequence[WorldObject],
     run: Run,
     step: StepRecord,
-    *,
-    backend: str = "auto",
 ) -> bytes:
     """A JPEG file of the state that explains a failed step, with the goal.
 
@@ -39,7 +37,6 @@ def draw_failure(
 
     Args:
         step: A failed step that has an explanation.
-        backend: `auto`, `egl`, `osmesa` or `rays`.
     """
     nearest = recorded_explanation(step.explanation).nearest
     if nearest is None:
@@ -62,7 +59,7 @@ def draw_failure(
     _tint(picture, nearest)
     picture.pose(poses | {mark.name: mark.pose for mark in marks})
     points, radii = _in_view(description, poses, marks)
-    pixels = render_overview(picture, points, radii, WIDTH, HEIGHT, backend)
+    pixels = render_overview(picture, points, radii, WIDTH, HEIGHT)
     return captioned_jpeg(pixels, f"{step.error_code}: {nearest.shows}{_missed_by(nearest)}")
 
 

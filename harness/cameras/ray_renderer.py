@@ -113,7 +113,7 @@ class RayRenderer:
     def _see(
         self, rays: _Rays, groups: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As `_cast`, between the near and the far plane.
+        """The hits that `_cast` returns between the near and the far plane.
 
         A ray passes through a geom that it enters before the near plane, as on graphics cards that
         cull back faces. The floor, geom 0, has none.

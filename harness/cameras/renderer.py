@@ -158,7 +158,6 @@ def render_overview(
     radii: FloatArray,
     width: int,
     height: int,
-    backend: str = "auto",
 ) -> Picture:
     """A picture of a posed model, in a view that contains all given spheres.
 
@@ -167,9 +166,8 @@ def render_overview(
         radii: Radii of the spheres, shape (N,) [m].
         width: Width of the picture [pixels].
         height: Height of the picture [pixels].
-        backend: The rendering backend, as in `make_renderer`.
     """
-    renderer = make_renderer(picture, width, height, backend)
+    renderer = make_renderer(picture, width, height)
     try:
         return renderer.render(fit_viewpoint(points, radii, width, height).view)
     finally:

@@ -29,14 +29,13 @@ SMALLEST, LARGEST = 0.03, 0.15
 
 
 def save_robot_picture(
-    description: RobotDescription, joint_positions: FloatArray, file: Path, backend: str = "auto"
+    description: RobotDescription, joint_positions: FloatArray, file: Path
 ) -> str:
     """Draw a robot at joint positions, in description order.
 
     Args:
         joint_positions: Joint positions, shape (n,).
         file: A PNG or JPEG file.
-        backend: `auto`, `egl`, `osmesa` or `rays`.
 
     Returns:
         A line that names the meshes that are not drawn; empty when all are.
@@ -52,7 +51,7 @@ def save_robot_picture(
     centres = np.array([poses[link.name].translation for link in links])
     radii = np.array([_radius(link) for link in links])
     picture.pose(poses)
-    image = render_overview(picture, centres, radii, SIZE, SIZE, backend)
+    image = render_overview(picture, centres, radii, SIZE, SIZE)
     done, encoded = cv2.imencode(file.suffix, np.ascontiguousarray(image[:, :, ::-1]))
     if not done:
         raise OSError(0, "cannot be encoded", str(file))
@@ -80,8 +79,6 @@ def draw_ik_comparison(
     reached: FloatArray | None,
     file: Path,
     caption: str,
-    *,
-    backend: str = "auto",
 ) -> None:
     """Write a JPEG of the arm, the expected arm in translucent blue, and the target's frame.
 
@@ -93,7 +90,6 @@ def draw_ik_comparison(
         expected: Joint positions that reach the target, description order; None when unknown.
         reached: The answer's joint positions; None draws the arm at `expected` alone.
         file: The file to write; its folder exists.
-        backend: `auto`, `egl`, `osmesa` or `rays`.
     """
     solid = expected if reached is None else reached
     assert solid is not None
@@ -120,7 +116,7 @@ def draw_ik_comparison(
     sizes |= {ghost.name: LINK_SIZE for ghost in ghosts} | {marks[0].name: AXIS_LENGTH}
     points = np.array([shown[name].translation for name in sizes])
     radii = np.array(list(sizes.values()))
-    pixels = render_overview(picture, points, radii, WIDTH, HEIGHT, backend)
+    pixels = render_overview(picture, points, radii, WIDTH, HEIGHT)
     file.write_bytes(captioned_jpeg(pixels, caption))
 
 

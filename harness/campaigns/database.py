@@ -154,7 +154,7 @@ def _run(entry: StreamEntry, number: int) -> tuple[Any, ...]:
         result.title,
         result.outcome,
         cause.group if cause else None,
-        cause.said if cause else None,
+        cause.text if cause else None,
         result.digest,
         result.seed,
         result.sim_time,

@@ -1,4 +1,4 @@
-"""The robot cell while a program runs: adapters, what is believed of the scene, what is held."""
+"""The robot cell while a program runs: adapters, beliefs about the scene, attached objects."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _cannot_nest(_: Sequence[ProgramStep]) -> None:
 
 @dataclass
 class Cell:
-    """What steps work with."""
+    """Everything that steps work with: robot, planning, physics, and the state of the scene."""
 
     description: RobotDescription
     scene: PlanningScene
@@ -192,7 +192,7 @@ class Cell:
     # -- the planner's belief -----------------------------------------------------------------
 
     def sync_scene(self) -> None:
-        """Let the planning scene know where the physics has the objects that are not held."""
+        """Copy the physics' poses of the objects that are not held to the planning scene."""
         held = self.scene.attached()
         for name in self.scene.object_names():
             presence = self.presence.get(name)
@@ -202,7 +202,7 @@ class Cell:
                 self.scene.move_object(name, self.measured_pose(name))
 
     def add_to_scene(self, obj: WorldObject, pose: SE3) -> None:
-        """Let an object appear in the planning scene, the physics, or both, and say since when."""
+        """Let an object appear in the planning scene, the physics, or both; record since when."""
         known = self.presence.get(obj.name)
         if known is None:
             known = self.presence[obj.name] = Presence(obj, pose, added_by_step=True)

@@ -1,4 +1,4 @@
-"""From the goal in a file to the goal of a planner."""
+"""Resolves the goals of a file to goals of a planner."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class TcpGoal:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """The goal as a motion step has it."""
+        """The goal as the keys of a motion step."""
         if isinstance(self.target, Pose):
             return {"pose": self.target}
         return {"position": self.target, "pitch": self.pitch}
@@ -58,7 +58,7 @@ def arm_has_six_joints(description: RobotDescription, group: str | None) -> bool
 
 
 def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
-    """The goal with every number known, in the world, as things stand now."""
+    """The goal with every number known, in the world, for the present state of the cell."""
     if goal.named_target is not None:
         state = cell.description.states_of(group)[goal.named_target]
         return JointGoal(_joint_positions(cell, group, dict(state.positions)))
@@ -102,9 +102,9 @@ def _largest(tolerance: GoalTolerance) -> float:
     return max(given) if isinstance(given, tuple) else given
 
 
-def path_constraints(said: ConstraintsSpec, cell: Cell) -> PathConstraints:
-    """What must hold along a motion, in the world, as things stand now."""
-    band, box = said.orientation, said.position
+def path_constraints(spec: ConstraintsSpec, cell: Cell) -> PathConstraints:
+    """The path constraints of a motion, in the world, for the present state of the cell."""
+    band, box = spec.orientation, spec.position
     tcp = cell.description.tcp_link
     orientation = position = None
     if band is not None:
@@ -118,7 +118,7 @@ def path_constraints(said: ConstraintsSpec, cell: Cell) -> PathConstraints:
         JointBand(
             name, joint.position - joint.tolerance_below, joint.position + joint.tolerance_above
         )
-        for name, joint in (said.joints or {}).items()
+        for name, joint in (spec.joints or {}).items()
     )
     return PathConstraints(orientation, position, joints)
 

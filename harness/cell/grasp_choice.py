@@ -1,4 +1,4 @@
-"""Which of several equally good approaches is taken: the first that the arm can follow."""
+"""Chooses, of several equally good approaches, the first that the arm can follow."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class ChosenApproach:
 
 @dataclass(frozen=True, eq=False)
 class _Line:
-    """A straight approach that the arm can follow: the whole robot at its begin and at its end."""
+    """A straight approach that the arm can follow: the whole robot at its start and its end."""
 
     begin: FloatArray
     end: FloatArray
@@ -97,7 +97,7 @@ class _Line:
 def choose_approach(
     approaches: Sequence[Approach], search: GraspSearch, cell: Cell
 ) -> ChosenApproach:
-    """The first approach that the arm can reach and follow, if possible one after which it goes on.
+    """The first approach that the arm can follow, if possible one after which the step can go on.
 
     Raises:
         PlanningFailed: No approach has ends that the arm can reach free of collisions; the
@@ -119,7 +119,7 @@ def choose_approach(
 
 
 def _reached(lines: Sequence[_Line], search: GraspSearch, cell: Cell) -> dict[str, float] | None:
-    """The begin that the arm reaches with the least motion; None where it finds none."""
+    """The start of the approach that needs the least motion; None where the arm reaches none."""
     options = cell.current.options
     budget = min(options.max_state_checks, REACH_CHECKS)
     options = replace(options, is_explained=False, max_state_checks=budget)

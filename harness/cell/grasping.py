@@ -1,4 +1,4 @@
-"""How the gripper stands to what it grasps: approach axis, default grasp poses."""
+"""Geometry of grasps: approach axis, openings, default grasp poses."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def grasp_depth(cell: Cell, height: float) -> float:
 
 
 def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
-    """T_world_tcp of every way to take an object from above, as its shape and the gripper have it.
+    """T_world_tcp of every grasp of an object from above, by its shape and the gripper's.
 
     Across the narrow one of its level sides comes first, then half a turn of that: two fingers are
     alike. A box is taken across its wider side too if the gripper opens so far; what is round about
@@ -166,7 +166,7 @@ def _room_for_width(cell: Cell, width: float) -> FloatArray:
 
 
 def top_grasps_at(point: FloatArray, obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
-    """The same with the TCP at a stated point, shape (3,).
+    """The grasps of `top_grasps` with the TCP at a stated point, shape (3,).
 
     Where the object leans, or is not one simple shape, at every eighth of a turn.
     """

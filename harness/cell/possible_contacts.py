@@ -1,4 +1,4 @@
-"""Pairs of bodies that can never touch in the physics: `never` would say nothing of them."""
+"""Pairs of bodies that can never touch in the physics: `never` would show nothing."""
 
 from __future__ import annotations
 

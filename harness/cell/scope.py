@@ -167,7 +167,7 @@ class Scope:
             self.present[obj.name] = None
 
     def claim_step_id(self, step_id: str) -> bool:
-        """Whether the id was free; it no longer is."""
+        """Claim a step's id; returns whether it was free."""
         if step_id in self.step_ids:
             return False
         self.step_ids[step_id] = None
@@ -176,7 +176,7 @@ class Scope:
     # -- names --------------------------------------------------------------------------------
 
     def check_frame(self, name: str, loc: Loc, *, of: str = "") -> None:
-        """`world`, a link, or an object; not one in which the body `of` can never move."""
+        """Report an unknown frame, and one in which the body `of` can never move."""
         links = self.description.link_names
         frames = ("world", *links)
         if name not in frames and name not in self.objects:
@@ -190,17 +190,17 @@ class Scope:
             )
 
     def check_link(self, name: str | None, loc: Loc) -> None:
-        """A robot link."""
+        """Report a name that is no link of the robot."""
         if name is not None and name not in self.description.link_names:
             self.problems.unknown(loc, "link", name, self.description.link_names, needs=("robot",))
 
     def check_link_or_held(self, name: str | None, loc: Loc) -> None:
-        """A robot link, or an object that is attached here (Task Constructor's ik_frame)."""
+        """Report a name of no link and no object attached here (Task Constructor's ik_frame)."""
         if name is not None and name not in self.attached:
             self.check_link(name, loc)
 
     def take_time(self, seconds: float, loc: Loc) -> None:
-        """Simulated time that a step requests; all of it must fit into a run."""
+        """Add simulated time that a step requests; the sum must fit into a run."""
         before, self.requested_time = self.requested_time, self.requested_time + seconds
         if before <= LONGEST_RUN < self.requested_time:
             self.problems.add(
@@ -224,7 +224,7 @@ class Scope:
     def check_object(
         self, name: str, loc: Loc, *, simulated: bool = False, is_key: bool = False
     ) -> None:
-        """An object of the world or of an earlier step, and one that the physics knows."""
+        """Report an unknown object; with `simulated`, also one that the physics does not know."""
         obj = self.objects.get(name)
         if obj is None:
             self.problems.unknown(
@@ -238,7 +238,7 @@ class Scope:
             )
 
     def check_present(self, name: str, loc: Loc) -> None:
-        """An object that is in the scene at this point of the file."""
+        """Report an object that is not in the scene at this point of the file."""
         if name not in self.objects:
             self.check_object(name, loc)
         elif name not in self.present:
@@ -247,12 +247,12 @@ class Scope:
             )
 
     def check_camera(self, name: str, loc: Loc) -> None:
-        """A camera of the robot, the world or the scenario."""
+        """Report a name that is no camera of the robot, the world or the scenario."""
         if name not in self.cameras:
             self.problems.unknown(loc, "camera", name, self.cameras)
 
     def check_body(self, name: str, loc: Loc, *, special: tuple[str, ...]) -> None:
-        """A link, an object, or one of some special words."""
+        """Report a name that is no link, no object and none of some special words."""
         known = (*special, *self.objects, *self.description.link_names)
         if name not in known:
             self.problems.unknown(loc, "object or link", name, known)
@@ -272,7 +272,7 @@ class Scope:
     def check_joint(
         self, name: str, loc: Loc, group: str | None = None, *, is_key: bool = True
     ) -> None:
-        """A movable joint, of a group if one is given."""
+        """Report a name that is no movable joint, of a group if one is given."""
         names = self.description.joint_names
         where = "joint"
         if group is not None and group in self.description.groups:
@@ -284,7 +284,7 @@ class Scope:
             self.check_joint_unit(name, loc)
 
     def check_joint_unit(self, name: str, loc: Loc) -> None:
-        """A value at a place of the file: an angle for a joint that turns, a length for others."""
+        """Report a value that is no angle for a joint that turns, or no length for another one."""
         unit = self.description.joint_by_name[name].position_unit
         self.problems.check_unit(loc, unit, needs=("robot",))
 
@@ -317,5 +317,5 @@ class At:
         return (*self.loc, *keys)
 
     def check_pose(self, pose: Pose, *keys: str | int) -> None:
-        """A pose under these keys of the step, whose frame must exist."""
+        """Report an unknown frame of the pose under these keys of the step."""
         self.scope.check_frame(pose.frame, self.key(*keys, "frame"))

@@ -1,4 +1,4 @@
-"""What the arguments of commands are: text in, a value out, or a sentence why not."""
+"""Types of arguments on the command line: text in, a value or an error message out."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SYNONYMS = {
 
 
 class Parser(argparse.ArgumentParser):
-    """Reads arguments; what it says of wrong ones is printable and names the nearest valid one."""
+    """Parses arguments; messages about wrong ones are printable and name the nearest valid one."""
 
     def error(self, message: str) -> NoReturn:
         """End with the message; the usage precedes it where it is short."""

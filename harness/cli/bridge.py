@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def show_remarks(result: BridgeResult) -> None:
-    """What is said of wall time, names and the launched program."""
+    """Print the remarks on wall time, names and the launched program."""
     for remark in result.remarks:
         note(remark)
 

@@ -1,4 +1,4 @@
-"""`harness check`: what is known of a file without physics."""
+"""`harness check`: the problems of a file that can be found without physics."""
 
 from __future__ import annotations
 

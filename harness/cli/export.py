@@ -78,7 +78,7 @@ def _refuse_taken(target: Path, *, is_forced: bool) -> None:
 
 
 def _write_bag(bag: Path, stored: StoredRun, options: BagOptions) -> None:
-    """Write it next to its place, then move it there."""
+    """Write the bag next to its place, then move it there."""
     from harness.reporting.rosbag.write import write_bag
 
     with refusing_unwritable():

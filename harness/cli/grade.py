@@ -126,8 +126,8 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
         show_remarks(result)
         problems = [str(problem) for problem in case.problems]
         code = EXIT_CODES[case.outcome]
-        said = {"outcome": case.outcome, "message": case.message, "problems": problems}
-        return code, {"format": "armharness-grade/1", "exit_code": code, **said}
+        failed = {"outcome": case.outcome, "message": case.message, "problems": problems}
+        return code, {"format": "armharness-grade/1", "exit_code": code, **failed}
     run = read_run(Path(case.report_dir)).run if case.report_dir else None
     grade = Grade(run, graded(case.verdicts), case.notes)
     code = _code(grade) if case.outcome == "passed" else EXIT_CODES["failed"]
@@ -145,7 +145,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
 
 
 def _code(grade: Grade) -> int:
-    """0 when every point is earned; what is worth none decides nothing."""
+    """The exit code: 0 when every point is earned; expectations without points do not count."""
     is_full = bool(grade.rows) and all(row.earned == row.points for row in grade.rows)
     return 0 if is_full else EXIT_CODES["failed"]
 

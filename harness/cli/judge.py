@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def contact_lines(contacts: Sequence[ContactRecord], style: Style = PLAIN) -> Iterator[str]:
-    """A table, the first to touch first; what is a collision is marked."""
+    """Lines of a table of contacts by their first time; collisions are marked."""
     if not contacts:
         yield "contacts: none"
         return

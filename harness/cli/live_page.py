@@ -41,7 +41,7 @@ class LivePage:
         self._known = 0
 
     def result(self, index: int) -> None:
-        """Take a result that the suite has."""
+        """Add a result of the suite."""
         if not self._arrived:
             known = [each for each in self._suite.results if each != index]
             self._known = len(known)

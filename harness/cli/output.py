@@ -89,7 +89,7 @@ class Output:
             self._is_drawn, self._last_tick = True, time.monotonic()
 
     def clear(self) -> None:
-        """Take the status line away, until something writes it again."""
+        """Remove the status line, until something writes it again."""
         with self._lock:
             if self._is_drawn:
                 self._is_drawn = False
@@ -153,7 +153,7 @@ _outputs: dict[str, Output] = {}
 
 
 def output(name: str = "stdout") -> Output:
-    """The one of this process's standard output, or of `stderr`."""
+    """The output of this process on standard output, or on `stderr`."""
     stream: TextIO = getattr(sys, name)
     if name not in _outputs or _outputs[name].stream is not stream:
         _outputs[name] = Output(stream)
@@ -185,7 +185,7 @@ def indented(message: str) -> str:
 
 
 def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
-    """A command's work; errors that are raised on purpose are shown without a traceback.
+    """Run a command; errors that are raised on purpose are shown without a traceback.
 
     Args:
         ticks: Whether a terminal shows that the command is at work; not where a debugger may be.

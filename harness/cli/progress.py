@@ -94,7 +94,7 @@ class ProgressLines:
             self._line(index, f"  {line}")
 
     def _status(self, event: ProgressEvent | None, index: int) -> Callable[[], str]:
-        """What the status line says, at any later moment."""
+        """A function that gives the text of the status line at any later moment."""
         begin = now = self._clock()
         if event is not None and event.kind == "activity":
             if self._activities.get(index, ("", 0.0))[0] != event.step:

@@ -127,8 +127,8 @@ def _lines(
         dict(database.execute(f"SELECT outcome, count(*) {grouped} outcome", values))
     )
     total = outcomes.total()
-    said = ", ".join(f"{number} {outcome}" for outcome, number in outcomes.most_common())
-    yield style.strong(f"{total} runs{f': {said}' if said else ''}")
+    counted = ", ".join(f"{number} {outcome}" for outcome, number in outcomes.most_common())
+    yield style.strong(f"{total} runs{f': {counted}' if counted else ''}")
     causes = database.execute(
         f"SELECT cause, count(*) {grouped} cause HAVING cause IS NOT NULL ORDER BY 2 DESC LIMIT ?",
         [*values, SHOWN],
@@ -160,12 +160,12 @@ def _row(row: dict[str, Any], style: Style) -> str:
         for path, value in row.items()
         if path not in COLUMNS and value is not None
     )
-    said = row["cause"]
-    if said is None and row["margin"] is not None:
+    reason = row["cause"]
+    if reason is None and row["margin"] is not None:
         unit = "" if row["unit"] == "1" else row["unit"]
-        said = f"margin {row['margin']:.4g} {unit}".rstrip()
+        reason = f"margin {row['margin']:.4g} {unit}".rstrip()
     shared = f"from other cases: {row['shared']}" if row["shared"] else ""
-    words = filter(None, (name, said, drawn, shared))
+    words = filter(None, (name, reason, drawn, shared))
     return f"{style.mark(row['outcome'] == 'passed')} {'  '.join(words)}"
 
 

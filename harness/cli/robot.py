@@ -1,4 +1,4 @@
-"""`harness robot check|show`: a robot looked over, and drawn."""
+"""`harness robot check|show`: check a robot, or draw it."""
 
 from __future__ import annotations
 

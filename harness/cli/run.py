@@ -117,7 +117,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run scenarios; steps and outcomes as they come, failures last."""
+    """Run scenarios; print steps and outcomes as they come, and failures last."""
     files = discover(arguments.paths)
     if arguments.live:
         return _run_live(arguments, files)
@@ -273,7 +273,7 @@ def _conditions(arguments: argparse.Namespace) -> Conditions | None:
 def _page_updates(
     arguments: argparse.Namespace, suite: SuiteRun
 ) -> Callable[[int, CaseResult], None]:
-    """What keeps the page of a running suite up to date with each result."""
+    """A function that updates the page of a running suite with each result."""
     if not has_page(arguments, suite):
         return lambda *_: None
     from harness.cli.live_page import LivePage

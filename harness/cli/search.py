@@ -108,7 +108,7 @@ def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFa
                 progress.stage("writing the failures")
                 written = write_failures(found, folder, server)
             except KeyboardInterrupt:
-                complain("interrupted: the same command with --resume goes on")
+                complain("interrupted: the same command with --resume continues")
                 raise
         write_search(found, written, folder)
     output().status(None)
@@ -153,7 +153,7 @@ def _show(
     exploration = found.exploration
     if found.nominal.result.outcome != "passed":
         cause = cause_of(found.nominal.result)
-        say(f"{style.mark(False)} the scenario fails as its file has it: {cause and cause.said}")
+        say(f"{style.mark(False)} the scenario fails unchanged: {cause and cause.text}")
         say(f"  again:  {shlex.join(['harness', 'run', str(found.request.file)])}")
         return
     names = ", ".join(each.path for each in found.space.parameters)
@@ -191,7 +191,7 @@ def _show_failure(each: WrittenFailure, found: SearchResult, report: str) -> Non
         say(f"    {line}")
     cause = cause_of(each.result)
     if cause is not None:
-        say(f"  {cause.said}")
+        say(f"  {cause.text}")
     say(f"  report: {report}")
     say(f"  again:  {shlex.join(['harness', 'run', str(each.file)])}")
     if not each.is_same:

@@ -23,7 +23,7 @@ MOST_FAILURES = 20
 def write_suite_files(
     arguments: argparse.Namespace, suite: SuiteRun
 ) -> tuple[Path | None, Columns | None]:
-    """The files of a suite; GitHub's summary of the job where there is one.
+    """Write the files of a suite, and GitHub's summary of the job where there is one.
 
     Returns:
         The page, and what varies in the cases; None where no files are written.
@@ -56,7 +56,7 @@ def show_json(suite: SuiteRun) -> int:
 
 
 def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
-    """A line for each thing that went wrong: for editors, or as GitHub's annotations."""
+    """Print a line for each problem: for editors, or as GitHub's annotations."""
     from harness.reporting.suite.cause import short_lines
     from harness.reporting.suite.github import error_annotations
 
@@ -75,7 +75,7 @@ def show_results(
     page: Path | None,
     columns: Columns | None,
 ) -> None:
-    """Failures, rates, tables and the last lines.
+    """Print failures, rates, tables and the last lines.
 
     Args:
         page: The page of the suite; None where there is none.
@@ -92,8 +92,8 @@ def show_results(
         for runs in suite.repetitions():
             name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
             say(f"{name}: {repeats(runs, style)}")
-        for index, said in suite.differences.items():
-            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {said}")
+        for index, difference in suite.differences.items():
+            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {difference}")
     else:
         _print_rates(suite, columns, style)
     rates = missed(suite.rates)
@@ -123,7 +123,7 @@ def show_results(
 
 
 def show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:
-    """What an interruption left undone, and how to go on; nothing where there was none."""
+    """Print what an interruption left undone, and how to resume; nothing without one."""
     if not suite.is_interrupted:
         return
     from harness.suite.cases import progress_text

@@ -45,7 +45,7 @@ class SharedTally:
     computed: Counter[str] = field(default_factory=Counter[str])
 
     def counts(self) -> dict[str, tuple[int, int]]:
-        """By kind: how many were taken, of how many."""
+        """How many results of each kind were taken, and how many there are."""
         kinds = sorted({*self.taken, *self.computed})
         return {kind: (self.taken[kind], self.taken[kind] + self.computed[kind]) for kind in kinds}
 

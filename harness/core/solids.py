@@ -24,6 +24,11 @@ def is_inertia_of_a_body(tensor: FloatArray) -> bool:
     return bool(least > 0 and most - least - middle <= TRIANGLE_SLACK * most)
 
 
+def point_inertia(mass: float, offset: FloatArray) -> FloatArray:
+    """Inertia of a point mass at an offset (3,) [m]: the term of the parallel axis theorem."""
+    return mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+
+
 def solid_of(geometry: Geometry) -> tuple[float, FloatArray] | None:
     """Volume [m^3] and inertia at density 1 about the centre [m^5]; None for planes and meshes."""
     match geometry:

@@ -9,6 +9,11 @@ import numpy as np
 from harness.core.types import FloatArray
 
 
+def path_length(waypoints: FloatArray) -> float:
+    """Sum of the L2 norms of the segments between waypoints, shape (N, dof) [rad]."""
+    return float(np.linalg.norm(np.diff(waypoints, axis=0), axis=1).sum())
+
+
 @dataclass(frozen=True, eq=False)
 class JointPath:
     """Waypoints joined by straight joint-space segments, without time.
@@ -23,7 +28,7 @@ class JointPath:
 
     def length(self) -> float:
         """Sum of the segments' joint-space L2 norms [rad]."""
-        return float(np.linalg.norm(np.diff(self.waypoints, axis=0), axis=1).sum())
+        return path_length(self.waypoints)
 
 
 @dataclass(frozen=True, eq=False)

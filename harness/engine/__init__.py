@@ -1,1 +1,1 @@
-"""From a scenario to a program, and from a program to a run."""
+"""Compiles a scenario to a program, and executes the program."""

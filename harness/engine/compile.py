@@ -1,4 +1,4 @@
-"""From a scenario to a program: every name looked up, every problem of the file found at once."""
+"""Compiles a scenario: looks up every name, and finds all problems of the file at once."""
 
 from __future__ import annotations
 

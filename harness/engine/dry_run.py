@@ -1,7 +1,7 @@
-"""Adapters that move nothing: what can be said of a program before any physics.
+"""Adapters that move nothing, on which a program is executed without physics.
 
-`harness check` and `harness explain` execute the program on these; reach, goals in collision and
-missing objects come out as they would, contacts are taken to happen as the file hopes.
+`harness check` and `harness explain` execute the program on them. Reach, goals in collision and
+missing objects have the results of a run; contacts are assumed to happen as the file expects.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class DryFaults:
 
 
 class DrySimulator:
-    """The Simulator port without physics: commands come true at once, time stands still."""
+    """The Simulator port without physics: commands take effect at once, and no time passes."""
 
     faults = DryFaults()
 
@@ -65,7 +65,7 @@ class DrySimulator:
         )
 
     def watch(self, kind: str, step: ProgramStep, record: StepRecord | None) -> None:
-        """Note which steps are on; the gripper misses in one that the file expects to."""
+        """Note which steps run; the gripper misses in a step that is expected to fail so."""
         del record
         if step.spec.expect_error != "CONTROL_FAILED":
             return
@@ -168,7 +168,7 @@ class DryPlanner:
         return self._planner.check_goal(request)
 
     def _jump(self, request: MotionRequest) -> MotionPlan:
-        """From the start to the goal in a millisecond."""
+        """A plan that jumps from the start to the goal in a millisecond."""
         checked, goal = self.check_goal(request), request.goal
         positions = goal.positions if isinstance(goal, JointGoal) else checked.positions
         names = self._description.groups[request.group].joint_names

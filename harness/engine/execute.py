@@ -1,4 +1,4 @@
-"""Carry out a program step by step, and record what became of each."""
+"""Executes a program step by step, and records the result of each step."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class ProgramExecution:
     Attributes:
         program: What is executed; one that differs only in steps and expectations may replace it.
         cell: What the steps work with.
-        records: What became of the steps so far, in the order of execution.
+        records: The records of the steps so far, in the order of execution.
         ended_early: The failure that ended the execution; empty while there is none.
     """
 
@@ -144,7 +144,7 @@ class ProgramExecution:
             simulator: The simulator at the start state, with every object of the program prepared
                 and the world's objects present.
             on_step: Called before and after each step.
-            keep_going: Whether a failed step of the file lets the next one begin all the same; a
+            keep_going: Whether a failed step of the file does not prevent the next one; a
                 step made of others ends with the first of them that fails.
             external: Programs to which a step may hand the robot over; None: such a step does
                 nothing.
@@ -209,20 +209,10 @@ def execute_program(
     planner: MotionPlanner,
     simulator: Simulator,
     on_step: OnStep,
-    *,
-    keep_going: bool = False,
-    external: ExternalControl | None = None,
 ) -> Execution:
-    """Run a whole program; the arguments are those of `ProgramExecution`."""
+    """Run a whole program, whether or not steps fail; see `ProgramExecution` for the arguments."""
     execution = ProgramExecution(
-        program,
-        scene,
-        kinematics,
-        planner,
-        simulator,
-        on_step,
-        keep_going=keep_going,
-        external=external,
+        program, scene, kinematics, planner, simulator, on_step, keep_going=True
     )
     execution.run(program.steps)
     return execution.finish()
@@ -239,8 +229,8 @@ def _details(failure: StepFailed | None, cell: Cell) -> Details:
     """A failure's details, with what to do about it where that is known."""
     if failure is None:
         return Details()
-    said = advice(failure, cell)
-    return failure.details + Details.of(Explanation(advice=said) if said else None)
+    text = advice(failure, cell)
+    return failure.details + Details.of(Explanation(advice=text) if text else None)
 
 
 def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:

@@ -38,33 +38,33 @@ def merged_options(
         checks_per_second: State checks that a second of `planning_time` buys.
         planner_name: Normalises a pipeline's `planner_id`; empty is the pipeline's default.
     """
-    said = scenario.model_dump(exclude_none=True)
+    stated = scenario.model_dump(exclude_none=True)
     if step is not None:
         own = step.model_dump(exclude_none=True)
-        said = _inherited(scenario, step).model_dump(exclude_none=True)
+        stated = _inherited(scenario, step).model_dump(exclude_none=True)
         if {"planning_time", "max_state_checks"} & own.keys():
-            said.pop("planning_time", None)
-            said.pop("max_state_checks", None)
-        said.update(own)
-    pipeline = said.get("pipeline", DEFAULT_PIPELINE)
-    checks = said.get("max_state_checks")
+            stated.pop("planning_time", None)
+            stated.pop("max_state_checks", None)
+        stated.update(own)
+    pipeline = stated.get("pipeline", DEFAULT_PIPELINE)
+    checks = stated.get("max_state_checks")
     if checks is None:
-        seconds = said.get("planning_time")
+        seconds = stated.get("planning_time")
         checks = DEFAULT_STATE_CHECKS if seconds is None else int(seconds * checks_per_second)
-    root_seed = said.get("seed", seed)
+    root_seed = stated.get("seed", seed)
     return PlanningOptions(
         pipeline=pipeline,
-        planner_id=planner_name(pipeline, said.get("planner_id", "")),
+        planner_id=planner_name(pipeline, stated.get("planner_id", "")),
         max_state_checks=max(1, checks),
-        attempts=said.get("planning_attempts", 1),
-        velocity_scaling=said.get("max_velocity_scaling_factor", DEFAULT_SCALING),
-        acceleration_scaling=said.get("max_acceleration_scaling_factor", DEFAULT_SCALING),
-        padding=said.get("padding", DEFAULT_PADDING),
+        attempts=stated.get("planning_attempts", 1),
+        velocity_scaling=stated.get("max_velocity_scaling_factor", DEFAULT_SCALING),
+        acceleration_scaling=stated.get("max_acceleration_scaling_factor", DEFAULT_SCALING),
+        padding=stated.get("padding", DEFAULT_PADDING),
         seed=step_seed(root_seed, path),
         root_seed=root_seed,
-        pose_resolution=said.get("pose_resolution", 0.0),
-        parameters=said.get("parameters", {}),
-        max_jerk=said.get("max_jerk", float("inf")),
+        pose_resolution=stated.get("pose_resolution", 0.0),
+        parameters=stated.get("parameters", {}),
+        max_jerk=stated.get("max_jerk", float("inf")),
     )
 
 
@@ -94,17 +94,17 @@ def check_planning(
     inherited = _inherited(scenario or Planning(), planning)
     pipeline = planning.pipeline or inherited.pipeline or DEFAULT_PIPELINE
     planner = planning.planner_id or inherited.planner_id or ""
-    own, said = planning.parameters or {}, (*loc, "planner_id")
+    own, planner_place = planning.parameters or {}, (*loc, "planner_id")
     try:
         check_planner(pipeline, planner, {})
     except ValueError as error:
         if planning.planner_id is not None:
-            problems.add(said, str(error), needs=())
+            problems.add(planner_place, str(error), needs=())
     else:
         checked = {name: ((*loc, "parameters", name), own[name]) for name in own}
         if planning.parameters is None and planning.planner_id is not None:
             theirs = inherited.parameters or {}
-            checked = {name: (said, theirs[name]) for name in theirs}
+            checked = {name: (planner_place, theirs[name]) for name in theirs}
         for name, (place, value) in checked.items():
             try:
                 check_planner(pipeline, planner, {name: value})

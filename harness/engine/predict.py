@@ -1,4 +1,4 @@
-"""What will happen, as far as it can be known without physics."""
+"""Predicts the results of steps, as far as they are known without physics."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from harness.recording.step_record import StepRecord
 def predict(
     program: Program, scene: PlanningScene, kinematics: Kinematics, planner: MotionPlanner
 ) -> tuple[StepRecord, ...]:
-    """Step records of a run in which every command comes true; a failed step does not end it."""
+    """Step records of a run that follows every command exactly; a failed step does not end it."""
     return predict_with_poses(program, scene, kinematics, planner)[0]
 
 
@@ -49,16 +49,15 @@ def predict_with_poses(
         DryPlanner(planner, program.description),
         simulator,
         watch,
-        keep_going=True,
     )
     return execution.steps, poses
 
 
 def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...]:
-    """What of the world's objects the robot touches where it starts, deepest first.
+    """The world's objects that the robot touches at its start, deepest first.
 
-    A gripper that opens may leave what it touched, so that no step fails of it; the physics pushes
-    it away all the same.
+    A gripper that opens may leave what it touched, so that no step fails because of it; the physics
+    pushes the object away nevertheless.
 
     Args:
         program: The program whose start state is checked.

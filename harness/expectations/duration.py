@@ -24,10 +24,12 @@ class DurationCheck(Predicate):
     quantities = (DURATION,)
 
     at_most: Duration | None = Field(
-        default=None, description="The longest simulated time that it may take [s]."
+        default=None,
+        description="The longest simulated time that the step or the run may take [s].",
     )
     at_least: Duration | None = Field(
-        default=None, description="The shortest simulated time that it may take [s]."
+        default=None,
+        description="The shortest simulated time that the step or the run may take [s].",
     )
 
     @model_validator(mode="after")

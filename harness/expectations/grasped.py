@@ -136,7 +136,7 @@ def _where_pressed(run: Run, name: str, sample: int) -> str:
 
 
 def _planners_belief(run: Run, name: str) -> str:
-    """What the planning scene said of an object that the physics does not hold."""
+    """What the planning scene assumed of an object that the physics does not hold."""
     if not object_record(run, name).in_simulation:
         stands_for = [
             record.represents

@@ -172,7 +172,7 @@ def _inside(
 
 
 def _volume(shape: Shape) -> float:
-    """Of the box around a shape [m³]; 1 of a mesh or plane."""
+    """Volume of the box around a shape [m³]; 1 for a mesh or plane."""
     half = reach(shape.geometry, np.eye(3))
     return 1.0 if half is None else float(np.prod(2 * half))
 
@@ -207,5 +207,5 @@ def _is_ahead(shape: Shape, points: FloatArray, way: FloatArray) -> BoolArray:
 
 
 def _half_sizes(shape: Shape) -> FloatArray:
-    """Of the box around a shape, along the shape's own axes [m], shape (3,)."""
+    """Half sizes of the box around a shape, along the shape's own axes [m], shape (3,)."""
     return _corners(replace(shape, pose=SE3.identity()), "")[1]

@@ -25,7 +25,7 @@ class On(ObjectPredicate):
 
     quantities = (SUPPORT,)
 
-    support: Name = Field(description="The object or link that it stands on.")
+    support: Name = Field(description="The object or link that the object stands on.")
 
     def check(self, at: At) -> None:
         super().check(at)

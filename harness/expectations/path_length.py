@@ -23,10 +23,10 @@ class PathLength(Predicate):
     quantities = (LENGTH,)
 
     at_most: PositiveLength | None = Field(
-        default=None, description="The longest distance that it may travel [m]."
+        default=None, description="The longest distance that the TCP may travel [m]."
     )
     at_least: PositiveLength | None = Field(
-        default=None, description="The shortest distance that it may travel [m]."
+        default=None, description="The shortest distance that the TCP may travel [m]."
     )
 
     @model_validator(mode="after")

@@ -88,7 +88,8 @@ class Placed(ObjectPredicate):
         description="The supporting object; by default anything but the robot supports it.",
     )
     pose: Pose | None = Field(
-        default=None, description="The pose where it stands; by default it may stand anywhere."
+        default=None,
+        description="The expected pose of the object; by default the object may stand anywhere.",
     )
     tolerance: PoseTolerance | None = Field(
         default=None,
@@ -96,10 +97,10 @@ class Placed(ObjectPredicate):
         " free. `{position: 5 mm}` requires the orientation too, to its default of 0.01 rad.",
     )
     max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
-        default=0.005, description="The largest speed at which it counts as still [m/s]."
+        default=0.005, description="The largest speed of an object at rest [m/s]."
     )
     max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
-        default=0.05, description="The largest turning speed at which it counts as still [rad/s]."
+        default=0.05, description="The largest turning speed of an object at rest [rad/s]."
     )
 
     def check(self, at: At) -> None:

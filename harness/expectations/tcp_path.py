@@ -54,17 +54,17 @@ class TcpPath(Predicate):
     quantities = (DEVIATION, SHARE)
 
     line: Line | None = Field(
-        default=None, description="The line that it follows, instead of the step's own path."
+        default=None, description="The line that the TCP follows, instead of the step's own path."
     )
     arc: Arc | None = Field(
-        default=None, description="The arc that it follows, instead of the step's own path."
+        default=None, description="The arc that the TCP follows, instead of the step's own path."
     )
     max_deviation: PositiveLength = Field(
         default=0.001, description="The largest distance to the line or arc [m]."
     )
     min_fraction: Fraction = Field(
         default=0.95,
-        description="The share of it that must be travelled forwards within the window.",
+        description="The share of the line or arc that must be travelled forwards in the window.",
     )
 
     @model_validator(mode="after")

@@ -32,9 +32,9 @@ class TcpPose(Predicate):
     quantities = (POSITION, ORIENTATION)
     is_proposed = True
 
-    pose: Pose = Field(description="The pose where it stands.")
+    pose: Pose = Field(description="The expected pose of the link.")
     link: Name | None = Field(
-        default=None, description="The link that stands there; by default the TCP."
+        default=None, description="The link that is at the pose; by default the TCP."
     )
     tolerance: PoseTolerance = Field(
         default=PoseTolerance(), description="The tolerance of the pose; by default 1 mm, 0.01 rad."

@@ -1,4 +1,4 @@
-"""until: one predicate holds at every sample before the one at which another comes true."""
+"""until: one predicate holds at every sample before the one at which another becomes true."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictW
 class Until(TemporalWord):
     """The first predicate holds until the second does, and the second does."""
 
-    until: InnerPredicate = Field(description="The predicate that must come true.")
+    until: InnerPredicate = Field(description="The predicate that must become true.")
 
     @model_validator(mode="after")
     def _check_words(self) -> Until:
@@ -100,7 +100,7 @@ class Until(TemporalWord):
         hold: float | None,
         within: float | None,
     ) -> None:
-        """Refuse a verdict that unknown samples would turn round if they were favourable.
+        """Refuse a verdict that favourable values of the unknown samples would reverse.
 
         Raises:
             NotObservable: They would.
@@ -151,7 +151,7 @@ def _could_hold(
     hold: float | None,
     within: float | None,
 ) -> bool:
-    """Whether it holds if a window that was cut short goes on in the best way."""
+    """Whether it holds if a window that was cut short continues in the best way."""
     best = [temporal.with_future(margins, np.inf) for margins in (first, second)]
     decision, _ = temporal.until(best[0], best[1], temporal.later(times), hold, within)
     return decision.holds
@@ -163,7 +163,7 @@ def _low(margins: MarginSignal, skipped: float) -> FloatArray:
     Args:
         margins: The margins of a predicate.
         skipped: What counts where the predicate does not apply: before an object is there, nothing
-            is required of it, and nothing comes true.
+            is required of it, and nothing becomes true.
 
     Raises:
         NotReached: It never applies.

@@ -34,8 +34,8 @@ class SearchRequest:
         case: Name of the parametrised case; empty where there is one.
         seed: Seed of every run and of the search; None takes the file's.
         runs: How many runs the search may take; shrinking takes further ones.
-        start: How many of them are low-discrepancy samples.
-        batch: How many runs the optimiser proposes together; None: as many as CMA-ES recommends.
+        start: The number of runs that are low-discrepancy samples.
+        batch: Runs that the optimiser proposes together; None: as many as CMA-ES recommends.
         minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
         workers: Runs side by side.
         hard_cap: Wall seconds a run may take; None: the program's own.
@@ -81,16 +81,16 @@ class SearchRequest:
         scenario = load_scenario(
             file, {**_case_overrides(file, case, variation), **overrides}
         ).scenario
-        said = (scenario.search or Search()).model_dump()
-        said |= {name: value for name, value in settings.items() if value is not None}
+        stated = (scenario.search or Search()).model_dump()
+        stated |= {name: value for name, value in settings.items() if value is not None}
         names = scenario.expectation_names()
-        if said["minimise"] is not None and said["minimise"] not in names:
-            known = f"; {did_you_mean(said['minimise'], names, 'names')}" if names else ""
+        if stated["minimise"] is not None and stated["minimise"] not in names:
+            known = f"; {did_you_mean(stated['minimise'], names, 'names')}" if names else ""
             raise UsageError(
-                f"--minimise: no expectation of '{file}' is called '{said['minimise']}'{known}"
+                f"--minimise: no expectation of '{file}' is called '{stated['minimise']}'{known}"
             )
-        said["start"] = min(said["start"], said["runs"])
-        return cls(file, overrides, case, workers=workers, hard_cap=hard_cap, **said)
+        stated["start"] = min(stated["start"], stated["runs"])
+        return cls(file, overrides, case, workers=workers, hard_cap=hard_cap, **stated)
 
 
 @dataclass(frozen=True)

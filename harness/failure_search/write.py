@@ -156,7 +156,7 @@ def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
 
 
 def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> dict[str, object]:
-    """What `search.json` and `--json` say."""
+    """The content of `search.json` and `--json`."""
     exploration = found.exploration
     return {
         "format": FORMAT,
@@ -174,7 +174,7 @@ def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> d
         "failures": [
             {
                 "kind": each.failure.kind,
-                "cause": cause.said if (cause := cause_of(each.result)) else "",
+                "cause": cause.text if (cause := cause_of(each.result)) else "",
                 "runs": len(each.failure.samples),
                 "shrink_runs": each.failure.shrink_runs,
                 "values": found.space.values(each.failure.nearest.point),

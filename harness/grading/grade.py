@@ -54,17 +54,17 @@ class Grade:
 
     @property
     def points(self) -> float:
-        """That can be had."""
+        """Points that can be earned."""
         return sum(row.points for row in self.rows)
 
     @property
     def earned(self) -> float:
-        """Of them."""
+        """Points that are earned."""
         return sum(row.earned for row in self.rows)
 
     @property
     def withheld(self) -> float:
-        """Points of what the recording shows, and is doubtful."""
+        """Points that are withheld, because what the recording shows is doubtful."""
         passed = (row for row in self.rows if row.withheld and row.verdict.status == "passed")
         return sum(row.points for row in passed)
 
@@ -142,7 +142,7 @@ def _withheld(
 
 
 def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:
-    """What each is worth: its `points`; one each where no expectation has any."""
+    """The `points` of each expectation; one each where no expectation states any."""
     has_points = any(verdict.points is not None for verdict in verdicts)
     worth = [(verdict.points or 0.0) if has_points else 1.0 for verdict in verdicts]
     return tuple(
@@ -159,7 +159,7 @@ def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:
 
 
 def _with_distances(prepared: Prepared, run: Run) -> Run:
-    """With distances from joints and poses, from each sample to the next where joints are known."""
+    """The run with distances, measured from joints and poses where the joints are known."""
     from harness.observation.clearance import CoalClearance
 
     known: BoolArray = np.isfinite(run.signals.joint_positions.sum(axis=1))

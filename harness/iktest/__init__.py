@@ -1,4 +1,4 @@
-"""Property-based tests of anybody's inverse kinematics.
+"""Property-based tests of any function that solves inverse kinematics.
 
 `check_ik` is for tests, `run_ik_test` for programs, `harness ik-test` for the command line.
 """

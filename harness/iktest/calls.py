@@ -1,4 +1,4 @@
-"""One call of a function under test, and everything that can come of it."""
+"""One call of a function under test, and its possible outcomes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a function under test is given and may return: its parameters' names say it."""
+"""Arguments of a function under test, which the names of its parameters select."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ WORDS: dict[str, ParameterWord] = {
 
 
 def parameter_words(function: Callable[..., Any]) -> tuple[str, ...]:
-    """The words that a function's parameters are; those with other names keep their defaults.
+    """The parameters that receive arguments; those with other names keep their defaults.
 
     Raises:
         UnusableSolver: A parameter without a default has another name.

@@ -20,7 +20,7 @@ LEAST_COUNT, LEAST_SHARE = 5, 0.15
 
 @dataclass(frozen=True, eq=False)
 class Offset:
-    """What answers are off by.
+    """The error that all answers share.
 
     Attributes:
         frame: `world`, or `link`: the reached link's own.
@@ -31,7 +31,7 @@ class Offset:
     error: FloatArray
 
     def explains(self, task: Task, target: SE3, reached: SE3) -> bool:
-        """Whether a miss is this one."""
+        """Whether a miss shows this error."""
         return bool(np.abs(_error(self.frame, task, target, reached) - self.error).max() < SAME)
 
     def text(self) -> str:

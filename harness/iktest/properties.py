@@ -1,4 +1,4 @@
-"""What anybody's inverse kinematics must keep."""
+"""Properties that every inverse kinematics must have."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class IkFinding:
     picture: str = ""
 
     def facts(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The finding as JSON data."""
         way = self.target.joint_positions
         return {
             "number": self.number,
@@ -61,7 +61,7 @@ class IkFinding:
 
 @dataclass(frozen=True)
 class PropertyResult:
-    """What became of a property.
+    """The result of a property.
 
     Attributes:
         observed: Cases in which the function did what the property is about.
@@ -117,7 +117,7 @@ class IkReport:
         return all(each.observed for each in self.properties) and not self.findings
 
     def facts(self) -> dict[str, Any]:
-        """As JSON has it; times of the wall clock apart."""
+        """The report as JSON data; times of the wall clock are separate."""
         return {
             "format": "armharness-ik-test/1",
             "solver": self.solver,

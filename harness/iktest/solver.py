@@ -34,11 +34,11 @@ class Solver(Protocol):
     words: tuple[str, ...]
 
     def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
-        """Call it."""
+        """Call the function."""
         ...
 
     def close(self) -> None:
-        """End it."""
+        """End the process of the function."""
         ...
 
 
@@ -51,7 +51,7 @@ class InProcess:
         self._function, self._dof = function, dof
 
     def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
-        """Call it."""
+        """Call the function."""
         return call(self._function, arguments, self._dof)
 
     def close(self) -> None:
@@ -98,7 +98,7 @@ class Isolated:
             raise
 
     def __call__(self, arguments: Mapping[str, Value]) -> CallOutcome:
-        """Call it in its process."""
+        """Call the function in its process."""
         if self._connection is None:
             self._start()
         assert self._connection is not None

@@ -1,4 +1,4 @@
-"""Cameras as files say them, in the words of SDF's camera sensor."""
+"""Cameras as files describe them, in the words of SDF's camera sensor."""
 
 from __future__ import annotations
 

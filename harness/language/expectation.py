@@ -47,11 +47,11 @@ class TimeFields(SpecModel):
     for_: PositiveDuration | None = Field(
         default=None,
         alias="for",
-        description="The time for which it must hold without a break [s].",
+        description="The time for which the expectation must hold without a break [s].",
     )
     within: PositiveDuration | None = Field(
         default=None,
-        description="The time after the window's start by which it must have come true [s].",
+        description="The time after the window's start by which the expectation must be true [s].",
     )
 
 

@@ -102,7 +102,7 @@ class Search(SpecModel):
     )
     start: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] = Field(
         default=32,
-        description="How many of them are low-discrepancy samples, which show the rate.",
+        description="The number of runs that are low-discrepancy samples, which show the rate.",
     )
     seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] | None = Field(
         default=None,
@@ -110,8 +110,8 @@ class Search(SpecModel):
     )
     batch: Annotated[Count, Field(ge=2, le=1000)] | None = Field(
         default=None,
-        description="How many runs the optimiser proposes together; the result depends on it. The "
-        "default is 4 + 3 ln(number of parameters), rounded down.",
+        description="The number of runs that the optimiser proposes together; the result depends "
+        "on it. The default is 4 + 3 ln(number of parameters), rounded down.",
     )
     minimise: str | None = Field(
         default=None,

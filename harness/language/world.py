@@ -1,4 +1,4 @@
-"""Objects and worlds as files say them."""
+"""Objects and worlds as files describe them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class BoxSpec(SpecModel):
     """A box by its full size along x, y, z [m]."""
 
     size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
-        description="Full size along x, y, z [m]."
+        description="The full size along x, y, z [m]."
     )
 
 

@@ -1,4 +1,4 @@
-"""Where the objects that only the planner knows stood, sample by sample."""
+"""Poses of the objects that only the planner knows, sample by sample."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ class CoalClearance:
         cutoff: float,
         numbers: range,
     ) -> dict[int, MeasuredClearance]:
-        """Distances in complete parts of a run that goes on, by the numbers of the parts."""
+        """Distances in complete parts of a running run, by the numbers of the parts."""
         parts = parts_of_run(motion.times, knots(motion.times, objects, attachments))
         return {
             number: self._measured(motion.at(parts[number]), objects, attachments, cutoff)

@@ -1,4 +1,4 @@
-"""Who touched whom in a run: first time, duration, peak force."""
+"""Contacts of a run: bodies, first time, duration, peak force."""
 
 from __future__ import annotations
 

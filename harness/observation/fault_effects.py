@@ -201,7 +201,7 @@ class _Record:
         return touched
 
     def _speed(self, name: str, rows: slice) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Of an object's origin, between samples [m/s], of every row."""
+        """Speed of an object's origin between samples [m/s], for every row."""
         positions = self.signals.object_poses[name][rows, :3]
         steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
         return np.nan_to_num(np.append(steps, 0.0)) / max(self.step_time, 1e-9)

@@ -1,4 +1,4 @@
-"""What a person should know of a run that is no verdict."""
+"""Findings: what users should know of a run besides its verdicts."""
 
 from __future__ import annotations
 
@@ -32,16 +32,12 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
         notes: Places in the file, as the language found them.
     """
     found = [Finding("note", noted(problem)) for problem in notes]
-    found += [Finding("note", text) for obj in _added(program) if (text := _too_large(obj))]
-    found += [Finding("note", text) for obj in _added(program) if (text := _too_inert(obj))]
+    found += [Finding("note", text) for obj in program.all_objects() if (text := _too_large(obj))]
+    found += [Finding("note", text) for obj in program.all_objects() if (text := _too_inert(obj))]
     expects_errors = any(step.spec.expect_error for step in program.all_steps())
     if not program.expectations and not expects_errors:
         found.append(Finding("nothing_expected", NOTHING_EXPECTED))
     return tuple(found)
-
-
-def _added(program: Program) -> tuple[WorldObject, ...]:
-    return (*program.world.objects, *program.later_objects.values())
 
 
 def _too_large(obj: WorldObject) -> str:
@@ -82,7 +78,7 @@ def noted(problem: Problem) -> str:
 
 
 def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
-    """What of the robot's and the world's files was left out or assumed."""
+    """What was left out of the robot's and the world's files, or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
 
 
@@ -108,7 +104,7 @@ def overlap_findings(touches: Sequence[Touch]) -> tuple[Finding, ...]:
 
 
 def findings_of(steps: Sequence[StepRecord]) -> tuple[Finding, ...]:
-    """Pairs that a motion was let start nearer than planned, as an object on the table it leaves.
+    """Pairs that may start a motion nearer than planned, such as an object on a table.
 
     Task Constructor allows the pair object-support while lifting; here it may stay as near as it
     stood, and no nearer.

@@ -34,7 +34,7 @@ def with_held_distances(run: Run, observer: CoalClearance) -> Signals:
 
 
 def _holds(run: Run) -> list[AttachmentRecord]:
-    """As what is attached to the TCP, when the hand holds or carries an object all the same."""
+    """Attachments to the TCP of objects that the hand holds or carries without one."""
     times, tcp = run.signals.times, run.robot.tcp_link
     return [
         AttachmentRecord(

@@ -97,7 +97,7 @@ class MeasuredClearance:
         return merged
 
     def dips(self) -> dict[Pair, FloatArray]:
-        """By how much each distance may be smaller before the next sample than at both [m].
+        """The most by which each distance may be smaller between two samples than at both [m].
 
         Two bodies that are d1 and d2 apart at the ends of an interval in which they move by s
         against each other are at least (d1 + d2 - s) / 2 apart in it.

@@ -52,7 +52,7 @@ def knots(
 
 
 def complete_parts(count: int, timestep: float) -> int:
-    """The number of the parts that do not change any more while a run goes on.
+    """The number of the parts that do not change any more while a run continues.
 
     What happens after the last sample changes `AROUND` samples before it, as `knots` says.
 

@@ -1,4 +1,4 @@
-"""Plan against physics, read from the record: what the planner believed and what came of it."""
+"""Plan against physics, from the record: what the planner believed, and what happened."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tu
 
 
 def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
-    """The recording had the arm been at its commands, with what is attached where it is carried.
+    """The recording as if arm and attached objects had followed the commands exactly.
 
     Fingers stay where they were: one that presses lags its command.
     """

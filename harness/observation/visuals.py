@@ -1,4 +1,4 @@
-"""The triangles of every mesh file that the robot or an object looks like."""
+"""The triangles of every mesh file that shows the robot or an object."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
-from harness.core.trajectory import JointTrajectory
+from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.scene import CoalScene
@@ -88,13 +88,13 @@ class PlanningTask:
         raw: FloatArray | None = None,
     ) -> PlanStatistics:
         """Numbers of a plan for the record; `raw` has the waypoints before shortening."""
-        length = _length(np.asarray(waypoints))
+        length = path_length(np.asarray(waypoints))
         return PlanStatistics(
             planner_id,
             self.checker.checks,
             len(waypoints),
             length,
-            length if raw is None else _length(raw),
+            length if raw is None else path_length(raw),
             trajectory.duration,
             None if raw is None else tuple(map(tuple, np.asarray(raw).tolist())),
         )
@@ -170,7 +170,3 @@ def _widen_for_start(space: GroupSpace, positions: FloatArray) -> None:
         )
     space.lower = np.minimum(space.lower, positions)
     space.upper = np.maximum(space.upper, positions)
-
-
-def _length(waypoints: FloatArray) -> float:
-    return float(np.linalg.norm(np.diff(waypoints, axis=0), axis=1).sum())

@@ -37,7 +37,7 @@ class GripperResult:
 
 
 class Faults(Protocol):
-    """What can be broken in the physics while a run goes on.
+    """What can be broken in the physics while a run continues.
 
     Each call returns what stood before, so that a receipt can distinguish a fault from no change.
     """

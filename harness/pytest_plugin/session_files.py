@@ -101,12 +101,12 @@ def small_margins(records: Sequence[ItemRecord], cache: pytest.Cache | None) -> 
     if cache:
         cache.set(CACHED, {**known, **now})
     small = sorted(
-        (share, said, name)
+        (share, text, name)
         for name, shares in now.items()
-        for said, share in shares.items()
+        for text, share in shares.items()
         if share < SMALL
     )
-    last = {(name, said): known.get(name, {}).get(said) for _, said, name in small}
+    last = {(name, text): known.get(name, {}).get(text) for _, text, name in small}
     news = [each for each in small if not _is_known(each[0], last[each[2], each[1]])]
     lines = [_line(*each, last[each[2], each[1]]) for each in news[:MOST_LINES]]
     if len(news) > MOST_LINES:
@@ -131,6 +131,6 @@ def _is_known(share: float, last: float | None) -> bool:
     return last is not None and share > last - 1e-6
 
 
-def _line(share: float, said: str, name: str, last: float | None) -> str:
+def _line(share: float, text: str, name: str, last: float | None) -> str:
     before = "" if last is None else f", was {last:.1%} last time"
-    return f"holds by {share:.1%} of its limit{before}: {said} ({name})"
+    return f"holds by {share:.1%} of its limit{before}: {text} ({name})"

@@ -1,4 +1,4 @@
-"""What the options of a pytest session say, and the fork server that its scenarios share."""
+"""The options of a pytest session, and the fork server that its scenarios share."""
 
 from __future__ import annotations
 

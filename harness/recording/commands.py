@@ -1,4 +1,4 @@
-"""What external programs commanded while the arm was theirs, in the order of arrival."""
+"""Commands of external programs, in the order of arrival."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class CommandRecord:
         controller: The controller that it addresses, such as `arm_controller`.
         goal: The goal's identifier in hex; empty for what came on a topic.
         content: The values of the message.
-        answer: What became of it at once: `accepted`, or why not.
+        answer: The immediate result: `accepted`, or why not.
     """
 
     sample: int

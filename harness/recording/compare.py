@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.trajectory import JointTrajectory
+from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.recording.arrays import arrays_of
 from harness.recording.run import Run
@@ -211,7 +211,7 @@ def _trajectory(name: str, one: StepRecord, two: StepRecord) -> list[Change]:
     apart = float(np.abs(after - before).max())
     if apart == 0.0:
         return []
-    words = [f"path of {_length(path):.4g}" for path in (before, after)]
+    words = [f"path of {path_length(path):.4g}" for path in (before, after)]
     return [Change("trajectory", name, words[0], words[1], apart, "rad or m apart")]
 
 
@@ -222,10 +222,6 @@ def _resampled(trajectory: JointTrajectory) -> FloatArray:
     for joint in range(positions.shape[1]):
         resampled[:, joint] = np.interp(at, times, positions[:, joint])
     return resampled
-
-
-def _length(path: FloatArray) -> float:
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
 
 
 def _verdicts(one: Sequence[Verdict], two: Sequence[Verdict]) -> list[Change]:
@@ -307,6 +303,6 @@ def line_changes(one: Run, two: Run) -> list[tuple[str, str]]:
 
 
 def _lines(text: str) -> list[str]:
-    """Without indentation, the dashes of lists and comments, which say the seeds of steps."""
+    """The lines without indentation, list dashes and comments, which hold the seeds of steps."""
     lines = (line.strip().removeprefix("- ") for line in text.splitlines())
     return [line for line in lines if line and not line.startswith("#")]

@@ -1,4 +1,4 @@
-"""Where the robot's links stood, from recorded joint positions."""
+"""Poses of the robot's links, from recorded joint positions."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class ArrayHeader:
 
     @property
     def size(self) -> int:
-        """Unpacked [bytes]."""
+        """Size when it is unpacked [bytes]."""
         return math.prod(self.shape) * self.dtype.itemsize
 
 

@@ -17,7 +17,7 @@ STAGE_STATUS = {"not reached": "skipped"}
 def in_present_words(document: dict[str, Any]) -> dict[str, Any]:
     """A run or a result, as plain data, with the status words of the present format.
 
-    What is not as either format has it is left as it is: reading it reports that.
+    What fits neither format is left unchanged: reading it reports that.
     """
     steps = document.get("steps")
     if not isinstance(steps, list):

@@ -107,8 +107,8 @@ def _read_document(path: Path) -> dict[str, Any]:
         raise damage(path, "expected a mapping")
     content = cast("dict[str, Any]", document)
     if content.get("format") not in KNOWN_FORMATS:
-        said = f"format: expected '{FORMAT}', found {content.get('format')!r}"
-        raise SpecError([Problem(str(path), 0, 0, said)])
+        reason = f"format: expected '{FORMAT}', found {content.get('format')!r}"
+        raise SpecError([Problem(str(path), 0, 0, reason)])
     return content
 
 

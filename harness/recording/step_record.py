@@ -1,4 +1,4 @@
-"""What became of one step: its times, its motion and its failure."""
+"""The record of one step: its times, its motion and its failure."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class StepRecord:
         end_index: One past its last sample.
         trajectory: The commanded trajectory; None for steps without a motion.
         planner: The numbers of its plan; `harness.recording.plan_statistics` has the parts.
-        explanation: IK solutions and what became of them, blocking pairs, nearest pose;
+        explanation: IK solutions and their results, blocking pairs, nearest pose;
             `harness.recording.explanation` and the records of failures have the parts.
         result: What the step reports; `harness.recording.step_results` has the common parts.
     """

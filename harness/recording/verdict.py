@@ -1,4 +1,4 @@
-"""What became of one expectation: its status, its numbers and how much it observed."""
+"""The verdict on one expectation: its status, its numbers and how much it observed."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ class Measure:
         value, limit = distinct(
             self.value, self.limit, lambda number, more: f"{number:.{6 + more}g}"
         )
-        said = f"{self.name}: {value}{unit} (must be {sign} {limit})"
-        return f"{said} at t={self.time:.3f} s{where}"
+        text = f"{self.name}: {value}{unit} (must be {sign} {limit})"
+        return f"{text} at t={self.time:.3f} s{where}"
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ def _parting(first: FirstDifference | None) -> str:
         return "the recorded signals are the same; commands or verdicts differ"
     where = f"in step {first.step}, " if first.step else ""
     if first.signal == "times":
-        return f"one run goes on {where}after t={first.time:.3f} s"
+        return f"one run continues {where}after t={first.time:.3f} s"
     return (
         f"first {where}at t={first.time:.3f} s: {first.signal}"
         f" is {first.before:.9g} and {first.after:.9g}"

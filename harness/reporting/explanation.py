@@ -12,7 +12,7 @@ def explanation_lines(explanation: Details, message: str = "") -> tuple[str, ...
     """The stages in order, what to do, and where the picture is; what there is of them.
 
     Args:
-        message: What was said of the failure already; a stage does not repeat it.
+        message: The message of the failure; a stage does not repeat it.
     """
     lines: list[str] = []
     found = recorded_explanation(explanation)

@@ -15,14 +15,14 @@ from harness.reporting.explanation import explanation_lines
 
 @dataclass(frozen=True)
 class ProgressEvent:
-    """A sign of life of a running case.
+    """A progress event of a running case.
 
     Attributes:
         kind: `activity` is work on the report or the verdicts, which takes time after the steps.
         index: The index of the step, from 0; of an activity, how many of its parts are done.
         total: How many steps, or parts of the activity, there are; 0 where that is not known.
         step: Its summary in one line; of an activity, what is being done.
-        status: What became of it, for `step_finished` and `judged`.
+        status: The result, for `step_finished` and `judged`.
         sim_time: Simulation time so far [s].
         wall_time: The time on a monotonic clock [s]; shown, never judged.
         speed: Simulated over wall seconds of the step that finished; None where it is not known.
@@ -48,7 +48,7 @@ class StepLine:
     Attributes:
         sim_time: Its duration in simulation time [s].
         line: The line in the scenario file, from 1; 0 if unknown.
-        explanation: Why it failed, a line each: what became of every stage, what to do.
+        explanation: Why it failed, a line each: the result of every stage, what to do.
         path: Place in the expanded file: `steps[1].reach` is nested in `steps[1]`.
     """
 

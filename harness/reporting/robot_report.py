@@ -28,7 +28,7 @@ class GroupLine:
 
 @dataclass(frozen=True)
 class RobotFinding:
-    """One thing that was looked at.
+    """The result of one check.
 
     Attributes:
         about: `forward kinematics`, `masses`, ...

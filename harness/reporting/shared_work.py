@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from harness.reporting.result import CaseResult
 
 COUNTED = ("plans", "goals", "models")
-"""Kinds of which there are a few; of the others a share is said."""
+"""Kinds of results that are counted one by one; of the others a share is shown."""
 
 
 def shared_words(shared: Mapping[str, tuple[int, int]]) -> str:

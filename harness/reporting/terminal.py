@@ -1,4 +1,4 @@
-"""What the command line and pytest say of results, as text for people."""
+"""Results as text for people, on the command line and in pytest."""
 
 from __future__ import annotations
 
@@ -121,7 +121,9 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
         if wall := sum(result.wall_times.values()):
             simulated += f" at {speed_text(result.sim_time / wall)}"
         parts.append(f"{counted(len(result.steps), 'step')}, {simulated}")
-        held_of = f"{held} of {counted(len(result.verdicts), 'expectation')} hold"
+        count = len(result.verdicts)
+        holds = "holds" if count == 1 else "hold"
+        held_of = f"{held} of {counted(count, 'expectation')} {holds}"
         parts.append(held_of if result.verdicts else "expects nothing")
         parts.append(style.quiet(f"digest {result.digest[:12]}"))
     return printable("  ".join(parts))
@@ -202,8 +204,8 @@ def root_failures(steps: Sequence[StepLine]) -> list[StepLine]:
 def step_failure(file: str, step: StepLine, source: Sequence[str] = ()) -> str:
     """Place, step, error code, message, source line, and the explanation where there is one."""
     place = f"{file}:{step.line}" if step.line else file
-    said = step.message
-    why = ": ".join(part for part in (step.error_code, said) if part)
+    message = step.message
+    why = ": ".join(part for part in (step.error_code, message) if part)
     explained = [f"    {line}" for line in step.explanation]
     return _joined([f"{place}: {step.summary}: {why}", *_excerpt(source, step.line), *explained])
 
@@ -266,8 +268,8 @@ def summary(outcomes: Iterable[str], seconds: float, style: Style = PLAIN) -> st
         for outcome in OUTCOMES
         if counts[outcome]
     ]
-    said = ", ".join(parts) or "nothing was run"
-    return f"{said} of {counted(counts.total(), 'case')} in {seconds:.1f} s"
+    text = ", ".join(parts) or "nothing was run"
+    return f"{text} of {counted(counts.total(), 'case')} in {seconds:.1f} s"
 
 
 def repeats(results: Iterable[CaseResult], style: Style = PLAIN) -> str:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from harness.core.spatial import SE3
 from harness.robot.compose import RobotPart
-from harness.robot.description import Joint, Link
+from harness.robot.description import Link, fixed_joint
 from harness.robot.srdf.srdf import Srdf
 
 FLANGE = "flange"
@@ -31,7 +29,7 @@ def without_gripper(part: RobotPart) -> RobotPart:
     links = tuple(link for link in part.urdf.links if link.name not in removed)
     joints = tuple(joint for joint in part.urdf.joints if joint.child not in removed)
     held = SE3.from_xyz_rpy(place.xyz, place.rpy)
-    flange = Joint(f"{FLANGE}_joint", "fixed", place.link, FLANGE, held, np.array([1.0, 0.0, 0.0]))
+    flange = fixed_joint(f"{FLANGE}_joint", place.link, FLANGE, held)
     urdf = replace(part.urdf, links=(*links, Link(FLANGE, None)), joints=(*joints, flange))
     facts = part.facts.model_copy(
         update={"gripper": None, "tcp_link": FLANGE, "flange_link": FLANGE, "ik_solver": "auto"}

@@ -20,6 +20,7 @@ from harness.robot.description import (
     NamedState,
     RobotDescription,
     TrackingTolerances,
+    fixed_joint,
 )
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
@@ -72,7 +73,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     links: list[Link] = [Link(WORLD, None)]
     taken = {joint.name for part in parts for joint in part.urdf.joints}
     held = next(name for name in _names("world_joint") if name not in taken)
-    joints: list[Joint] = [_fixed(held, WORLD, first.urdf.root, base)]
+    joints: list[Joint] = [fixed_joint(held, WORLD, first.urdf.root, base)]
     for part in parts:
         links += part.urdf.links
         joints += part.urdf.joints
@@ -125,10 +126,6 @@ def _names(first: str) -> Iterator[str]:
     yield from (f"{first}_{number}" for number in count(2))
 
 
-def _fixed(name: str, parent: str, child: str, pose: SE3) -> Joint:
-    return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
-
-
 def _flange(arm: RobotPart, gripper: RobotPart) -> str:
     if not arm.facts.flange_link:
         raise RobotError(
@@ -144,11 +141,11 @@ def _mounted(gripper: RobotPart, mount: Mount, flange: str) -> tuple[Link, list[
     on_root = SE3.from_xyz_rpy(mount.tcp.xyz, mount.tcp.rpy)
     frame = Link(mount.tcp.link, None)
     if not flange:
-        return frame, [_fixed(mount.tcp.joint, root, frame.name, on_root)]
+        return frame, [fixed_joint(mount.tcp.joint, root, frame.name, on_root)]
     on_flange = SE3.from_xyz_rpy(mount.xyz, mount.rpy)
     return frame, [
-        _fixed(mount.joint, flange, root, on_flange),
-        _fixed(mount.tcp.joint, flange, frame.name, on_flange @ on_root),
+        fixed_joint(mount.joint, flange, root, on_flange),
+        fixed_joint(mount.tcp.joint, flange, frame.name, on_flange @ on_root),
     ]
 
 

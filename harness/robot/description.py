@@ -107,6 +107,11 @@ class Joint:
         return "m" if self.kind == "prismatic" else "rad"
 
 
+def fixed_joint(name: str, parent: str, child: str, pose: SE3) -> Joint:
+    """A fixed joint at T_parent_joint."""
+    return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
+
+
 @dataclass(frozen=True)
 class PlanningGroup:
     """An SRDF group.

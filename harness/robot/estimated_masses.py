@@ -9,10 +9,10 @@ import numpy as np
 
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh, Shape
-from harness.core.solids import solid_of
+from harness.core.solids import point_inertia
 from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Inertial, Link
-from harness.robot.mesh_file import hull_solid
+from harness.robot.mesh_file import hull_solid, shape_solid
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf
 
@@ -96,7 +96,7 @@ def _bead(carried: float) -> Inertial:
 
 def _with_mass(link: Link) -> Link:
     solids = [solid for shape in link.collisions for solid in _solids(shape)]
-    return replace(link, inertial=solid_inertial(solids or link.visuals, DENSITY))
+    return replace(link, inertial=solid_inertial(solids or link.visuals))
 
 
 def _solids(shape: Shape) -> Sequence[Shape]:
@@ -108,31 +108,19 @@ def _solids(shape: Shape) -> Sequence[Shape]:
     return parts if sum(volumes) < hull_solid(shape.geometry)[0] else [shape]
 
 
-def solid_inertial(shapes: Sequence[Shape], density: float) -> Inertial:
+def solid_inertial(shapes: Sequence[Shape]) -> Inertial:
     """Mass properties of solid shapes in their body's axes; of a mesh, those of its hull or part.
 
     Raises:
         RobotError: A mesh cannot be read, or is flat.
     """
-    volumes, centroids, tensors = [], [], []
-    for shape in shapes:
-        if isinstance(shape.geometry, Mesh):
-            volume, centroid, tensor = hull_solid(shape.geometry)
-        else:
-            solid = solid_of(shape.geometry)
-            if solid is None:
-                continue
-            (volume, tensor), centroid = solid, np.zeros(3)
-        rotation = shape.pose.rotation
-        volumes.append(volume)
-        centroids.append(shape.pose.apply(centroid))
-        tensors.append(rotation @ tensor @ rotation.T)
+    solids = [solid for shape in shapes if (solid := shape_solid(shape)) is not None]
+    volumes, centroids, tensors = zip(*solids, strict=True)
     center = np.average(centroids, axis=0, weights=volumes)
     inertia = np.sum(tensors, axis=0)
     for volume, centroid in zip(volumes, centroids, strict=True):
-        offset = centroid - center
-        inertia = inertia + volume * (offset @ offset * np.eye(3) - np.outer(offset, offset))
-    return Inertial(density * float(np.sum(volumes)), center, density * inertia)
+        inertia = inertia + point_inertia(volume, centroid - center)
+    return Inertial(DENSITY * float(np.sum(volumes)), center, DENSITY * inertia)
 
 
 def _states_mass(urdf: Urdf, link: str) -> bool:

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from harness.core.errors import RobotError
-from harness.core.geometry import Mesh
+from harness.core.geometry import Mesh, Shape
+from harness.core.solids import solid_of
 from harness.core.types import FloatArray, IntArray
 from harness.robot.decomposition.convex_parts import Decomposition
 from harness.robot.decomposition.parts_cache import stored_decomposition
@@ -218,3 +219,19 @@ def hull_solid(geometry: Mesh) -> tuple[float, FloatArray, FloatArray]:
     hull = convex_hull(geometry)
     inertia = np.array(hull.computeMomentofInertiaRelatedToCOM(), dtype=float)
     return float(hull.computeVolume()), np.array(hull.computeCOM()), (inertia + inertia.T) / 2
+
+
+def shape_solid(shape: Shape) -> tuple[float, FloatArray, FloatArray] | None:
+    """Volume, centroid and inertia as of `hull_solid`, in the body's axes; None for planes.
+
+    Raises:
+        RobotError: As `convex_hull`.
+    """
+    if isinstance(shape.geometry, Mesh):
+        volume, centroid, tensor = hull_solid(shape.geometry)
+    elif (solid := solid_of(shape.geometry)) is not None:
+        (volume, tensor), centroid = solid, np.zeros(3)
+    else:
+        return None
+    rotation = shape.pose.rotation
+    return volume, shape.pose.apply(centroid), rotation @ tensor @ rotation.T

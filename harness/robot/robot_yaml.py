@@ -24,7 +24,9 @@ FILE = "robot.yaml"
 class JointFacts(JointLimits):
     """Limits of a joint that its URDF lacks or has wrong, with the source of the effort limit."""
 
-    effort_source: str = Field(default="", description="Source of `max_effort`, for reports.")
+    effort_source: str = Field(
+        default="", description="The source of `max_effort`, which reports name."
+    )
 
 
 class XacroFile(SpecModel):
@@ -34,17 +36,19 @@ class XacroFile(SpecModel):
     installed and has the variant among `mesh_variants`.
     """
 
-    file: str = Field(description="Path from the folder.")
+    file: str = Field(description="The path of the xacro file, from the folder.")
     variant_arg: Name | None = Field(
-        default=None, description="Argument that gets the name of the variant."
+        default=None, description="The xacro argument that gets the name of the variant."
     )
     mesh_arg: Name | None = Field(
         default=None,
-        description="Argument that gets `true` where the meshes of a variant are installed.",
+        description="The xacro argument that gets `true` where the variant's meshes are installed.",
     )
-    mesh_package: Name | None = Field(default=None, description="Python package with the meshes.")
+    mesh_package: Name | None = Field(
+        default=None, description="The Python package that has the meshes."
+    )
     mesh_variants: tuple[Name, ...] = Field(
-        default=(), description="Variants that it has meshes of."
+        default=(), description="The variants of which the package has meshes."
     )
 
 
@@ -52,37 +56,43 @@ class FingerSide(SpecModel):
     """Links of one side of a gripper; `pad` is the one that touches objects."""
 
     links: Annotated[tuple[Name, ...], Field(min_length=1)] = Field(
-        description="Links of the side."
+        description="The links of this side of the gripper."
     )
-    pad: Name = Field(description="The one of them that touches objects.")
+    pad: Name = Field(description="The link of this side that touches objects.")
 
 
 class GripperFacts(SpecModel):
     """Two finger sides closed by one joint; efforts in N m or N at that joint."""
 
-    group: Name = Field(description="Its SRDF group.")
-    joint: Name = Field(description="The joint that is driven; the others mimic it.")
+    group: Name = Field(description="The SRDF group of the gripper.")
+    joint: Name = Field(
+        description="The joint that is driven; the other joints of the gripper mimic it."
+    )
     palm_link: Name = Field(
         description="The link that carries the fingers; of a single jaw also the pad of a side."
     )
     sides: Annotated[dict[Name, FingerSide], Field(min_length=2, max_length=2)] = Field(
         description="The two sides by name."
     )
-    open_position: float = Field(description="Position of the joint with the pads widest apart.")
-    closed_position: float = Field(description="Position of the joint with the pads closest.")
+    open_position: float = Field(
+        description="The position of the joint at which the pads are widest apart."
+    )
+    closed_position: float = Field(
+        description="The position of the joint at which the pads are closest."
+    )
     grip_effort: Annotated[float, Field(gt=0)] = Field(
-        description="Effort of the joint where a step states none [N m or N]."
+        description="The effort of the joint where a step states none [N m or N]."
     )
     max_effort: Annotated[float, Field(gt=0)] = Field(
-        description="Largest effort of the joint [N m or N]."
+        description="The largest effort of the joint [N m or N]."
     )
     friction: Annotated[float, Field(ge=0)] = Field(
-        default=1.0, description="Sliding friction coefficient of the pads."
+        default=1.0, description="The sliding friction coefficient of the pads."
     )
     approach_axis: Xyz | None = Field(
         default=None,
-        description="Direction in which it approaches an object, in the axes of the TCP; by "
-        "default from the palm to the pads.",
+        description="The direction in which the gripper approaches an object, in the axes of the "
+        "TCP; by default from the palm to the pads.",
     )
     widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] = Field(
         description="Rows of joint position and gap between the pads [m], with rising position."
@@ -99,48 +109,51 @@ class GripperFacts(SpecModel):
 class Placement(SpecModel):
     """A pose as position and roll, pitch, yaw."""
 
-    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="Position [m].")
-    rpy: Rpy = Field(default=(0.0, 0.0, 0.0), description="Fixed-axis roll, pitch, yaw [rad].")
+    xyz: Xyz = Field(default=(0.0, 0.0, 0.0), description="The position along x, y, z [m].")
+    rpy: Rpy = Field(
+        default=(0.0, 0.0, 0.0), description="The rotation as fixed-axis roll, pitch, yaw [rad]."
+    )
 
 
 class ToolCenterPoint(Placement):
     """A frame that a gripper adds, in its root link's axes."""
 
-    link: Name = Field(description="Name of the frame.")
-    joint: Name = Field(description="Name of the fixed joint that holds it.")
+    link: Name = Field(description="The name of the TCP frame.")
+    joint: Name = Field(description="The name of the fixed joint that holds the frame.")
 
 
 class Mount(Placement):
     """Pose of a gripper's root link on an arm's flange, and the gripper's TCP."""
 
-    joint: Name = Field(description="Name of the fixed joint between flange and gripper.")
-    tcp: ToolCenterPoint = Field(description="The gripper's TCP.")
+    joint: Name = Field(description="The name of the fixed joint between flange and gripper.")
+    tcp: ToolCenterPoint = Field(description="The TCP frame that the gripper adds.")
 
 
 class Flange(Placement):
     """Flange for a gripper that replaces the arm's own one; grippers point along its +z."""
 
-    link: Name = Field(description="The link that carries it.")
+    link: Name = Field(description="The link that carries the flange.")
 
 
 class CameraFacts(CameraFields):
     """A camera on a link, with the parameters of SDF's sensor; it looks along its +x axis."""
 
     link: Name = Field(description="The link that carries the camera.")
-    pose: Placement = Field(default=Placement(), description="Its pose on the link.")
+    pose: Placement = Field(default=Placement(), description="The pose of the camera on the link.")
 
 
 class Tracking(SpecModel):
     """Tolerances of the trajectory controller [rad or m], and its settling time [s]."""
 
     trajectory: Annotated[float, Field(gt=0)] = Field(
-        default=0.2, description="Largest deviation of a joint on the way [rad or m]."
+        default=0.2, description="The largest deviation of a joint during a motion [rad or m]."
     )
     goal: Annotated[float, Field(gt=0)] = Field(
-        default=0.01, description="Largest deviation of a joint at the goal [rad or m]."
+        default=0.01, description="The largest deviation of a joint at the goal [rad or m]."
     )
     goal_time: Annotated[float, Field(ge=0)] = Field(
-        default=1.0, description="Time after the end of a motion until the goal is kept [s]."
+        default=1.0,
+        description="The time after the end of a motion until the goal must be kept [s].",
     )
 
 
@@ -150,7 +163,9 @@ class Controllers(SpecModel):
     arm: tuple[RosName, ...] = Field(
         default=(), description="The arm's trajectory controller; several names lead to the same."
     )
-    gripper: tuple[RosName, ...] = Field(default=(), description="The gripper's controller.")
+    gripper: tuple[RosName, ...] = Field(
+        default=(), description="The controller of the gripper; several names lead to the same."
+    )
 
 
 class RobotYaml(SpecModel):
@@ -161,12 +176,18 @@ class RobotYaml(SpecModel):
     `mount`. Both may have a `gripper` section.
     """
 
-    robot: Name = Field(description="Its name, in lists and messages.")
-    kind: Literal["arm", "gripper"] = Field(description="What the folder holds.")
-    description: str = Field(default="", description="For people.")
-    urdf: str | None = Field(default=None, description="URDF file, by its path from the folder.")
-    xacro: XacroFile | None = Field(default=None, description="A xacro file instead of `urdf`.")
-    srdf: str = Field(description="SRDF file, by its path from the folder; xacro is rendered.")
+    robot: Name = Field(description="The name of the robot in lists and messages.")
+    kind: Literal["arm", "gripper"] = Field(
+        description="Whether the folder holds an arm or a gripper."
+    )
+    description: str = Field(default="", description="A description of the robot for people.")
+    urdf: str | None = Field(
+        default=None, description="The path of the URDF file, from the folder."
+    )
+    xacro: XacroFile | None = Field(
+        default=None, description="The xacro file that is rendered, instead of `urdf`."
+    )
+    srdf: str = Field(description="The path of the SRDF file, from the folder; xacro is rendered.")
     packages: tuple[str, ...] = Field(
         default=(),
         description="Folders that are searched for package:// and from which meshes may be read.",
@@ -184,11 +205,11 @@ class RobotYaml(SpecModel):
         default=None, description="The link on which grippers are mounted."
     )
     flange: Flange | None = Field(
-        default=None, description="Where a gripper goes that replaces the arm's own one."
+        default=None, description="The flange for a gripper that replaces the arm's own one."
     )
     ik_solver: IkSolverName = Field(
         default="numeric",
-        description="Inverse kinematics; `auto`: the first of the others that fits.",
+        description="The inverse kinematics solver; `auto` is the first of the others that fits.",
     )
     collision: dict[Name, CollisionMode] = Field(
         default_factory=dict[Name, CollisionMode],
@@ -196,33 +217,34 @@ class RobotYaml(SpecModel):
         "scenario's `robot: {collision: ...}` does not state it.",
     )
     start_state: StartState = Field(
-        default=StartState(), description="Where the robot stands at the start of a run."
+        default=StartState(), description="The state in which the robot starts a run."
     )
     max_acceleration: Annotated[float, Field(gt=0)] = Field(
         default=5.0,
-        description="Acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2].",
+        description="The acceleration limit of joints without one in `joints` [rad/s^2 or m/s^2].",
     )
     effort_source: str = Field(
-        default="", description="Source of effort limits without one in `joints`."
+        default="", description="The source of effort limits that have none in `joints`."
     )
     joints: dict[Name, JointFacts] = Field(
         default_factory=dict[str, JointFacts],
-        description="Limits that the URDF lacks or has wrong, by joint.",
+        description="The limits that the URDF lacks or has wrong, by joint.",
     )
     gripper: GripperFacts | None = Field(
-        default=None, description="The fingers, of an arm or a gripper."
+        default=None, description="The fingers of the gripper, or of an arm that has its own."
     )
     mount: Mount | None = Field(
-        default=None, description="How a gripper is mounted; required of one."
+        default=None, description="How the gripper is mounted on an arm; required of a gripper."
     )
     cameras: dict[Name, CameraFacts] = Field(
-        default_factory=dict[str, CameraFacts], description="Cameras on links, by name."
+        default_factory=dict[str, CameraFacts],
+        description="The cameras on links of the robot, by name.",
     )
     tracking: Tracking = Field(
-        default=Tracking(), description="Tolerances of the trajectory controller."
+        default=Tracking(), description="The tolerances of the trajectory controller."
     )
     controllers: Controllers = Field(
-        default=Controllers(), description="Names of its ROS 2 controllers."
+        default=Controllers(), description="The names of the robot's ROS 2 controllers."
     )
 
     @model_validator(mode="after")

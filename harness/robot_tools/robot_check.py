@@ -1,4 +1,4 @@
-"""Looks a robot over: limits, masses, kinematics in both libraries, self-collisions, reach, IK."""
+"""Checks a robot: limits, masses, kinematics in both libraries, self-collisions, reach, IK."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ALONG_AN_AXIS = math.cos(math.radians(5))
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """A robot that was looked over.
+    """A robot that was checked.
 
     Attributes:
         report: The report for people and machines.
@@ -52,7 +52,7 @@ def check_robot(
     seed: int = 0,
     propose: bool = False,
 ) -> Checked:
-    """Look a robot over.
+    """Check a robot.
 
     Args:
         description: The description of the robot.

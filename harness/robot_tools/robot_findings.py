@@ -1,4 +1,4 @@
-"""What is looked at in a robot, one function a finding."""
+"""The checks of a robot: one function for each finding."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def forward_kinematics(
     turn = np.minimum(*(np.linalg.norm(each, axis=-1) for each in apart))
     most = float(shift.max(initial=0.0))
     agrees = max(most, float(turn.max(initial=0.0))) <= AGREEMENT
-    said = _mass(description.links)
-    weighs = abs(mass - said) <= AGREEMENT * max(1.0, said)
+    described = _mass(description.links)
+    weighs = abs(mass - described) <= AGREEMENT * max(1.0, described)
     text = (
         f"Pinocchio and MuJoCo differ by at most {most:.1g} m"
         f" ({len(positions)} configurations, {len(links)} links)"
@@ -58,7 +58,7 @@ def forward_kinematics(
         _, worst = np.unravel_index(int((shift + turn).argmax()), shift.shape)
         details.append(f"most at {links[worst]}")
     if not weighs:
-        details.append(f"MuJoCo has {mass:.9g} kg, the description {said:.9g} kg")
+        details.append(f"MuJoCo has {mass:.9g} kg, the description {described:.9g} kg")
     values = {"position_error": most, "mass_in_physics": mass}
     return RobotFinding("forward kinematics", text, agrees and weighs, tuple(details), values)
 

@@ -35,7 +35,7 @@ OPTIONS = {
 
 @dataclass(frozen=True)
 class RobotSource:
-    """A robot as the command line says it.
+    """A robot as the command line names it.
 
     Attributes:
         word: A name, a file, a robot's folder or the robot.yaml in it, or `package://name/path`.

@@ -162,7 +162,7 @@ def hex_of(uuid: Any) -> str:
 
 @dataclass
 class ClientGoal:
-    """A goal that was sent, by its UUID in hex, and what the server said of it.
+    """A goal that was sent, by its UUID in hex, and what the server answered.
 
     Attributes:
         is_accepted: None before the server answered.

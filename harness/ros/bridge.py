@@ -25,7 +25,7 @@ DISCOVERY = 0.5
 
 @dataclass(frozen=True)
 class BridgeResult:
-    """The judged run, the number of commands, and what is said of wall time, names and programs."""
+    """The judged run, the number of commands, and remarks on wall time, names and programs."""
 
     case: CaseResult
     commands: int = 0
@@ -83,16 +83,16 @@ def _refuse_other_robot(graph: Graph, domain: int) -> None:
     """Raise where a robot or another simulator is in the domain: both would obey a command."""
     graph.spin(time.monotonic() + DISCOVERY)
     if any(use.publishes and use.topic == "/joint_states" for use in graph.uses()[1]):
-        said = "another robot or simulator publishes /joint_states; use another --domain"
-        raise SpecError([Problem(f"ROS domain {domain}", 0, 0, said)])
+        reason = "another robot or simulator publishes /joint_states; use another --domain"
+        raise SpecError([Problem(f"ROS domain {domain}", 0, 0, reason)])
 
 
 def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
     """Run a case whose steps may start the request's nodes, in a domain of its own."""
-    said: list[str] = []
+    remarks: list[str] = []
     with free_domain() as domain:
-        result = run_bridge(BridgeRequest(request, domain, say=said.append), notify)
-    return replace(result.case, notes=(*result.case.notes, *said, *result.remarks))
+        result = run_bridge(BridgeRequest(request, domain, say=remarks.append), notify)
+    return replace(result.case, notes=(*result.case.notes, *remarks, *result.remarks))
 
 
 def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:

@@ -1,4 +1,4 @@
-"""The port to ROS 2: topics and services of a domain, whoever speaks its protocol."""
+"""The port to ROS 2: topics and services of a domain, whatever implements its protocol."""
 
 from __future__ import annotations
 

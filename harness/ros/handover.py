@@ -27,7 +27,7 @@ from harness.session.run_request import RunRequest
 from harness.simulation.mujoco_simulator import MujocoSimulator
 
 GRACE = 1.0
-"""Simulated time that a step goes on after its program has ended and the arm stands [s]."""
+"""Simulated time that a step continues after its program has ended and the arm stands [s]."""
 
 LOOK_EVERY, LOOK_SHARE = 0.5, 0.05
 """Simulated time between two looks at `until` [s], and at least this share of the step's time: a
@@ -86,7 +86,7 @@ class HandOver(ABC):
         count = sum(command.kind != "end" for command in cell.commands[before:])
         cell.finish()
         self.after()
-        detail = _said(cell.end) if cell.end and ended_by in ("timeout", "exit") else ""
+        detail = _end_text(cell.end) if cell.end and ended_by in ("timeout", "exit") else ""
         return ExternalResult(ended_by, count, detail)
 
     def _holds(self, request: ExternalRequest, begin: float, first: int) -> bool:
@@ -113,8 +113,8 @@ class HandOver(ABC):
         return judge(run, [placed])[0].status == "passed"
 
 
-def _said(end: CommandRecord) -> str:
-    """What is said of a program that ended."""
+def _end_text(end: CommandRecord) -> str:
+    """The remark on a program that ended."""
     code = end.content.get("code")
     how = "without an error" if code == 0 else f"with exit code {code}"
     return f"the launched program ended {how} at t={end.time:.2f} s"

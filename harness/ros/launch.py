@@ -63,8 +63,8 @@ class Program:
         except (OSError, ValueError) as error:
             self._printed.close()
             reason = error.strerror if isinstance(error, OSError) else error
-            said = f"`{command}` cannot be started: {reason}"
-            raise StepFailed("COMMUNICATION_FAILURE", said) from error
+            reason = f"`{command}` cannot be started: {reason}"
+            raise StepFailed("COMMUNICATION_FAILURE", reason) from error
 
     @property
     def exit_code(self) -> int | None:
@@ -72,7 +72,7 @@ class Program:
         return self._process.poll()
 
     def stop(self) -> None:
-        """End the program and what it started: interrupt, then kill what goes on."""
+        """End the program and what it started: interrupt, then kill what still runs."""
         if self._printed.closed:
             return
         for number, patience in ((signal.SIGINT, 2.0), (signal.SIGKILL, 5.0)):

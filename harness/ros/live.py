@@ -37,7 +37,7 @@ LOOK_EVERY = 50
 """Ticks between two looks at how nodes use topics."""
 
 MOST_NOTES = 50
-"""Notes that are given of a run while it goes on."""
+"""Notes that are given of a run while it continues."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class LiveControl(HandOver):
         self._wiring = Wiring(graph, self.cell, self._note)
         self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None
-        self._said: set[str] = set()
+        self._noted: set[str] = set()
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Serve the robot until the request's end; start the program that it names."""
@@ -109,16 +109,16 @@ class LiveControl(HandOver):
         return sum(command.kind != "end" for command in self.cell.commands)
 
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
-        """What is said of wall time, names and the launched program; nothing of it is judged."""
-        said = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
+        """Remarks on wall time, names and the launched program; none of them is judged."""
+        remarks = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
         codes = [each.content["code"] for each in self.cell.commands if "code" in each.content]
         code = codes[-1] if codes else 0
         output = self._program.output if self._program is not None else ""
         if code and has_passed:
-            said.append(f"the launched program ended with exit code {code}")
+            remarks.append(f"the launched program ended with exit code {code}")
         if output and (code or not has_passed):
-            said.append(f"the launched program printed:\n{indent(output, '  ')}")
-        return tuple(said)
+            remarks.append(f"the launched program printed:\n{indent(output, '  ')}")
+        return tuple(remarks)
 
     def feed(self) -> None:
         """Receive until the next tick is due."""
@@ -155,13 +155,13 @@ class LiveControl(HandOver):
         self._names = tuple(unserved(*uses)) or self._names
 
     def _note(self, record: CommandRecord) -> None:
-        """A command took effect; say it, where it did not."""
+        """Count a command; note a command that was refused."""
         self._pace.command()
         if record.answer != "accepted":
             what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
             self._say_once(record.answer, what)
 
     def _say_once(self, key: str, note: str) -> None:
-        if key not in self._said and len(self._said) < MOST_NOTES:
-            self._said.add(key)
+        if key not in self._noted and len(self._noted) < MOST_NOTES:
+            self._noted.add(key)
             self._request.say(note)

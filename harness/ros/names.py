@@ -55,12 +55,12 @@ def mismatched(own: Sequence[Use], others: Sequence[Use]) -> list[str]:
 
 def _mismatch(mine: Use, use: Use) -> str:
     """What does not fit between two uses of a topic; empty where nothing is lost."""
-    said = f"a node {_does(use)} {_name(use)} with"
+    start = f"a node {_does(use)} {_name(use)} with"
     if mine.kind != use.kind:
         kind, right = (each.kind.removesuffix(MESSAGE) for each in (use, mine))
         *package, name = right.split("/")
         return (
-            f"{said} the type {kind}, but its type is {right}: no message arrives; import {name}"
+            f"{start} the type {kind}, but its type is {right}: no message arrives; import {name}"
             f" from {'.'.join(package)} in the node"
         )
     writer, reader = (use.qos, mine.qos) if use.publishes else (mine.qos, use.qos)
@@ -76,7 +76,7 @@ def _mismatch(mine: Use, use: Use) -> str:
         lost = "so what was published before it came does not arrive"
     else:
         return ""
-    return f"{said} {how}, {lost}; set {setting} in its QoSProfile"
+    return f"{start} {how}, {lost}; set {setting} in its QoSProfile"
 
 
 def _is_action(use: Use) -> bool:

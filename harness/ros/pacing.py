@@ -11,7 +11,7 @@ LATE = 0.05
 """Lag from which a tick, and what arrives in it, counts as late [s]."""
 
 GIVE_UP = 0.25
-"""Lag that is not made up for any more: simulated time goes on from here [s]."""
+"""Lag that is not made up for any more: simulated time continues from here [s]."""
 
 SLOW_SHARE = 0.2
 """Share of the session's wall time that a machine may lose without being called slow."""
@@ -67,9 +67,9 @@ class Pace:
 
     def text(self) -> str:
         """One sentence for a person."""
-        said = (
+        text = (
             f"{self.ticks * TICK:.1f} s of simulated time at {self.factor:g} times wall time:"
             f" {self.late} of {self.ticks} updates and {self.late_commands} commands were more than"
             f" {1e3 * LATE:.0f} ms late (at most {1e3 * self.worst:.0f} ms)"
         )
-        return f"{said}; {self.lost:.1f} s were lost" if self.lost else said
+        return f"{text}; {self.lost:.1f} s were lost" if self.lost else text

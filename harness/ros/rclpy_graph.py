@@ -28,8 +28,8 @@ class RclpyGraph:
             for part in ("executors", "qos", "serialization", "task"):
                 importlib.import_module(f"rclpy.{part}")
         except ImportError as error:
-            said = f"rclpy cannot be imported: {error}"
-            raise SpecError([Problem("--adapter rclpy", 0, 0, said)]) from error
+            reason = f"rclpy cannot be imported: {error}"
+            raise SpecError([Problem("--adapter rclpy", 0, 0, reason)]) from error
         self._say, self._context = say, self._rclpy.Context()
         self._rclpy.init(context=self._context, domain_id=domain)
         self._node = self._rclpy.create_node(node, context=self._context)

@@ -171,8 +171,8 @@ class RemoteArm:
             raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
         loose = [o for o in self._program.all_objects() if o.in_simulation and not o.is_static]
         held = tuple(each.name for each in loose) if goal.result.stalled else ()
-        said = {key: getattr(goal.result, key) for key in MEASURED}
-        return GripperResult(**said, contacts=dict.fromkeys(gripper.sides, held), between=held)
+        measured = {key: getattr(goal.result, key) for key in MEASURED}
+        return GripperResult(**measured, contacts=dict.fromkeys(gripper.sides, held), between=held)
 
     def hold(self, duration: float) -> None:
         """Let the robot's time pass [s]."""
@@ -255,8 +255,8 @@ class RemoteArm:
         begins = zip(trajectory.joint_names, trajectory.positions[0], strict=True)
         off, name = max((abs(now[index[name]] - begin), name) for name, begin in begins)
         if off > START_TOLERANCE:
-            said = f"'{name}' stands {off:.3g} from where the trajectory begins"
-            raise StepFailed("START_STATE_INVALID", f"{said} (tolerance {START_TOLERANCE:g})")
+            text = f"'{name}' stands {off:.3g} from where the trajectory begins"
+            raise StepFailed("START_STATE_INVALID", f"{text} (tolerance {START_TOLERANCE:g})")
 
     def _refuse_stray(self, goal: ClientGoal) -> None:
         """Refuse to go on when the feedback shows a joint beyond its tolerance."""
@@ -282,12 +282,12 @@ class RemoteArm:
         code = goal.result.error_code if goal.result else Code.SUCCESSFUL
         if goal.is_accepted and goal.status is Status.SUCCEEDED and code == Code.SUCCESSFUL:
             return
-        said = f"ended with {goal.status.name}" if goal.is_accepted else "rejected the trajectory"
+        reason = f"ended with {goal.status.name}" if goal.is_accepted else "rejected the trajectory"
         if code or goal.is_accepted:
-            said += f", {Code(code).name if code in list(Code) else code}"
+            reason += f", {Code(code).name if code in list(Code) else code}"
         if goal.result and goal.result.error_string:
-            said += f": {goal.result.error_string}"
-        raise StepFailed("CONTROL_FAILED", f"{client.name} {said}")
+            reason += f": {goal.result.error_string}"
+        raise StepFailed("CONTROL_FAILED", f"{client.name} {reason}")
 
 
 def _slowed(plan: JointTrajectory, share: float) -> JointTrajectory:

@@ -182,7 +182,7 @@ class _Efforts:
         self._known: FloatArray | None = None
 
     def of_set_points(self) -> FloatArray:
-        """Shape (N + 1, m)."""
+        """Efforts at the set points, shape (N + 1, m)."""
         if self._known is None:
             points = self._points
             self._known = self._compute(points.positions, points.velocities, points.accelerations)

@@ -255,7 +255,7 @@ class MujocoSimulator:
         return self._recording.signals(self._objects.recorded_poses())
 
     def snapshot(self) -> PhysicsState:
-        """Everything that decides how the run goes on from here."""
+        """Everything that decides how the run continues."""
         pending = None if self._gripper is None else self._gripper.pending
         command = SimulatorCommand(
             self._command.copy(), self._control.copy(), self._grip, pending, self._drive.copy()

@@ -34,7 +34,7 @@ class Inject(Step):
         description="The gripper keeps this share of its effort; 1 restores all of it.",
     )
     joint_stall: Name | None = Field(
-        default=None, description="This joint stays where it is from now on."
+        default=None, description="The joint that keeps its position from now on."
     )
     push: dict[Name, PushForce] | None = Field(
         default=None,

@@ -57,7 +57,7 @@ class Travel(SpecModel):
     """A straight move of a pick or place."""
 
     direction: Direction | None = Field(
-        default=None, description="The move has this direction; the default depends on the move."
+        default=None, description="The direction of the move; the default depends on the step."
     )
     min_distance: PositiveLength | None = Field(
         default=None, description="The move has at least this length, or the step fails [m]."

@@ -91,7 +91,7 @@ class Sequence(Step):
         _check_blends(self, group, at)
 
     def execute(self, cell: Cell) -> None:
-        """Resolve every goal as things stand now, plan all motions, follow them."""
+        """Resolve every goal for the present state, plan all motions, follow them."""
         cell.sync_scene()
         group = group_of(cell, self.group)
         items = [_planned(item, group, cell) for item in self.items]

@@ -25,7 +25,7 @@ def natural_task(chain: Chain) -> Task:
 
 
 def miss(task: Task, target: SE3, reached: SE3) -> tuple[float, float]:
-    """Position error [m] and pitch or orientation error [rad] of a pose, as the task has it."""
+    """Position error [m] and pitch or orientation error [rad] of a pose, by the task."""
     shift, turn = target.distance_to(reached)
     if task == "pose":
         return shift, turn

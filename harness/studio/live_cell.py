@@ -106,7 +106,7 @@ class LiveCell:
 
     @property
     def cell(self) -> Cell:
-        """What steps work with."""
+        """The cell that steps work with."""
         return self.execution.cell
 
     @property
@@ -257,7 +257,7 @@ class LiveCell:
         A step that adds new objects needs another physics: the steps before it are repeated there.
 
         Returns:
-            The scenario's text, which has the step only where it succeeded; and what became of it.
+            The scenario's text, which has the step only where it succeeded; and its result.
         """
         before, count = self.document, self.steps_done
         was_by_hand = self.is_by_hand

@@ -33,7 +33,7 @@ MEASURED_EVERY = 5
 
 
 class LiveStudio:
-    """The cell's thread: physics that goes on, joints that are moved by hand, what pages see.
+    """The cell's thread: physics that continues, joints that are moved by hand, what pages see.
 
     Attributes:
         text: The text in the editor, with mistakes or without.

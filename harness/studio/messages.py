@@ -1,4 +1,4 @@
-"""What the page is sent, as plain data."""
+"""Messages to the page, as plain data."""
 
 from __future__ import annotations
 

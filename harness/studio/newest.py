@@ -18,7 +18,7 @@ LONGEST = 60.0
 
 
 class Newest(Generic[T]):
-    """Computes one value at a time from the state in which it begins; the caller goes on."""
+    """Computes one value at a time from the state in which it begins; the caller continues."""
 
     def __init__(self) -> None:
         self._work: Background[T] | None = None

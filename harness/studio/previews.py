@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.errors import StepFailed
+from harness.core.trajectory import path_length
 from harness.core.types import FloatArray
 from harness.ports.motion_planning import MotionPlan
 from harness.recording.plan_statistics import PlanStatistics
@@ -62,7 +63,7 @@ def preview(cell: LiveCell, text: str) -> Preview:
     rows[:, index] = trajectory.positions[drawn]
     positions = np.array([description.with_mimics(row) for row in rows])
     path = cell.prepared.kinematics.link_poses(positions, [description.tcp_link])[:, 0, :3]
-    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    length = path_length(path)
     statistics = plan.statistics.find(PlanStatistics)
     planner = "" if statistics is None else statistics.planner_id
     return Preview(positions, path, trajectory.duration, length, planner)

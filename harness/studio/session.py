@@ -232,7 +232,7 @@ class Session:
                 return
             try:
                 job()
-            except Exception:  # noqa: BLE001 - the thread goes on, and with it everyone's session
+            except Exception:  # noqa: BLE001 - the thread continues, and with it every session
                 trace = traceback.format_exc()
                 self.broadcast({"type": "note", "kind": "failed", "text": printable(trace)})
                 self.on_defect()

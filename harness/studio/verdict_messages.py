@@ -1,4 +1,4 @@
-"""What a page is sent of steps and verdicts, as plain data."""
+"""Messages about steps and verdicts to a page, as plain data."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def verdicts_message(
     Args:
         outcome: The outcome of the run; empty while steps remain.
         digest: The digest of the run; empty where it has none.
-        steps: What became of the steps of the file.
+        steps: The records of the steps of the file.
         verdicts: Each verdict, and whether it is decided: others can still change.
     """
     return {

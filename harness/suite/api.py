@@ -87,8 +87,8 @@ class ScenarioResult:
 
 def _one(found: list[T], words: str, known: list[str]) -> T:
     if len(found) != 1:
-        said = "; ".join(known) or "there are none"
-        raise LookupError(f"{len(found)} have '{words}': {said}")
+        listed = "; ".join(known) or "there are none"
+        raise LookupError(f"{len(found)} have '{words}': {listed}")
     return found[0]
 
 

@@ -255,7 +255,7 @@ def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
 
 
 def progress_text(event: ProgressEvent) -> str:
-    """Where a case stood, in words."""
+    """The progress of a case, in words."""
     if event.kind in {"step_started", "step_finished"}:
         number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
         after = "after " if event.kind == "step_finished" else ""

@@ -12,7 +12,7 @@ from harness.suite.discovery import SUFFIX, UsageError
 
 
 def refuse_unwritable(root: Path) -> None:
-    """See before anything runs that a folder can be written into, or made where it is missing.
+    """Check before anything runs that a folder can be written, or created.
 
     Raises:
         UsageError: It cannot.

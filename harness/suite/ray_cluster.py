@@ -139,7 +139,7 @@ class RayCluster:
         return Batch(cases, installation(), self._hard_cap) if cases else None
 
     def _size(self) -> int:
-        """As many cases as take `BATCH_SECONDS`, from what they took so far."""
+        """The number of cases that take `BATCH_SECONDS`, estimated from the cases so far."""
         if not self._cases:
             return 1
         return max(1, min(MOST_CASES, round(BATCH_SECONDS * self._cases / self._seconds)))

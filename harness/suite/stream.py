@@ -113,14 +113,14 @@ class StreamEntry:
     @property
     def line(self) -> bytes:
         """The entry as a line of the file."""
-        said = {
+        content = {
             "format": self.format,
             "key": self.key,
             "values": self.values,
             "tags": self.tags,
             "result": self.result,
         }
-        return f"{compact_json(said, not_finite='strings')}\n".encode()
+        return f"{compact_json(content, not_finite='strings')}\n".encode()
 
 
 @dataclass(frozen=True)
@@ -332,11 +332,11 @@ def fingerprint(job: RunRequest) -> str:
 
     Reporters count as well, as a report that another reporter has not written yet is not complete.
     """
-    said = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
-    said += ["strict"] if job.strict else []
-    said += [f"reporter {name}" for name in sorted(job.reporters)]
-    said += [f"node {name}={command}" for name, command in sorted(job.nodes.items())]
-    return hashlib.sha256("\0".join(said).encode()).hexdigest()
+    parts = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
+    parts += ["strict"] if job.strict else []
+    parts += [f"reporter {name}" for name in sorted(job.reporters)]
+    parts += [f"node {name}={command}" for name, command in sorted(job.nodes.items())]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
 def _sorted(overrides: Mapping[str, str]) -> list[str]:

@@ -201,7 +201,7 @@ class SuiteRun:
 
     @property
     def differences(self) -> dict[int, str]:
-        """Of repetitions: index into `jobs` -> where a run parts from the first of its case."""
+        """Index into `jobs` of a repetition -> where it differs from the first run of its case."""
         return self._repetitions.differences if self._repetitions is not None else {}
 
     @property
@@ -275,7 +275,7 @@ class SuiteRun:
 
     @property
     def exit_code(self) -> int:
-        """Of the command."""
+        """The exit code of the command."""
         if self.is_interrupted:
             return INTERRUPTED_EXIT_CODE
         return exit_code(["error"] if self.missing_parts else [self.outcome])

@@ -94,8 +94,8 @@ class Variation:
         randomize = dict(values.get("randomize") or {})
         for distribution in randomize.values():
             _drawn(distribution, random.Random(0))
-        said = values.get("expect_rate")
-        rate = cast("dict[str, Any]", said) if isinstance(said, dict) else {"at_least": said}
+        stated = values.get("expect_rate")
+        rate = cast("dict[str, Any]", stated) if isinstance(stated, dict) else {"at_least": stated}
         at_least = rate.get("at_least")
         default = DEFAULT_SAMPLES if randomize else 0
         variation = cls(

@@ -116,7 +116,7 @@ class WarmServer:
 
     @property
     def pid(self) -> int | None:
-        """Of the server's process; None before the first job."""
+        """Process ID of the server; None before the first job."""
         return self._process.pid if self._process else None
 
     def open(self) -> None:

@@ -1,9 +1,8 @@
-"""Objects of a file made whole: shapes, mass, inertia, friction."""
+"""Resolves the objects of a file: shapes, mass, inertia, friction."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +21,13 @@ from harness.core.geometry import (
     Shape,
     Sphere,
 )
-from harness.core.solids import is_inertia_of_a_body, solid_of
+from harness.core.solids import is_inertia_of_a_body, point_inertia
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
 from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.robot.collision_shapes import collision_shapes
-from harness.robot.mesh_file import hull_solid
+from harness.robot.mesh_file import shape_solid
 from harness.world.markers import plate, printed
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
@@ -109,7 +108,8 @@ def _has_geometry(spec: ObjectSpec) -> bool:
     return any(getattr(spec, kind) is not None for kind in GEOMETRIES)
 
 
-def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
+def primitive(spec: ObjectSpec | ShapeSpec) -> Geometry | None:
+    """The box, cylinder, sphere or capsule of a shape; None for other shapes."""
     if spec.box is not None:
         return Box(spec.box.size)
     if spec.cylinder is not None:
@@ -118,6 +118,12 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
         return Sphere(spec.sphere.radius)
     if spec.capsule is not None:
         return Capsule(spec.capsule.radius, spec.capsule.length)
+    return None
+
+
+def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
+    if (solid := primitive(spec)) is not None:
+        return solid
     if spec.marker is not None:
         return plate(spec.marker)
     if spec.mesh is not None:
@@ -157,52 +163,30 @@ def _mass_properties(
             "what moves and has no shape needs `mass` and `inertia`, or `static: true`"
         )
     solids = [] if spec.inertia is not None and spec.mass is not None else _solids(shapes)
-    volume = sum(solid.volume for solid in solids)
-    mass = spec.mass if spec.mass is not None else DEFAULT_DENSITY * volume
+    total = sum(volume for volume, _, _ in solids)
+    mass = spec.mass if spec.mass is not None else DEFAULT_DENSITY * total
     given_center = np.array(spec.center_of_mass, dtype=float)
     if spec.inertia is not None:
         i = spec.inertia
         tensor = np.array([[i.ixx, i.ixy, i.ixz], [i.ixy, i.iyy, i.iyz], [i.ixz, i.iyz, i.izz]])
         _check_inertia(tensor)
         return mass, given_center, tensor
-    density = mass / volume
-    centroid = np.sum([solid.volume / volume * solid.centroid for solid in solids], axis=0)
-    center = given_center if np.any(given_center) else centroid
+    density = mass / total
+    centroids = [volume / total * centroid for volume, centroid, _ in solids]
+    center = given_center if np.any(given_center) else np.sum(centroids, axis=0)
     inertia = np.zeros((3, 3))
-    for solid in solids:
-        offset = solid.centroid - center
-        inertia += density * solid.inertia
-        inertia += density * solid.volume * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    for volume, centroid, tensor in solids:
+        inertia += density * tensor
+        inertia += point_inertia(density * volume, centroid - center)
     return mass, center, inertia
 
 
-@dataclass(frozen=True, eq=False)
-class _Solid:
-    """A shape's volume [m^3], centroid [m] and inertia at density 1 about it [m^5]."""
-
-    volume: float
-    centroid: FloatArray
-    inertia: FloatArray
-
-
-def _solids(shapes: Sequence[Shape]) -> list[_Solid]:
-    """Each shape in the object's axes; of a mesh its convex parts, which are what touches."""
-    found: list[_Solid] = []
-    for shape in shapes:
-        centroid = np.zeros(3)
-        solid = solid_of(shape.geometry)
-        if isinstance(shape.geometry, Mesh):
-            try:
-                volume, centroid, unit = hull_solid(shape.geometry)
-            except RobotError as error:
-                raise ObjectUnusableError(str(error)) from error
-        elif solid is not None:
-            volume, unit = solid
-        else:
-            continue
-        rotation = shape.pose.rotation
-        found.append(_Solid(volume, shape.pose.apply(centroid), rotation @ unit @ rotation.T))
-    return found
+def _solids(shapes: Sequence[Shape]) -> list[tuple[float, FloatArray, FloatArray]]:
+    """The solid of each shape; of a mesh its convex parts, which are what touches."""
+    try:
+        return [solid for shape in shapes if (solid := shape_solid(shape)) is not None]
+    except RobotError as error:
+        raise ObjectUnusableError(str(error)) from error
 
 
 def _check_inertia(tensor: FloatArray) -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from pydantic import ValidationError
 
 from harness.core.spatial import SE3, rotation_from_quat_wxyz, rotation_from_rpy
 from harness.core.types import FloatArray
@@ -53,3 +54,9 @@ def plane_pose(coefficients: Sequence[float]) -> SE3:
     length = math.hypot(*normal)
     unit = np.array(normal) / length
     return SE3(facing(unit), -offset / length * unit)
+
+
+def first_mistake(error: ValidationError) -> str:
+    """The first value that a model refuses: its keys, and what is wrong with it."""
+    first = error.errors(include_url=False)[0]
+    return f"{'.'.join(map(str, first['loc']))}: {first['msg'].removeprefix('Value error, ')}"

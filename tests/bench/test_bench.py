@@ -8,8 +8,9 @@ import pytest
 
 from harness.bench.collect import collect
 from harness.bench.results import document
-from harness.bench.trial import even, length, smoothness
+from harness.bench.trial import even, smoothness
 from harness.cli.main import main
+from harness.core.trajectory import path_length
 from harness.recording.read_run import read_run
 from tests.running import run_case
 
@@ -84,7 +85,7 @@ def test_a_trial_is_the_plan_of_a_run_with_the_same_seed(file, motions, tmp_path
     [motion] = [motion for motion in motions if motion.step == "past_the_plates"]
     [trial] = [t for t in motion.trials if (t.planner, t.seed) == ("BKPIECE", 2)]
     positions = steps["past_the_plates"].trajectory.positions
-    assert length(np.asarray(positions)) == pytest.approx(trial.path_length, rel=1e-6)
+    assert path_length(np.asarray(positions)) == pytest.approx(trial.path_length, rel=1e-6)
 
 
 def test_one_command_prints_plots_and_keeps_the_numbers(file, tmp_path, capsys):
@@ -132,4 +133,4 @@ def test_smoothness_is_nothing_when_straight_and_grows_with_a_corner():
     bent = even(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
     assert smoothness(straight) == 0.0
     assert smoothness(bent) == pytest.approx((2 * np.pi / 2) ** 2 / (len(bent) - 2), rel=0.01)
-    assert length(bent) == pytest.approx(2.0, abs=0.05)
+    assert path_length(bent) == pytest.approx(2.0, abs=0.05)

@@ -195,6 +195,10 @@ def test_an_orientation_makes_a_pose_and_several_goals_are_alternatives(folder):
         ("frame_id: base_link", "frame_id: lower", "'shelf' is in the frame 'lower'"),
         ("- [false, false, true, false]", "- [false]", "expected 4 entries"),
         ("robot_model_name", "model", "x"),
+        ("      primitive_poses:", "      primitive_poses: [{}, {}, {}]\n      x:", "3 poses"),
+        ("[0.2, 0.3, 0.04]", "[0.2, -0.3, 0.04]", "box.size.1: Input should be greater than 0"),
+        ("[1.2, 0.1, 0.3]", "[1.2, 0.1, 1e300]", "is too large"),
+        ("id: shelf", f"id: {'x' * 500}", "name: String should have at most"),
     ],
 )
 def test_a_mistake_is_located_and_nothing_is_written(folder, capsys, old, new, said):
@@ -209,6 +213,35 @@ def test_a_mistake_is_located_and_nothing_is_written(folder, capsys, old, new, s
     assert f"{name}.yaml:" in (error := capsys.readouterr().err)
     assert said in error
     assert not (folder / "scenarios").exists()
+
+
+@pytest.mark.parametrize(
+    "triangles", ["[[]]", "[[0, 1]]", "[[0, 1, 2, 3]]", "[[0, 1, 4]]", "[[0, 1, -1]]"]
+)
+def test_a_mesh_without_triangles_of_its_vertices_is_refused(capsys, triangles):
+    begin, end = MAPPINGS.index("          triangles:"), MAPPINGS.index("      mesh_poses")
+    scene = f"{MAPPINGS[:begin]}          triangles: {triangles}\n{MAPPINGS[end:]}"
+    assert convert("s.yaml", s=scene) == 2
+    assert "s.yaml:19:" in (error := capsys.readouterr().err)
+    assert "a mesh has triangles of its vertices" in error
+
+
+@pytest.mark.parametrize("region", ["[]", "[{type: 2}]", "[{type: 2, dimensions: []}]"])
+def test_a_position_goal_without_a_region_is_refused(capsys, region):
+    request = POSE.replace("[{type: 2, dimensions: [0.002]}]", region)
+    assert convert("r.yaml", r=request) == 2
+    assert "a `constraint_region` of one primitive" in capsys.readouterr().err
+
+
+def test_a_shape_without_a_pose_stands_at_the_origin_of_its_object(folder):
+    scene = MAPPINGS.replace("position: {x: 0, y: 0.1, z: 0.2}, ", "")
+    begin, end = MAPPINGS.index("      primitive_poses"), MAPPINGS.index("      meshes")
+    without = MAPPINGS[:begin] + MAPPINGS[end:]
+    worlds = []
+    for text in (scene, without):
+        assert convert("s.yaml", "r.yaml", "--force", s=text, r=REQUEST) == 0
+        worlds.append((folder / "scenarios/s.world.yaml").read_text(encoding="utf-8"))
+    assert worlds[0] == worlds[1]
 
 
 def test_several_files_of_another_kind_and_a_missing_robot_are_refused(folder, capsys):

@@ -3,6 +3,8 @@ import json
 import math
 from dataclasses import replace
 
+import pytest
+
 from harness.core.errors import Problem
 from harness.core.printable import terminal_text
 from harness.recording.verdict import Measure, Verdict
@@ -137,6 +139,20 @@ def test_a_finished_case_is_one_line():
     assert line == (
         "failed  Pick  1 step, 3.2 s simulated  1 of 2 expectations hold  digest 0123456789ab"
     )
+
+
+@pytest.mark.parametrize(
+    ("statuses", "text"),
+    [
+        (["passed"], "1 of 1 expectation holds"),
+        (["failed"], "0 of 1 expectation holds"),
+        (["passed", "failed", "not reached"], "1 of 3 expectations hold"),
+        ([], "expects nothing"),
+    ],
+)
+def test_the_number_of_expectations_that_hold_is_a_sentence(statuses, text):
+    verdicts = tuple(Verdict("x", status) for status in statuses)
+    assert f"  {text}  digest" in case_line(result("failed", verdicts=verdicts))
 
 
 def test_colours_take_no_room():

@@ -34,6 +34,7 @@ TESTS = (
     "tests/expectations",
     "tests/observation",
     "tests/engine",
+    "tests/steps",
     "tests/recording",
     "tests/adversarial",
     "tests/cli/test_commands.py",

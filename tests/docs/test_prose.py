@@ -9,6 +9,7 @@ import pytest
 from docs import ROOT
 from harness.cli.main import main
 from harness.language.schema import schema_text, world_schema_text
+from harness.robot.robot_yaml import RobotYaml
 
 INSTEAD = {
     "told|tells?|telling": "report, show, print or log",
@@ -45,6 +46,9 @@ SECTIONS = ("Args", "Attributes", "Returns", "Yields")
 FRAGMENT = re.compile(
     "(?:Of|That|Which|Whose|By|From|In|As|For|To|On|At|About|Not|Below|Before|Shape) "
 )
+
+NO_SUBJECT = re.compile("(?:Of|That|Whose|To|About|Not|Below|Before|Shape|By) ")
+"""How a docstring begins that makes no sense without the name."""
 
 
 def texts():
@@ -121,7 +125,11 @@ def test_help_has_no_word_of_the_dialect(capsys):
     assert not list(dialect("help", text))
 
 
-@pytest.mark.parametrize("text", [schema_text, world_schema_text])
+def robot_yaml_schema():
+    return json.dumps(RobotYaml.model_json_schema())
+
+
+@pytest.mark.parametrize("text", [schema_text, world_schema_text, robot_yaml_schema])
 def test_every_description_in_the_schema_stands_alone(text):
     found = []
 
@@ -155,6 +163,18 @@ def test_every_argument_attribute_and_result_is_described():
                         found.append(f"{name}:{line}: '{entry}': {reason}")
     assert not found, "\n".join(found)
     assert count > 1500
+
+
+def test_every_docstring_names_its_subject():
+    found = [
+        f"{name}: '{text}'"
+        for name, content in texts()
+        if name.startswith("harness/") and name.endswith(".py")
+        for node in ast.walk(ast.parse(content))
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+        if NO_SUBJECT.match(text := (ast.get_docstring(node) or "").partition("\n")[0])
+    ]
+    assert not found, "\n".join(found)
 
 
 @pytest.mark.parametrize(

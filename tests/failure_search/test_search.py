@@ -174,7 +174,7 @@ def test_a_scenario_that_fails_as_written_needs_no_search(tmp_path, capsys):
     code, found = search(tmp_path, TWO_KINDS.replace("x: 0.0", "x: 0.4"))
     assert code == 1
     assert found["failures"] == []
-    assert "the scenario fails as its file has it" in capsys.readouterr().out
+    assert "the scenario fails unchanged" in capsys.readouterr().out
 
 
 def test_a_single_parameter_at_a_larger_change_is_preferred_to_two(tmp_path):

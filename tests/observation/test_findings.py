@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harness.cell.cell import Belief
+from harness.cell.program import Program
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
@@ -133,17 +134,23 @@ def thing(*shapes, is_static=False, moment=0.0, mass=1.0, center=(0, 0, 0)):
     return WorldObject("thing", shapes, SE3.identity(), is_static, mass, np.array(center), inertia)
 
 
+def program_with(world=(), later=None, steps=(), expectations=("something",)):
+    """A program of objects, steps and expectations."""
+    program = SimpleNamespace(
+        world=SimpleNamespace(objects=world),
+        later_objects=later or {},
+        expectations=expectations,
+        all_steps=lambda: steps,
+    )
+    program.all_objects = lambda: Program.all_objects(program)
+    return program
+
+
 def findings_about(obj):
     """Of a program that has an object from the start on, the same as for one that a step adds."""
     both = []
     for world, later in (((obj,), {}), ((), {"thing": obj})):
-        program = SimpleNamespace(
-            world=SimpleNamespace(objects=world),
-            later_objects=later,
-            expectations=("something",),
-            all_steps=lambda: (),
-        )
-        both.append(about_file(program, ()))
+        both.append(about_file(program_with(world, later), ()))
     assert both[0] == both[1]
     return both[0]
 
@@ -175,10 +182,5 @@ def test_a_file_that_expects_nothing_differs_from_one_that_expects_a_failure(
     expectations, error, is_note
 ):
     steps = [SimpleNamespace(spec=SimpleNamespace(expect_error=code)) for code in (None, error)]
-    program = SimpleNamespace(
-        world=SimpleNamespace(objects=()),
-        later_objects={},
-        expectations=expectations,
-        all_steps=lambda: steps,
-    )
+    program = program_with(steps=steps, expectations=expectations)
     assert [each.kind for each in about_file(program, ())] == ["nothing_expected"] * is_note

@@ -195,7 +195,7 @@ def test_a_case_failed_because_of_the_innermost_step(outer):
     result = replace(STUCK, steps=steps, page="b/report.html", verdicts=(verdict(0.03),))
     cause = cause_of(result)
     assert cause.group == "GOAL_IN_COLLISION in move_to"
-    assert cause.said == (
+    assert cause.text == (
         "move_to before cube: GOAL_IN_COLLISION: the nearest: forearm_link and post"
     )
     assert [each for each in causes(result) if "its step" in each] == []

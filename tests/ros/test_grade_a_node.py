@@ -155,7 +155,7 @@ def test_ctrl_c_ends_a_served_session_which_is_then_judged(tmp_path, capsys):
         assert main(["bridge", str(file), "--domain", str(domain), "--no-report"]) == 0
         person.join(20)
         node.graph.close()
-    assert "1 of 1 expectation hold" in capsys.readouterr().out
+    assert "1 of 1 expectation holds" in capsys.readouterr().out
 
 
 def test_nodes_that_commanded_nothing_are_replayed(tmp_path, capsys):

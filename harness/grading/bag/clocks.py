@@ -24,7 +24,7 @@ class Timeline:
     Stamps of other topics are used directly when they are from the same clock. Otherwise (one node
     with `use_sim_time`, the other without; two computers), the recorder's times convert between the
     clocks. Stamps may be in disorder. After a clock was set back, only the later part is used. A
-    message without a stamp is where the recorder received it.
+    message without a stamp has the time at which the recorder received it.
 
     Attributes:
         notes: Notes on the clocks.

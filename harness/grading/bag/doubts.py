@@ -77,20 +77,20 @@ def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iter
         messages: What was recorded of the joints.
         is_own: Whether this program made the recording, and its faults may make a sensor jump.
     """
-    for name, said in messages.items():
-        joint, spans = said.joint, np.diff(said.times)
+    for name, recorded in messages.items():
+        joint, spans = recorded.joint, np.diff(recorded.times)
         fastest = FASTEST * (joint.velocity if 0 < joint.velocity < np.inf else UNKNOWN_LIMIT)
-        sizes, slack = np.abs(said.steps), SLACK[joint.kind]
-        is_back = said.steps[1:] * said.steps[:-1] < 0
+        sizes, slack = np.abs(recorded.steps), SLACK[joint.kind]
+        is_back = recorded.steps[1:] * recorded.steps[:-1] < 0
         both = _there_and_back(sizes > slack + fastest * spans, is_back)
         if both is not None:
-            yield Doubt("publishers", f"{name} {_two_values(said.times[both])}")
+            yield Doubt("publishers", f"{name} {_two_values(recorded.times[both])}")
             continue
         far = sizes > slack + fastest * np.maximum(spans, SHORTEST_TIME)
         if far.any() and not is_own:
             first = int(np.argmax(far))
             factor, unit = (1000, "mm") if joint.kind == "prismatic" else (180 / np.pi, "deg")
-            when = f"by {factor * sizes[first]:.0f} {unit} at t={said.times[first + 1]:.3f} s"
+            when = f"by {factor * sizes[first]:.0f} {unit} at t={recorded.times[first + 1]:.3f} s"
             why = "a program put it there, or messages are missing"
             yield Doubt(
                 "jumps", f"{name} jumps {when}, faster than {FASTEST:g} times its limit: {why}"
@@ -99,7 +99,7 @@ def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iter
 
 @dataclass(frozen=True, eq=False)
 class _Moves:
-    """From message to message of an object, shape (N - 1,): time [s], way [m] and turn [rad]."""
+    """Changes between messages of an object, shape (N - 1,): time [s], way [m] and turn [rad]."""
 
     times: FloatArray
     spans: FloatArray
@@ -169,17 +169,17 @@ def object_doubts(
         turned |= _is_at_rest(turns) & (turns > TURN_SLACK + TURN_FROM_REST * spans**2 / 2)
         if (far | turned).any() and not is_own:
             first = int(np.argmax(far | turned))
-            said = f"{1000 * ways[first]:.0f} mm and {np.degrees(turns[first]):.0f} deg"
+            jump = f"{1000 * ways[first]:.0f} mm and {np.degrees(turns[first]):.0f} deg"
             yield Doubt(
                 "jumps",
-                f"{child} jumps by {said} at t={moves.times[first + 1]:.3f} s: objects were"
+                f"{child} jumps by {jump} at t={moves.times[first + 1]:.3f} s: objects were"
                 " exchanged, or a program put it there",
                 (child,),
             )
     for child, several in sorted(parents.items()):
         if len(several) > 1:
-            said = f"{child} has poses in {' and in '.join(several)}: two programs say so"
-            yield Doubt("publishers", said, (child,))
+            reason = f"{child} has poses in {' and in '.join(several)}: two programs say so"
+            yield Doubt("publishers", reason, (child,))
 
 
 def _two_values(time: float) -> str:
@@ -216,8 +216,8 @@ def tf_doubts(
             apart = (apart + np.pi) % (2 * np.pi) - np.pi
         found = _contradiction(times, np.abs(apart) / APART[joint.kind])
         if found:
-            said = f"/tf and the joint states contradict each other about {joint.name} {found}"
-            yield Doubt("tf", said)
+            reason = f"/tf and the joint states contradict each other about {joint.name} {found}"
+            yield Doubt("tf", reason)
 
 
 def source_doubts(
@@ -248,18 +248,18 @@ def velocity_doubts(messages: Mapping[str, JointMessages]) -> Iterator[Doubt]:
     Args:
         messages: What was recorded of the arm's joints; fingers report velocities that mean little.
     """
-    for name, said in messages.items():
-        velocities, spans = said.values[:, 1], np.diff(said.times)
-        if said.has_false_zeros():
+    for name, recorded in messages.items():
+        velocities, spans = recorded.values[:, 1], np.diff(recorded.times)
+        if recorded.has_false_zeros():
             text = f"{name} moves, and its velocities are all 0: they count as not recorded"
             yield Doubt("velocities", text)
             continue
-        steps = np.stack([said.steps, (velocities[1:] + velocities[:-1]) / 2 * spans])
-        steps[:, ~np.isfinite(steps).all(axis=0) | (spans > gap_limit(said.times))] = 0.0
-        moved, integral = (said.moved_within(STRETCH, each) for each in steps)
+        steps = np.stack([recorded.steps, (velocities[1:] + velocities[:-1]) / 2 * spans])
+        steps[:, ~np.isfinite(steps).all(axis=0) | (spans > gap_limit(recorded.times))] = 0.0
+        moved, integral = (recorded.moved_within(STRETCH, each) for each in steps)
         allowed = SHARE_OF_MOTION * np.maximum(np.abs(moved), np.abs(integral))
-        wrong = np.abs(moved - integral) > APART[said.joint.kind] / 2 + allowed
+        wrong = np.abs(moved - integral) > APART[recorded.joint.kind] / 2 + allowed
         if wrong.any():
-            time = float(said.times[int(np.argmax(wrong))])
+            time = float(recorded.times[int(np.argmax(wrong))])
             text = f"{name} moves otherwise than its velocities say, first at t={time:.3f} s"
             yield Doubt("velocities", text)

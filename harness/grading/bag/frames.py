@@ -84,7 +84,7 @@ class Frames:
     def other_poses(
         self, frame: str, links: Mapping[str, FloatArray], times: FloatArray
     ) -> Iterator[FloatArray]:
-        """The same from each further topic that has poses of the frame."""
+        """The poses that `pose` gives, from each further topic that has poses of the frame."""
         for edge in self._edges[frame][1:]:
             yield self._composed([edge, *self._chain(edge[0])], links, times)
 

@@ -1,4 +1,4 @@
-"""What a recording says of the joints, in the robot's order at the times of a run."""
+"""The joints of a recording, in the robot's order, at the times of a run."""
 
 from __future__ import annotations
 

@@ -92,8 +92,8 @@ def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
             raise bag_error(named, f"cannot be read {place}: {error}") from error
         except Exception as error:
             # whatever the reader raises on damaged bytes: struct.error, MemoryError, KeyError ...
-            place, said = f"near byte {stream.tell()}", str(error) or type(error).__name__
-            raise bag_error(named, f"is damaged {place}, or not an MCAP file: {said}") from error
+            place, reason = f"near byte {stream.tell()}", str(error) or type(error).__name__
+            raise bag_error(named, f"is damaged {place}, or not an MCAP file: {reason}") from error
 
 
 def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:
@@ -159,8 +159,8 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
                     yield RawMessage(*topics[number], time, data)
     except (sqlite3.Error, MemoryError, OverflowError, UnicodeDecodeError) as error:
         hint = "`sqlite3 FILE .recover | sqlite3 WHOLE.db3` saves what is whole"
-        said = str(error) or type(error).__name__
-        raise bag_error(named, f"cannot be read as a database: {said}", hint) from error
+        reason = str(error) or type(error).__name__
+        raise bag_error(named, f"cannot be read as a database: {reason}", hint) from error
 
 
 def _text(data: bytes) -> str:

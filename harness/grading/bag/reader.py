@@ -100,14 +100,16 @@ class _Reader:
                 raise bag_error(self._path, f"has no topic {topic}", _offer(known))
             types = NAMED_POSES if topic in self._topics.objects else SINGLE_POSES
             if known[topic][0] not in types:
-                said = f"{topic} is of type {known[topic][0]}, which has no poses of objects"
-                raise bag_error(self._path, said, f"supported types: {', '.join(types)}")
+                reason = f"{topic} is of type {known[topic][0]}, which has no poses of objects"
+                raise bag_error(self._path, reason, f"supported types: {', '.join(types)}")
         for topic, reasons in sorted(self._malformed.items()):
             count, whole = len(reasons), known[topic][1]
             if count == whole:
                 raise bag_error(self._path, f"no message of {topic} can be read: {reasons[0]}")
-            said = f"{count} of {whole} messages of {topic} cannot be read; the first: {reasons[0]}"
-            self._content.notes.append(said)
+            reason = (
+                f"{count} of {whole} messages of {topic} cannot be read; the first: {reasons[0]}"
+            )
+            self._content.notes.append(reason)
 
     def _handler(self, message: RawMessage) -> Callable[[Any, RawMessage], None] | None:
         topic, msgtype = message.topic, message.msgtype

@@ -242,8 +242,8 @@ def _once_doubts(frames: Frames, names: Sequence[str], *, is_own: bool) -> Itera
     """Movable objects of which a single pose counts at all times."""
     for name in names:
         if frames.is_published_once(name) and not is_own:
-            said = f"{name} has one pose in all, or one in /tf_static; it counts all along"
-            yield Doubt("once", said, (name,))
+            reason = f"{name} has one pose in all, or one in /tf_static; it counts all along"
+            yield Doubt("once", reason, (name,))
 
 
 def _unknown_roots(frames: Frames, names: Sequence[str]) -> list[Doubt]:

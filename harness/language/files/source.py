@@ -145,7 +145,7 @@ def located(value: Plain, place: Place) -> Located:
 
 
 class Found(NamedTuple):
-    """What a path led to.
+    """The result of following a path.
 
     Attributes:
         item: The deepest value on the way.
@@ -162,7 +162,7 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True)
 class SourceMap:
-    """From a path in the model to the place in the file.
+    """Maps paths in the model to places in the file.
 
     Attributes:
         root: The file's values in the model's shape.

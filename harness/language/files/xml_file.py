@@ -98,26 +98,23 @@ class XmlElement:
         return self.place
 
 
-def read_xml(path: Path, named: str = "") -> XmlElement:
+def read_xml(path: Path) -> XmlElement:
     """The root element of a file.
-
-    Args:
-        named: What messages call it; its path by default.
 
     Raises:
         SpecError: It cannot be read, is too large, is not well-formed, or declares a document
             type; with line and column.
     """
-    return parse_xml(read_bounded(path, named), named or str(path))
+    return parse_xml(read_bounded(path), str(path))
 
 
-def read_bounded(path: Path, named: str = "") -> bytes:
+def read_bounded(path: Path) -> bytes:
     """A file's bytes.
 
     Raises:
         SpecError: It cannot be read, or has more than LARGEST_FILE bytes.
     """
-    name = named or str(path)
+    name = str(path)
     try:
         if not path.is_file():
             reason = "is no file" if path.exists() else "does not exist"

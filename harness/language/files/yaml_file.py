@@ -27,20 +27,17 @@ DEEPEST = 50
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def read_text(
-    path: Path, shown: str | None = None, *, kind: str = "YAML file", largest: int = LARGEST_FILE
-) -> str:
+def read_text(path: Path, *, kind: str = "YAML file", largest: int = LARGEST_FILE) -> str:
     """The text of a file.
 
     Args:
-        shown: What messages call it; its path by default.
         kind: What it should be, for messages.
         largest: Bytes that it may have.
 
     Raises:
         SpecError: Not there, not a regular file, too large, or not UTF-8.
     """
-    name = shown or str(path)
+    name = str(path)
     try:
         mode = path.stat()
         if not stat.S_ISREG(mode.st_mode):
@@ -130,7 +127,7 @@ def parse_value(text: str, source: Source) -> Located:
 
 
 class _Composer:
-    """Composes events into located values; goes on after a mistake, collecting problems."""
+    """Composes events into located values; continues after a mistake, collecting problems."""
 
     def __init__(self, source: Source) -> None:
         self.source = source

@@ -1,4 +1,4 @@
-"""What libyaml says of a file that is not YAML, as a person would say it."""
+"""Plain messages for libyaml's errors on files that are not YAML."""
 
 from __future__ import annotations
 
@@ -29,28 +29,28 @@ PLAINER = (
 
 def syntax_problem(error: yaml.MarkedYAMLError, source: Source) -> Problem:
     """Where the parser gave up, in plainer words; an unclosed quote where it began."""
-    said = error.problem or "this is not YAML"
+    reason = error.problem or "this is not YAML"
     mark = error.problem_mark or error.context_mark
     if mark is None:
-        return Problem(source.path, 0, 0, said)
+        return Problem(source.path, 0, 0, reason)
     place = _place(mark, source)
     character = source.line(place.line)[mark.column : mark.column + 1]
-    if "cannot start any token" in said:
+    if "cannot start any token" in reason:
         if character == "\t":
             return place.problem("a tab cannot indent YAML", "use spaces")
         return place.problem(
             f"a plain value cannot begin with `{character}`", "put it in quotes if it is text"
         )
     opened = error.context_mark
-    is_open = "or ']'" in said or "or '}'" in said or not source.line(mark.line + 1).strip()
+    is_open = "or ']'" in reason or "or '}'" in reason or not source.line(mark.line + 1).strip()
     if opened is not None and is_open:
         place = _place(opened, source)
     laid_out = _layout_problem(error, mark, source)
     if laid_out is not None:
         return laid_out
-    hint = next((plainer for words, plainer in PLAINER if words in said), "")
+    hint = next((plainer for words, plainer in PLAINER if words in reason), "")
     if not hint:
-        return place.problem(f"not YAML: {said}")
+        return place.problem(f"not YAML: {reason}")
     return place.problem(f"not YAML: {hint}")
 
 
@@ -59,20 +59,20 @@ def _layout_problem(error: yaml.MarkedYAMLError, mark: yaml.Mark, source: Source
 
     libyaml notices such a mistake a line or more after it was made.
     """
-    said, opened = error.problem or "", error.context_mark
+    reason, opened = error.problem or "", error.context_mark
     line = source.line(mark.line + 1)
     is_inside_line = bool(line[: mark.column].strip()) and "block" in (error.context or "")
     if opened is not None and (opened.line == mark.line or is_inside_line):
         return None
-    if "could not find expected ':'" in said and opened is not None:
+    if "could not find expected ':'" in reason and opened is not None:
         if not _has_content(source.line(opened.line + 1)):
             return None
         return _no_colon(opened.line + 1, source)
-    if "mapping values are not allowed" in said:
+    if "mapping values are not allowed" in reason:
         return _key_after_text(mark, source)
-    if "did not find expected '-' indicator" in said and opened is not None:
+    if "did not find expected '-' indicator" in reason and opened is not None:
         return _no_list_item(mark, opened, source)
-    if "did not find expected key" in said and opened is not None:
+    if "did not find expected key" in reason and opened is not None:
         return _no_key(mark, opened, source)
     return None
 
@@ -181,6 +181,6 @@ def _place(mark: yaml.Mark, source: Source) -> Place:
     """A mark's place; after the last line: the end of the last that says something."""
     if source.line(mark.line + 1).strip():
         return Place(source, mark.line + 1, mark.column + 1)
-    said = [number for number in range(1, mark.line + 2) if source.line(number).strip()]
-    last = said[-1] if said else 1
+    written = [number for number in range(1, mark.line + 2) if source.line(number).strip()]
+    last = written[-1] if written else 1
     return Place(source, last, len(source.line(last).rstrip()) + 1)

@@ -254,8 +254,8 @@ class _Parser:
             raise self.wrong(
                 names[-1], f"`{token.text}` is of {_count(kinds)}, not {len(names)}", usage
             )
-        said = tuple(n.source[1:-1] if n.kind == "quoted" else n.source for n in names)
-        return Signal(token.text, said, tuple(name.start for name in names), token.start)
+        arguments = tuple(n.source[1:-1] if n.kind == "quoted" else n.source for n in names)
+        return Signal(token.text, arguments, tuple(name.start for name in names), token.start)
 
     def interval(self) -> Interval:
         if not self.at("["):

@@ -1,1 +1,1 @@
-"""From a file to a checked scenario: includes, parameters, short forms, overrides, mistakes."""
+"""Reads a file as a checked scenario: includes, parameters, short forms, overrides, mistakes."""

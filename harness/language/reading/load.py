@@ -101,7 +101,7 @@ def read_scenario(
     seed: int | None = None,
     text: str | None = None,
 ) -> Reading:
-    """A scenario file with its mistakes, for whoever goes on to find more.
+    """A scenario file with its mistakes, for callers that find more.
 
     Args:
         overrides: Dotted path -> YAML value, as given with `--set`.
@@ -176,7 +176,7 @@ def load_scenario(
 def parse_scenario(
     text: str, path: Path, overrides: Mapping[str, str] | None = None
 ) -> LoadedScenario:
-    """As `load_scenario`, of a text that would stand in the file."""
+    """Load a scenario as `load_scenario` does, from the text of its file."""
     return _whole(read_scenario(path, overrides, text=text))
 
 

@@ -58,25 +58,25 @@ def take_apart(
         problems.append(item.place.problem(message, _all(words, kind)))
         return None
     keys = [key for key in item.value if key not in siblings]
-    said = [key for key in keys if key in words]
+    found = [key for key in keys if key in words]
     others = [key for key in keys if key not in words]
     rest = {key: entry for key, entry in item.value.items() if key in siblings}
-    if not said and others:
+    if not found and others:
         wrong = max(others, key=lambda key: nearest(key, words) is not None)
         keyword = _unknown(wrong, *item.value[wrong], words, kind, problems)
         return None if keyword is None else Words(keyword, item.value[wrong], rest)
-    if not said:
+    if not found:
         message = f"{_a(whole)} has one {kind}; this one has none"
         hint = UNTIL_USAGE if UNTIL in rest else _all(words, kind)
         problems.append(item.place.problem(message, hint))
         return None
-    for extra in said[1:]:
-        message = f"{_a(whole)} has one {kind}; this one has `{said[0]}` and `{extra}`"
+    for extra in found[1:]:
+        message = f"{_a(whole)} has one {kind}; this one has `{found[0]}` and `{extra}`"
         hint = f"begin another one: `- {extra}:`"
         problems.append(item.value[extra].key.problem(message, hint))
     for other in others:
-        _misplaced(other, item.value[other], said[0], words[said[0]], siblings, problems)
-    return Words(said[0], item.value[said[0]], rest)
+        _misplaced(other, item.value[other], found[0], words[found[0]], siblings, problems)
+    return Words(found[0], item.value[found[0]], rest)
 
 
 def _unknown(
@@ -126,14 +126,14 @@ def with_temporal_word(word: str) -> tuple[str, str] | None:
     """Temporal word and predicate that a joined word means: `no_collision` is never, collision."""
     parts = word.lower().replace("-", "_").replace(" ", "_").split("_")
     for count in range(1, len(parts)):
-        for said, rest in (
+        for temporal, rest in (
             ("_".join(parts[:count]), parts[count:]),
             ("_".join(parts[-count:]), parts[:-count]),
         ):
             name = "_".join(rest)
             predicate = nearest(name, PREDICATES)
-            if said in TEMPORAL_WORDS and predicate is not None:
-                return TEMPORAL_WORDS[said], predicate
+            if temporal in TEMPORAL_WORDS and predicate is not None:
+                return TEMPORAL_WORDS[temporal], predicate
     return None
 
 
@@ -150,16 +150,16 @@ def _with_content(predicate: str, content: Located) -> str:
         )
     if isinstance(value, dict):
         return f"{{{predicate}: {{...}}}}"
-    said = f"[{', '.join(map(str, value))}]" if isinstance(value, list) else str(value)
-    return f"{{{predicate}: {said}}}"
+    text = f"[{', '.join(map(str, value))}]" if isinstance(value, list) else str(value)
+    return f"{{{predicate}: {text}}}"
 
 
 def wrong_way_round(word: str, content: Located) -> str | None:
     """What `collision: never`, or `collision: false`, stands for; None for other content."""
-    said = "no" if content.value is False else content.value
-    if not isinstance(said, str) or said.lower() not in ALONE:
+    stated = "no" if content.value is False else content.value
+    if not isinstance(stated, str) or stated.lower() not in ALONE:
         return None
-    return f"{TEMPORAL_WORDS[said.lower()]}: {_with_content(word, Located(None, content.place))}"
+    return f"{TEMPORAL_WORDS[stated.lower()]}: {_with_content(word, Located(None, content.place))}"
 
 
 def _misplaced(

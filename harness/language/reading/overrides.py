@@ -253,7 +253,7 @@ def _names(item: Located) -> list[str]:
 
 
 def _index(items: list[Located], parts: list[str]) -> tuple[int | None, int]:
-    """Index of the item that a path goes on with, and how many parts say so; names have dots."""
+    """Index of the item that a path continues with, and its number of parts: names have dots."""
     first = parts[0]
     if first.isascii() and first.isdecimal() and len(first) <= 9:
         return (int(first), 1) if int(first) < len(items) else (None, 1)

@@ -2,7 +2,7 @@
 
 Guided by the models: a verb or predicate becomes a tag, a bare value the field it is short for.
 Unknown words are refused here, where it is known what could stand in their place; what is wrong
-is left out, so that pydantic goes on with the rest. Every value keeps its place in the file.
+is left out, so that pydantic continues with the rest. Every value keeps its place in the file.
 """
 
 from __future__ import annotations
@@ -126,10 +126,10 @@ class _Shaper:
                 near = nearest(key, inside)
                 place = "" if near else _place_of(key, {each: keys[each] for each in inside})
                 known = did_you_mean(key, inside, "keys") if inside else "it has no keys"
-                said = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
-                hint = said or "; ".join(filter(None, [place, known]))
+                advice = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
+                hint = advice or "; ".join(filter(None, [place, known]))
                 self.problems.append(entry.key.problem(message, hint))
-                if near is not None and near not in item.value:  # go on as if it said so
+                if near is not None and near not in item.value:  # continue with the valid key
                     shaped = self.field(entry.value, keys[near])
                     entries[near] = Entry(entry.key, shaped)
         return Located(entries, item.place)

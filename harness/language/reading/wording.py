@@ -77,8 +77,8 @@ def _value_error(error: ErrorDetails, context: dict[str, Any], _: str) -> tuple[
     raised = context.get("error")
     if isinstance(raised, MistakeError):
         return raised.message, raised.hint
-    said = str(raised) if raised is not None else error["msg"]
-    message, _, hint = said.partition("; ")
+    text = str(raised) if raised is not None else error["msg"]
+    message, _, hint = text.partition("; ")
     return message, hint
 
 
@@ -128,8 +128,8 @@ def _text(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]
 
 
 def _as_said(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]:
-    said = error["msg"]
-    return f"cannot be {value}: {said[0].lower()}{said[1:]}", ""
+    text = error["msg"]
+    return f"cannot be {value}: {text[0].lower()}{text[1:]}", ""
 
 
 def _mapping(error: ErrorDetails, context: dict[str, Any], value: str) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""One motion of several that follow each other, and how one goes over into the next."""
+"""Legs of a motion, and the transitions between them."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -108,7 +108,7 @@ class Leg:
 
 @dataclass(frozen=True, eq=False)
 class Transition:
-    """The way over from one leg into the next, inside a sphere about the point between them.
+    """The transition from one leg into the next, inside a sphere about the point between them.
 
     Attributes:
         leaves: Parameter of the first leg at which it begins.

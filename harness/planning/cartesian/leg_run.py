@@ -134,7 +134,7 @@ def _slower(first: LinkRates | None, second: LinkRates | None) -> LinkRates | No
 def _check_ways(
     run: LegRun, trajectory: JointTrajectory, owners: Sequence[int], motions: LinkMotions
 ) -> None:
-    """Every sample that belongs to a leg through space is on it.
+    """Check that every sample of a leg through space is on its path.
 
     Raises:
         PlanningFailed: INVALID_MOTION_PLAN.

@@ -40,12 +40,12 @@ class LinearPath:
 
     @property
     def length(self) -> float:
-        """Of the translation [m]."""
+        """Length of the translation [m]."""
         return float(np.linalg.norm(self.shift))
 
     @property
     def angle(self) -> float:
-        """Of the turn [rad]."""
+        """Angle of the rotation [rad]."""
         return float(np.linalg.norm(self.turn))
 
     def pose(self, parameter: float) -> SE3:

@@ -65,7 +65,7 @@ class LinkMotions:
         return self._to_end(arc, target, "CIRC", Details.of(circle))
 
     def relative(self, link: str, twist: FloatArray, distances: tuple[float, float]) -> MotionPlan:
-        """Task Constructor's MoveRelative: as far as goes between two distances."""
+        """Task Constructor's MoveRelative: as far as possible between two distances."""
         task, (least, most) = self.task, distances
         twist = np.asarray(twist, dtype=float)
         line = LinearPath(link, self.pose(task.start, link), most * twist[:3], most * twist[3:])
@@ -92,7 +92,7 @@ class LinkMotions:
         )
 
     def solutions(self, start: FloatArray, target: PoseGoal) -> Details:
-        """What became of the solutions of inverse kinematics of a way's end.
+        """The results of the inverse kinematics solutions for a path's end.
 
         Raises:
             PlanningFailed: Nothing free reaches it.

@@ -63,7 +63,7 @@ class LinkRates:
 
     @classmethod
     def of(cls, limits: CartesianLimits, options: PlanningOptions) -> LinkRates:
-        """What was given as it is; the rest is Pilz's default times the scaling factors."""
+        """The stated limits unscaled; the others are Pilz's defaults times the scaling factors."""
         speed, push = options.velocity_scaling, options.acceleration_scaling
         velocity = limits.translation_velocity or speed * MAX_TRANSLATION_VELOCITY
         acceleration = limits.translation_acceleration or push * MAX_TRANSLATION_ACCELERATION
@@ -119,7 +119,7 @@ def time_on_path(
 
 
 def _gentle(spline: Curve, profile: Trapezoid, limits: Limits) -> tuple[Curve, float]:
-    """The spline run through by the profile, whose ramps are eased until the jerk is kept.
+    """The profile along the spline, its ramps smoothed until the jerk limit is kept.
 
     Easing the profile, and not the joints' motion, keeps the link on its way.
     """

@@ -60,17 +60,17 @@ class LinkPath(Protocol):
 
     @property
     def length(self) -> float:
-        """Of the translation [m]."""
+        """Length of the translation [m]."""
         ...
 
     @property
     def angle(self) -> float:
-        """Of the turn [rad]."""
+        """Angle of the rotation [rad]."""
         ...
 
     @property
     def radius(self) -> float:
-        """Of the curvature [m]."""
+        """Radius of the curvature [m]."""
         ...
 
     def pose(self, parameter: float) -> SE3:

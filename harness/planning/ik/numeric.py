@@ -24,6 +24,7 @@ RESTARTS, MOST_RESTARTS = 18, 64
 Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."""
 
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
+_MOST_ITERATIONS = 100
 _WINDOW = 6  # iterations over which progress is measured
 _CONVERGES = 0.8
 """Share of the squared error that remains after a window, above which a restart is cheaper."""
@@ -140,7 +141,7 @@ class LinkTask:
         return positions, float(np.linalg.norm(error))
 
     def least_squares(
-        self, seed: FloatArray, iterations: int = 100, *, remaining: float = _MINIMUM
+        self, seed: FloatArray, *, remaining: float = _MINIMUM
     ) -> tuple[FloatArray, float]:
         """Damped least squares inside the position limits, from one seed.
 
@@ -149,7 +150,6 @@ class LinkTask:
 
         Args:
             seed: The joint positions to start from, shape (dof,).
-            iterations: The largest number of iterations.
             remaining: The share of the squared error above which the search ends, if it remains
                 after `_WINDOW` iterations.
 
@@ -165,7 +165,7 @@ class LinkTask:
         error, jacobian = self.evaluate(positions)
         cost, factor = float(error.dot(error)), 1.0
         earlier = [np.inf] * _WINDOW
-        for _ in range(iterations):
+        for _ in range(_MOST_ITERATIONS):
             if cost < _CONVERGED**2 or cost > remaining * earlier[0]:
                 break
             earlier = [*earlier[1:], cost]

@@ -1,4 +1,4 @@
-"""What the joints may do, and how much slower a motion must be to keep it."""
+"""Limits of the joints, and how much slower a motion must be to keep them."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Dynamics(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """What the joints may do, scaling included; shape (dof,) each.
+    """Limits of the joints, scaling included; shape (dof,) each.
 
     Attributes:
         velocity: The velocity limits; never infinite.
@@ -190,7 +190,7 @@ def _interpolated_excess(trajectory: JointTrajectory, limits: Limits) -> float:
 
 
 def largest_jerk(curve: Curve, total: float) -> float:
-    """Of any joint between samples of the time grid, at rest before and after."""
+    """Largest jerk of a joint between samples of the time grid, at rest before and after."""
     _, _, accelerations = curve(time_grid(total))
     rest = np.zeros_like(accelerations[:1])
     changes = np.diff(np.concatenate([rest, accelerations[1:-1], rest]), axis=0)

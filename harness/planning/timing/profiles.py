@@ -24,7 +24,7 @@ Curve = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
 @dataclass(frozen=True)
 class Trapezoid:
-    """From 0 to `length` at rest on both ends, under a velocity and an acceleration limit.
+    """A motion from 0 to `length`, at rest at both ends, under limits of velocity and acceleration.
 
     Attributes:
         length: The length of the parameter.

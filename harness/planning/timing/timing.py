@@ -28,7 +28,7 @@ _AT_REST = 1e-9  # [rad] paths shorter than this have nowhere to go
 
 @dataclass(frozen=True, eq=False)
 class JerkLimited:
-    """From 0 to 1, without velocity and acceleration at both ends, stretched to the time grid.
+    """A motion from 0 to 1, without velocity and acceleration at both ends, on the time grid.
 
     Attributes:
         duration: The duration, a whole multiple of `GRID` [s].
@@ -69,7 +69,7 @@ class JerkLimited:
 def time_straight(
     joint_names: tuple[str, ...], first: FloatArray, second: FloatArray, limits: Limits
 ) -> JointTrajectory:
-    """Move on a straight joint-space line, all joints at once, as fast as the limits let.
+    """Move on a straight joint-space line, all joints at once, as fast as the limits allow.
 
     Every joint's velocity is a trapezoid; under a jerk limit it is what Ruckig makes of it.
 
@@ -123,7 +123,7 @@ def joined(pieces: Sequence[JointTrajectory]) -> JointTrajectory:
 def time_blended(
     joint_names: tuple[str, ...], waypoints: FloatArray, limits: Limits, deviation: float
 ) -> JointTrajectory:
-    """Move along a polyline as fast as the limits let, its corners rounded, timed by TOPP-RA.
+    """Move along a polyline with rounded corners as fast as the limits allow, timed by TOPP-RA.
 
     Args:
         joint_names: The joint names of the columns.

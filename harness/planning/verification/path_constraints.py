@@ -1,4 +1,4 @@
-"""What must hold all along a motion: how far a state is inside it, and the way back into it."""
+"""Path constraints: how far a state is inside them, and its projection back into them."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class HeldConstraints:
         return float(0.5 * (self.upper - self.lower).min())
 
     def values(self, positions: FloatArray) -> FloatArray:
-        """Of all constraints at group positions, shape (m,)."""
+        """Values of all constraints at group positions, shape (m,)."""
         self.checks += 1
         parts: list[FloatArray] = []
         whole, robot = self.space.whole(positions), self.space.robot

@@ -1,4 +1,4 @@
-"""The gate no trajectory skips: what will be commanded is checked as it is, finer than planned."""
+"""Verifies every trajectory as it will be commanded, at a finer resolution than planning."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def _planned_poses(run: Run, step: StepRecord) -> FloatArray | None:
 
 
 def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
-    """Along the path as the search found it, in straight lines between its waypoints."""
+    """Poses along the path as the search found it, in straight lines between its waypoints."""
     plan = step.planner.find(PlanStatistics)
     if plan is None or not plan.raw_path or step.trajectory is None:
         return None
@@ -82,7 +82,7 @@ def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
 
 
 def _target(target: Floats | None) -> list[float] | None:
-    """Where a link was to be: a pose, or a point with no turn of its own."""
+    """The target of a link: a pose, or a point without an orientation."""
     pose, point = _numbers(target, 7), _numbers(target, 3)
     return pose or (None if point is None else [*point, 1.0, 0.0, 0.0, 0.0])
 

@@ -47,7 +47,7 @@ def pack_presses(run: Run, packer: Packer) -> list[dict[str, Any]]:
 
 
 def _strongest(strength: FloatArray, samples: IntArray) -> IntArray:
-    """Of every frame: the sample since the frame before in which the force was largest."""
+    """For every frame: the sample since the frame before in which the force was largest."""
     chosen = samples.copy()
     begins = np.concatenate([[0], samples[:-1] + 1])
     for frame in np.flatnonzero(np.maximum.reduceat(strength, np.minimum(begins, samples)) > 0):

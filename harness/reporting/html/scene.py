@@ -91,7 +91,7 @@ def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
 
 
 def _mesh_parts(run: Run) -> dict[MeshKey, list[list[Any]]]:
-    """Of each mesh file: the numbers of its parts, with their colours."""
+    """For each mesh file: the numbers of its parts, with their colours."""
     parts: dict[MeshKey, list[list[Any]]] = {}
     for number, mesh in enumerate(run.meshes):
         colour = None if mesh.rgba is None else _rounded(mesh.rgba, 3)

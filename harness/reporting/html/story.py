@@ -32,7 +32,7 @@ def ordered_steps(run: Run) -> list[StepRecord]:
 
 
 def depth_of(step: StepRecord, run: Run) -> int:
-    """In how many other steps it is nested."""
+    """The number of steps that a step is nested in."""
     return sum(is_nested(step.path, other.path) for other in run.steps)
 
 
@@ -101,7 +101,7 @@ def verdict_facts(verdict: Verdict) -> dict[str, Any]:
 
 
 def _points(verdict: Verdict) -> dict[str, list[float]] | None:
-    """Where something was to be and where it was, of the first measure that knows."""
+    """Expected and actual point, of the first measure that has them."""
     for measure in verdict.measures:
         if measure.expected and measure.actual:
             points = {"expected": list(measure.expected), "actual": list(measure.actual)}
@@ -123,7 +123,7 @@ def findings_facts(run: Run) -> list[dict[str, Any]]:
 
 
 def contact_facts(run: Run) -> list[dict[str, Any]]:
-    """Who touched whom, the first to touch first."""
+    """The contacts of a run, by their first time."""
     return [
         {
             "first": contact.pair[0],

@@ -82,8 +82,8 @@ def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
 def summary_facts(stored: StoredRun) -> list[tuple[str, str]]:
     """What stands below the title of the summary."""
     held = sum(verdict.status == "passed" for verdict in stored.verdicts)
-    said = f"{held} of {len(stored.verdicts)}" if stored.verdicts else "none is stated"
-    return [*header_facts(stored), ("expectations that hold", said)]
+    text = f"{held} of {len(stored.verdicts)}" if stored.verdicts else "none is stated"
+    return [*header_facts(stored), ("expectations that hold", text)]
 
 
 def summary_tables(stored: StoredRun) -> list[Table]:

@@ -73,8 +73,8 @@ def compressed_image(content: bytes, camera: Camera, header: Any) -> Any:
     kind = MAGIC.get(content[:2], "png")
     source, stored = ("mono8", "mono8") if camera.is_grey else ("rgb8", "bgr8")
     data = np.frombuffer(content, np.uint8)
-    said = f"{source}; {kind} compressed {stored}"
-    return message("sensor_msgs/msg/CompressedImage", header=header, format=said, data=data)
+    encoding = f"{source}; {kind} compressed {stored}"
+    return message("sensor_msgs/msg/CompressedImage", header=header, format=encoding, data=data)
 
 
 def _raw(content: bytes, camera: Camera, header: Any) -> Any:

@@ -32,7 +32,7 @@ class Event:
     """
 
     time: float
-    said: str
+    text: str
     level: int
     content: Mapping[str, Any]
 
@@ -47,7 +47,7 @@ def event_messages(stored: StoredRun) -> Iterator[Message]:
             event.time,
             ROSOUT,
             message(
-                LOG, stamp=stamp(event.time), level=event.level, name=NODE, msg=event.said,
+                LOG, stamp=stamp(event.time), level=event.level, name=NODE, msg=event.text,
                 file=file, line=int(event.content.get("line", 0)),
             ),
         )  # fmt: skip
@@ -95,22 +95,22 @@ def _step(event: str, step: StepRecord) -> dict[str, Any]:
 
 
 def _started(step: StepRecord) -> Event:
-    said = f"{step.id}: {step.summary}"
-    return Event(step.start_time, said, Log.INFO, _step("step_started", step))
+    text = f"{step.id}: {step.summary}"
+    return Event(step.start_time, text, Log.INFO, _step("step_started", step))
 
 
 def _finished(step: StepRecord) -> Event:
     content = _step("step_finished", step) | {"status": step.status}
     content |= {"error_code": step.error_code, "message": step.message}
     content |= {"result": to_plain(step.result)}
-    said = f"{step.id}: {step.status}"
-    said += f": {step.error_code}: {step.message}" if step.error_code else ""
-    return Event(step.end_time, said, _level(step.status != "failed"), content)
+    text = f"{step.id}: {step.status}"
+    text += f": {step.error_code}: {step.message}" if step.error_code else ""
+    return Event(step.end_time, text, _level(step.status != "failed"), content)
 
 
 def _not_reached(step: StepRecord, end: float) -> Event:
-    said = f"{step.id}: not reached"
-    return Event(end, said, Log.WARN, _step("step_not_reached", step))
+    text = f"{step.id}: not reached"
+    return Event(end, text, Log.WARN, _step("step_not_reached", step))
 
 
 def _presence(run: Run) -> list[Event]:
@@ -135,12 +135,12 @@ def _attachments(run: Run) -> list[Event]:
         content = {"object": record.object, "link": record.link, "represents": record.represents}
         pose = {"pose_in_link": list(record.pose_in_link)}
         begin = {"event": "attached", **content, **pose}
-        said = f"{record.object} attached to {record.link}"
-        events.append(Event(record.start_time, said, Log.INFO, begin))
+        text = f"{record.object} attached to {record.link}"
+        events.append(Event(record.start_time, text, Log.INFO, begin))
         if math.isfinite(record.end_time):
             end = {"event": "detached", **content}
-            said = f"{record.object} detached from {record.link}"
-            events.append(Event(record.end_time, said, Log.INFO, end))
+            text = f"{record.object} detached from {record.link}"
+            events.append(Event(record.end_time, text, Log.INFO, end))
     return events
 
 
@@ -161,9 +161,9 @@ def _verdict(verdict: Verdict, last: float) -> Event:
         "margin": _finite(verdict.margin), "unit": verdict.unit, "step": verdict.step,
         "line": verdict.line, "reason": verdict.reason, "points": verdict.points,
     }  # fmt: skip
-    said = f"{verdict.expectation}: {verdict.status}: {verdict.reason}"
+    text = f"{verdict.expectation}: {verdict.status}: {verdict.reason}"
     time = verdict.time if math.isfinite(verdict.time) else last
-    return Event(time, said, _level(verdict.status == "passed"), content)
+    return Event(time, text, _level(verdict.status == "passed"), content)
 
 
 def _finite(value: float) -> float | None:

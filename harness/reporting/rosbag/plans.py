@@ -66,7 +66,7 @@ def tcp_path(run: Run) -> Iterator[Message]:
 
 
 def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:
-    """With the joints as they were when it began."""
+    """The motion for RViz, from the joint positions at its beginning."""
     time = step.start_time
     index = min(step.start_index, len(run.signals.times) - 1)
     names = [joint.name for joint in run.robot.joints]

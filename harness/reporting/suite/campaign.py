@@ -133,7 +133,7 @@ def _map(
 
 
 def _evenly(indices: Sequence[int], most: int) -> list[int]:
-    """At most so many of the indices, at even distances."""
+    """At most a given number of the indices, at even distances."""
     if len(indices) <= most:
         return list(indices)
     return [indices[index * len(indices) // most] for index in range(most)]

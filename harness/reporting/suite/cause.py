@@ -21,13 +21,13 @@ class Cause:
     """
 
     group: str
-    said: str
+    text: str
     line: int = 0
     column: int = 0
 
 
 def cause_of(result: CaseResult) -> Cause | None:
-    """Of a case; None when it passed."""
+    """The cause why a case did not pass; None when it passed."""
     if result.outcome == "passed":
         return None
     if result.outcome == "error":
@@ -39,13 +39,13 @@ def cause_of(result: CaseResult) -> Cause | None:
             return Cause(group, problem.sentence, problem.line, problem.column)
         return Cause("invalid", result.message)
     for step in root_failures(result.steps):
-        said = ": ".join(filter(None, (step.summary, step.error_code, step.message)))
-        return Cause(f"{step.error_code or 'failed'} in {step.verb}", said, step.line)
+        text = ": ".join(filter(None, (step.summary, step.error_code, step.message)))
+        return Cause(f"{step.error_code or 'failed'} in {step.verb}", text, step.line)
     for verdict in result.verdicts:
         if verdict.status != "passed":
-            said = f"{verdict.expectation}: {verdict.status}"
-            said += f": {verdict.reason}" if verdict.reason else ""
-            return Cause(f"{verdict.status}: {verdict.expectation}", said, verdict.line)
+            text = f"{verdict.expectation}: {verdict.status}"
+            text += f": {verdict.reason}" if verdict.reason else ""
+            return Cause(f"{verdict.status}: {verdict.expectation}", text, verdict.line)
     return Cause("failed", result.message or "no cause was reported")
 
 
@@ -59,7 +59,7 @@ def short_lines(results: Iterable[CaseResult]) -> Iterator[str]:
         if cause is not None:
             place = f"{result.file}:{cause.line}:1" if cause.line else result.file
             name = f" [{result.case}]" if result.case else ""
-            yield f"{place}:{name} {' '.join(cause.said.split())}"
+            yield f"{place}:{name} {' '.join(cause.text.split())}"
 
 
 def short_problem(problem: Problem) -> str:

@@ -1,4 +1,4 @@
-"""What varies in many runs, and what came of it, as columns of numbers."""
+"""What varies in many runs, and the results, as columns of numbers."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class _Column:
 
 
 class Columns:
-    """Everything that the page and the terminal say of many runs together.
+    """Everything that the page and the terminal show of many runs together.
 
     Attributes:
         outcomes: The number of runs with each outcome.

@@ -29,7 +29,7 @@ def error_annotations(results: Iterable[CaseResult]) -> Iterator[str]:
         if result.outcome == "invalid" and result.problems:
             yield from map(problem_annotation, result.problems)
         elif cause is not None:
-            yield _command(result.file, cause.line, cause.column, result.name, cause.said)
+            yield _command(result.file, cause.line, cause.column, result.name, cause.text)
 
 
 def append_summary(record: SuiteRecord) -> None:
@@ -58,10 +58,10 @@ def problem_annotation(problem: Problem) -> str:
     return _command(problem.path, problem.line, problem.column, "harness", problem.sentence)
 
 
-def _command(file: str, line: int, column: int, title: str, said: str) -> str:
+def _command(file: str, line: int, column: int, title: str, text: str) -> str:
     place = {"file": file, "line": line, "col": column, "title": title}
     words = ",".join(f"{key}={_property(str(value))}" for key, value in place.items() if value)
-    return f"::error {words}::{_data(said)}"
+    return f"::error {words}::{_data(text)}"
 
 
 def _data(text: str) -> str:
@@ -92,7 +92,7 @@ def _row(case: SuiteCase) -> str:
     margin = ""
     if nearest is not None:
         margin = f"{nearest.expectation}: {nearest.margin:.4g} {nearest.unit}".removesuffix(" 1")
-    cells = [SIGNS[result.outcome], result.name, margin, cause.said if cause else ""]
+    cells = [SIGNS[result.outcome], result.name, margin, cause.text if cause else ""]
     return f"| {' | '.join(map(_cell, cells))} |"
 
 

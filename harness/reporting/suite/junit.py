@@ -112,8 +112,8 @@ def _spooled() -> IO[bytes]:
 
 def _tag(name: str, attributes: Mapping[str, str], inner: str | None = None) -> str:
     """An element; `inner` is XML."""
-    said = "".join([f' {key}="{_escaped(value)}"' for key, value in attributes.items()])
-    return f"<{name}{said} />" if inner is None else f"<{name}{said}>{inner}</{name}>"
+    listed = "".join([f' {key}="{_escaped(value)}"' for key, value in attributes.items()])
+    return f"<{name}{listed} />" if inner is None else f"<{name}{listed}>{inner}</{name}>"
 
 
 def _escaped(text: str) -> str:
@@ -134,9 +134,9 @@ def _may_fail(result: CaseResult, rates: Sequence[SampledRate]) -> bool:
 
 
 def _testcase(file: str, name: str, seconds: float, parts: Iterable[str]) -> bytes:
-    said = {"name": name, "classname": _class(file), "file": file, "time": f"{seconds:.3f}"}
+    attributes = {"name": name, "classname": _class(file), "file": file, "time": f"{seconds:.3f}"}
     inner = "".join([f"{part}\n" for part in parts])
-    text = _tag("testcase", said, f"\n{inner}")
+    text = _tag("testcase", attributes, f"\n{inner}")
     return f"{text}\n".encode()
 
 
@@ -155,8 +155,8 @@ def _rate(sampled: SampledRate) -> bytes:
     rate, name = sampled.rate, f"success rate {sampled.group}".strip()
     parts = [_properties([("passed", str(rate.passed)), ("samples", str(rate.total))])]
     if sampled.outcome != "passed":
-        said = _escaped(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
-        parts.append(f'<failure message="{said}" type="success rate">{said}</failure>')
+        text = _escaped(rate_text(f"{sampled.file} {sampled.group}".strip(), rate))
+        parts.append(f'<failure message="{text}" type="success rate">{text}</failure>')
     return _testcase(sampled.file, name, 0.0, parts)
 
 
@@ -168,13 +168,13 @@ def _case(case: SuiteCase, *, may_fail: bool) -> bytes:
         lines += ["failed, as samples may; their rate is judged", *causes(result)]
     elif case.cause is not None:
         kind = "failure" if result.outcome == "failed" else "error"
-        why = {"message": case.cause.said, "type": case.cause.group}
+        why = {"message": case.cause.text, "type": case.cause.group}
         parts.append(_tag(kind, why, _xml("\n".join(causes(result)))))
     if result.report_dir:
         lines.append(f"report: {report_link(result)}")
     if lines:
-        said = printable_lines("\n".join(lines)).replace(ATTACHMENT, f"[ {ATTACHMENT[1:]}")
-        text = "\n".join([said, *_attachments(result)])
+        notes = printable_lines("\n".join(lines)).replace(ATTACHMENT, f"[ {ATTACHMENT[1:]}")
+        text = "\n".join([notes, *_attachments(result)])
         parts.append(_tag("system-out", {}, _xml(text)))
     return _testcase(result.file, name, _seconds(result), parts)
 
@@ -188,7 +188,7 @@ def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
     result = case.result
     found = [("seed", str(result.seed)), ("digest", result.digest)]
     found.append(("simulated", f"{result.sim_time:.3f} s"))
-    found += _said_of(case)
+    found += [("verifies", each) for each in case.verifies]
     found += [(f"value:{path}", str(value)) for path, value in case.values.items()]
     found += [
         (f"margin:{verdict.expectation}", _margin(verdict))
@@ -201,8 +201,8 @@ def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
 
 
 def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
-    """Of samples together: seed and digest of each, the smallest margins and whose they are."""
-    found = [item for case in cases[:1] for item in _said_of(case)]
+    """Properties of samples together: seed and digest of each, the smallest margins by sample."""
+    found = [("verifies", each) for case in cases[:1] for each in case.verifies]
     found += [(f"seed:{case.result.case}", str(case.result.seed)) for case in cases]
     found += [(f"digest:{case.result.case}", case.result.digest) for case in cases]
     least: dict[str, tuple[Verdict, str]] = {}
@@ -218,10 +218,6 @@ def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
     if nearest is not None:
         found.append(("worst_margin", nearest.expectation))
     return found
-
-
-def _said_of(case: SuiteCase) -> list[tuple[str, str]]:
-    return [("verifies", each) for each in case.verifies]
 
 
 def _margin(verdict: Verdict) -> str:

@@ -122,7 +122,7 @@ def _row(
         None if used is None else 100 * used,
         ", ".join(f"{path} {short_value(value)}" for path, value in case.values.items()),
         shared_words(result.shared),
-        " ".join([*words, cause.said if cause else ""]).lower(),
+        " ".join([*words, cause.text if cause else ""]).lower(),
         _trend([*earlier, None if nearest is None else case.share]),
     )
 

@@ -116,6 +116,6 @@ def case_json(case: SuiteCase) -> str:
         "unit": nearest.unit,
         "share": case.share,
     }  # fmt: skip
-    said = {name: getattr(case.result, name) for name in CaseResult.__dataclass_fields__}
-    said |= {"values": case.values, "tags": case.tags, "verifies": case.verifies}
-    return compact_json({**said, "worst_margin": margin})
+    content = {name: getattr(case.result, name) for name in CaseResult.__dataclass_fields__}
+    content |= {"values": case.values, "tags": case.tags, "verifies": case.verifies}
+    return compact_json({**content, "worst_margin": margin})

@@ -1,4 +1,4 @@
-"""How much of what came of a file's runs each of its parameters explains."""
+"""How much of the variance of a file's results each of its parameters explains."""
 
 from __future__ import annotations
 

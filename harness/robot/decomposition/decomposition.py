@@ -364,7 +364,7 @@ def _few_corners(corners: FloatArray, tolerance: float) -> FloatArray:
 
 
 def _thinned(points: FloatArray, most: int) -> FloatArray:
-    """At most so many of some points, chosen at random; the same for arrays of equal length."""
+    """At most a given number of points, chosen at random; the same for arrays of equal length."""
     if len(points) <= most:
         return points
     # A fixed stride would leave out whole planes of a grid.

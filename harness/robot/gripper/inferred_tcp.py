@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.spatial import SE3
-from harness.robot.description import Joint, Link, PlanningGroup
+from harness.robot.description import Link, PlanningGroup, fixed_joint
 from harness.robot.gripper.inferred_gripper import IntegratedGripper
 from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.srdf.srdf import Srdf
@@ -55,9 +55,8 @@ def with_integrated_gripper(
         return urdf, _ending_at(srdf, arm, tip, frame, carrier), frame
     name = f"{own.facts.group}_tcp"
     rotation = palm.rotation.T @ poses[tip].rotation
-    axis = np.array([1.0, 0.0, 0.0])
     pose = SE3(rotation, own.center)
-    joint = Joint(f"{name}_joint", "fixed", own.facts.palm_link, name, pose, axis)
+    joint = fixed_joint(f"{name}_joint", own.facts.palm_link, name, pose)
     added = replace(urdf, links=(*urdf.links, Link(name, None)), joints=(*urdf.joints, joint))
     away = 1000 * float(np.linalg.norm(center - poses[tip].translation))
     notes.append(

@@ -14,7 +14,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3, rotation_from_quat_wxyz
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, Mimic
+from harness.robot.description import Joint, Mimic, fixed_joint
 from harness.robot.mjcf.linkages import linkage_mimics
 
 SLIDE = 2  # of mjtJoint
@@ -190,11 +190,6 @@ def _widened(joint: Joint, ranges: Mapping[str, tuple[float, float]]) -> Joint:
 def mjcf_pose(position: Any, quat_wxyz: Any) -> SE3:
     """A pose from MuJoCo's arrays."""
     return SE3.from_xyz_quat(np.array(position, dtype=float), np.array(quat_wxyz, dtype=float))
-
-
-def fixed_joint(name: str, parent: str, child: str, pose: SE3) -> Joint:
-    """A fixed joint."""
-    return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
 
 
 def _turn(axis: FloatArray, angle: float) -> FloatArray:

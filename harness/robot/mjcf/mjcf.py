@@ -15,9 +15,9 @@ import numpy as np
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, Link, NamedState
+from harness.robot.description import Joint, Link, NamedState, fixed_joint
 from harness.robot.mjcf.files import missing_meshes, read_tree
-from harness.robot.mjcf.joints import body_chain, fixed_joint, mjcf_pose, pulled_pairs, with_mimics
+from harness.robot.mjcf.joints import body_chain, mjcf_pose, pulled_pairs, with_mimics
 from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
 from harness.robot.srdf.srdf import link_pair

@@ -131,12 +131,12 @@ def _answer(file: str, mappings: dict[str, str], packages: PackagePath) -> dict[
         message = guard.complaint or reader.missing_in(str(error)) or _message(error)
         if _is_of_memory(error):
             message = f"it takes too much memory {message}"
-        said = _complaint(f"cannot be rendered: {message}", xacro.filestack, file)
+        complaint = _complaint(f"cannot be rendered: {message}", xacro.filestack, file)
         lacking = re.search(r"Undefined parameters \[([\w,]+)\]", message)
         if lacking and xacro.macrostack:
             name = xacro.macrostack[-1].body.getAttribute("name")
-            said |= {"macro": f"xacro:{name}", "lacks": lacking[1].split(",")}
-        return said
+            complaint |= {"macro": f"xacro:{name}", "lacks": lacking[1].split(",")}
+        return complaint
     finally:
         guard.is_on = False
 

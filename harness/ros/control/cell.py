@@ -84,7 +84,7 @@ class ExternalCell:
     def receive(
         self, kind: CommandKind, controller: str = "", goal: str = "", **content: Any
     ) -> CommandRecord:
-        """Let a command take effect now, and record it with what became of it."""
+        """Let a command take effect now, and record it with its result."""
         sample = self._servos.sample_count - 1
         record = CommandRecord(sample, self.time, kind, controller, goal, content, "accepted")
         try:

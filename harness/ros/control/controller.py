@@ -62,7 +62,7 @@ class Motion(Protocol):
         ...
 
     def judge(self, window: Window) -> Outcome | None:
-        """How the goal ended; None while it goes on."""
+        """How the goal ended; None while it is active."""
         ...
 
     def feedback(self, window: Window) -> Any:

@@ -117,11 +117,13 @@ def _order(given: Sequence[str], names: Sequence[str]) -> list[int]:
     """Columns of the message for the controller's joints."""
     unknown = [_quoted(name) for name in given if name not in names]
     if unknown:
-        said = f"this controller has no joint {', '.join(unknown[:MOST_NAMES])}; it has"
-        raise GoalRefused(f"{said} {', '.join(names)}", Code.INVALID_JOINTS)
+        reason = f"this controller has no joint {', '.join(unknown[:MOST_NAMES])}; it has"
+        raise GoalRefused(f"{reason} {', '.join(names)}", Code.INVALID_JOINTS)
     if sorted(given) != sorted(names):
-        said = f"the trajectory names {', '.join(given[:MOST_NAMES]) or 'no joints'}; it must name"
-        raise GoalRefused(f"{said} each of {', '.join(names)} once", Code.INVALID_JOINTS)
+        reason = (
+            f"the trajectory names {', '.join(given[:MOST_NAMES]) or 'no joints'}; it must name"
+        )
+        raise GoalRefused(f"{reason} each of {', '.join(names)} once", Code.INVALID_JOINTS)
     return [list(given).index(name) for name in names]
 
 
@@ -134,8 +136,8 @@ def _check_times(times: FloatArray) -> None:
     if falls.any():
         place = int(np.argmax(falls))
         before = f", after {times[place - 1]:.6g} s" if place else ""
-        said = f"point {place} is at {times[place]:.6g} s{before}"
-        raise GoalRefused(f"time_from_start must rise from 0 on; {said}")
+        reason = f"point {place} is at {times[place]:.6g} s{before}"
+        raise GoalRefused(f"time_from_start must rise from 0 on; {reason}")
 
 
 def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> FloatArray:
@@ -145,13 +147,13 @@ def _column(points: Sequence[Mapping[str, Any]], key: str, order: list[int]) -> 
         return np.empty(0)
     for place, length in enumerate(lengths):
         if length != len(order):
-            said = f"point {place} has {length} {key}, and there are {len(order)} joints"
-            raise GoalRefused(said)
+            reason = f"point {place} has {length} {key}, and there are {len(order)} joints"
+            raise GoalRefused(reason)
     values = np.array([point[key] for point in points], dtype=float)[:, order]
     is_bad = ~(np.abs(values) < LARGEST).all(axis=1)  # which is also true of NaN
     if is_bad.any():
-        said = f"point {np.argmax(is_bad)} has {key} that are not numbers below {LARGEST:g}"
-        raise GoalRefused(said)
+        reason = f"point {np.argmax(is_bad)} has {key} that are not numbers below {LARGEST:g}"
+        raise GoalRefused(reason)
     return values
 
 
@@ -176,8 +178,8 @@ def _bounds(
     for each in given:
         name = each["name"]
         if name not in places:
-            said = f"a tolerance is for {_quoted(name)}, which is no joint here"
-            raise GoalRefused(said, Code.INVALID_JOINTS)
+            reason = f"a tolerance is for {_quoted(name)}, which is no joint here"
+            raise GoalRefused(reason, Code.INVALID_JOINTS)
         for row, value in enumerate((float(each["position"]), float(each["velocity"]))):
             if not np.isfinite(value):
                 raise GoalRefused(f"the tolerance of '{name}' is no number")

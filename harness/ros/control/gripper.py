@@ -82,9 +82,11 @@ class GripperMotion:
         del code, reason  # its result has no fields for them
         return self._ended(window, None)
 
-    def _ended(self, window: Window, hold: FloatArray | None, **said: bool) -> Outcome:
-        return Outcome(self.goal, any(said.values()), self._message("Result", window, **said), hold)
+    def _ended(self, window: Window, hold: FloatArray | None, **flags: bool) -> Outcome:
+        return Outcome(
+            self.goal, any(flags.values()), self._message("Result", window, **flags), hold
+        )
 
-    def _message(self, part: str, window: Window, **said: bool) -> Any:
+    def _message(self, part: str, window: Window, **flags: bool) -> Any:
         position, effort = float(window.measured[0, -1, 0]), float(window.efforts[0])
-        return message(f"{GRIPPER}_{part}", position=position, effort=effort, **said)
+        return message(f"{GRIPPER}_{part}", position=position, effort=effort, **flags)

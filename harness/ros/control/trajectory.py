@@ -107,8 +107,8 @@ class TrajectoryMotion:
         beyond = self._first_beyond(errors[:, moving], self.checked.path)
         if beyond:
             row, text = beyond
-            said = f"path tolerance: {text} at t={times[row]:.3f} s"
-            return self._ended(Code.PATH_TOLERANCE_VIOLATED, said, last)
+            reason = f"path tolerance: {text} at t={times[row]:.3f} s"
+            return self._ended(Code.PATH_TOLERANCE_VIOLATED, reason, last)
         if now < end - TIME_SLACK:
             return None
         missed = self._first_beyond(errors[:, -1:], self.checked.goal)
@@ -116,8 +116,8 @@ class TrajectoryMotion:
             return self._ended(Code.SUCCESSFUL)
         if now < end + self.checked.goal_time:
             return None
-        said = f"goal tolerance: {missed[1]} {now - end:.3f} s after the end"
-        return self._ended(Code.GOAL_TOLERANCE_VIOLATED, said, last)
+        reason = f"goal tolerance: {missed[1]} {now - end:.3f} s after the end"
+        return self._ended(Code.GOAL_TOLERANCE_VIOLATED, reason, last)
 
     def feedback(self, window: Window) -> Any:
         def point(motion: FloatArray) -> Any:
@@ -142,7 +142,7 @@ class TrajectoryMotion:
         return Outcome(self.goal, code == Code.SUCCESSFUL, follow_result(code, reason), hold)
 
     def _first_beyond(self, errors: FloatArray, bounds: FloatArray) -> tuple[int, str] | None:
-        """The first sample with an error beyond a bound, and what is said of its worst joint."""
+        """The first sample with an error beyond a bound, and a text about its worst joint."""
         excess = errors - bounds[:, None]
         beyond = (excess > 0).any(axis=(0, 2))
         if not beyond.any():

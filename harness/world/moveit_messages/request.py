@@ -104,16 +104,16 @@ def _pose_goal(position: Located, turns: list[Located]) -> dict[str, Any]:
     region = child(position, "constraint_region")
     poses = [] if region is None else children(region, "primitive_poses")
     sizes = [] if region is None else children(region, "primitives")
-    if len(poses) != 1 or len(sizes) != 1:
+    radii = [number(value) for size in sizes for value in children(size, "dimensions")]
+    if len(poses) != 1 or len(sizes) != 1 or not radii:
         refuse(position, "a position constraint has a `constraint_region` of one primitive")
     x, y, z = (rounded(value) for value in message_pose(poses[0]).translation)
-    radius = min(number(value) for value in children(sizes[0], "dimensions"))
     header = child(position, "header")
     place: dict[str, Any] = {"xyz": [x, y, z]}
     frame = "" if header is None else text(header, "frame_id").removeprefix("/")
     if frame:
         place["frame"] = frame
-    tolerance: dict[str, Any] = {"position": radius}
+    tolerance: dict[str, Any] = {"position": min(radii)}
     goal: dict[str, Any] = {"position": place, "link": text(position, "link_name")}
     if turns:
         turned = child(turns[0], "orientation")

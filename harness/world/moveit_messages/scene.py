@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from harness.world.moveit_messages.values import (
     joint_positions,
     message_pose,
     numbers,
+    refused_at,
     text,
 )
 from harness.world.notes import Note, Notes
@@ -80,9 +82,11 @@ def read_scene(path: Path, root_frames: Collection[str], packages: PackagePath) 
     for item in children(root, "robot_state", "attached_collision_objects"):
         refuse(item, "an attached object has no place in a world", "put it there and `attach` it")
     state = child(root, "robot_state")
+    with refused_at(root):
+        world = WorldSpec(world=text(root, "name") or path.stem, objects=tuple(objects))
     return MoveItScene(
         robot=text(root, "robot_model_name"),
-        world=WorldSpec(world=text(root, "name") or path.stem, objects=tuple(objects)),
+        world=world,
         meshes=reader.meshes,
         start={} if state is None else joint_positions(state),
         allowed=_allowed(root),
@@ -134,22 +138,20 @@ class _Reader:
                 f"known are {', '.join(sorted(filter(None, self._frames)))}",
             )
         at = message_pose(child(item, "pose"))
-        shapes = [
-            self._shape(at @ pose, **words)
-            for kind, read in self._kinds
-            for words, pose in zip(
-                [read(shape, name) for shape in children(item, _plural(kind))],
-                [message_pose(pose) for pose in children(item, f"{kind}_poses")],
-                strict=True,
-            )
-        ]
+        shapes: list[ShapeSpec] = []
+        for kind, read in self._kinds:
+            found, poses = children(item, _plural(kind)), children(item, f"{kind}_poses")
+            if len(poses) > len(found):
+                refuse(item, f"'{name}' has {len(found)} {_plural(kind)} and {len(poses)} poses")
+            for shape, pose in zip_longest(found, poses):  # a missing pose is the identity
+                words = read(shape, name)
+                T_world_shape = at @ message_pose(pose) @ words.pop("at", SE3.identity())
+                with refused_at(shape):
+                    shapes.append(ShapeSpec(pose=pose_spec(T_world_shape), **words))
         if not shapes:
             refuse(item, f"'{name}' has no shape")
-        return ObjectSpec(name=name, static=True, shapes=tuple(shapes))
-
-    def _shape(self, pose: SE3, at: SE3 | None = None, **words: Any) -> ShapeSpec:
-        """A shape, at a pose in the frame that is its own."""
-        return ShapeSpec(pose=pose_spec(pose if at is None else pose @ at), **words)
+        with refused_at(item):
+            return ObjectSpec(name=name, static=True, shapes=tuple(shapes))
 
     def _primitive(self, item: Located, name: str) -> dict[str, Any]:
         word = text(item, "type").lower()
@@ -187,7 +189,9 @@ class _Reader:
             [int(number(value)) for value in (child(each, "vertex_indices") or each).items()]
             for each in children(item, "triangles")
         ]
-        if not faces or max(map(max, faces)) >= len(corners) or min(map(min, faces)) < 0:
+        used = {corner for face in faces for corner in face}
+        is_triangles = bool(faces) and all(len(face) == 3 for face in faces)
+        if not is_triangles or not used <= set(range(len(corners))):
             refuse(item, f"'{name}': a mesh has triangles of its vertices, or a `resource`")
         triangles = np.array(corners, dtype=float)[np.array(faces)]
         return {"mesh": {"file": add_mesh(self.meshes, name, triangles)}}

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Generator
+from contextlib import contextmanager
+
+from pydantic import ValidationError
 
 from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.language.files.source import Located
 from harness.robot.yaml_data import number, refuse
+from harness.world.plain_values import first_mistake
 
 
 def child(item: Located, *names: str) -> Located | None:
@@ -43,6 +48,19 @@ def numbers(item: Located | None, names: str) -> list[float] | None:
     if len(parts) != len(names):
         refuse(item, f"expected {len(names)} numbers: {', '.join(names)}")
     return [number(part) for part in parts]
+
+
+@contextmanager
+def refused_at(item: Located) -> Generator[None]:
+    """Report a value that a model of the world refuses at an item of the message.
+
+    Raises:
+        SpecError: The model refuses a value; at the item.
+    """
+    try:
+        yield
+    except ValidationError as error:
+        refuse(item, first_mistake(error))
 
 
 def quaternion(item: Located) -> list[float]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from harness.core.errors import Problem, SpecError
 from harness.core.geometry import Rgba
@@ -18,7 +19,13 @@ from harness.language.world import MeshSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.world.imported import ImportedWorld
 from harness.world.moveit_scene.tokens import TokenReader
 from harness.world.notes import Notes
-from harness.world.plain_values import LEAST_NORMAL, THICK_PLANE, plane_pose, pose_spec
+from harness.world.plain_values import (
+    LEAST_NORMAL,
+    THICK_PLANE,
+    first_mistake,
+    plane_pose,
+    pose_spec,
+)
 from harness.world.stl import Triangles, add_mesh, cone
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
@@ -83,6 +90,8 @@ class _Reader:
                 found_object = self._object(name, place, has_poses)
             except SpecError as error:
                 raise SpecError([self._in_object(error.problems[0], name, place)]) from error
+            except ValidationError as error:
+                raise SpecError([place.problem(f"'{name}': {first_mistake(error)}")]) from error
             if found_object is not None:
                 objects[name] = found_object
         world = WorldSpec(world=title, objects=tuple(objects.values()))

@@ -39,10 +39,7 @@ def _ignored(meaning: str, *silent: str) -> Word:
     return Word("ignored", meaning, silent)
 
 
-def _refused(meaning: str) -> Word:
-    return Word("refused", meaning)
-
-
+_UNDRAWN = Word("refused", "in a collision; not drawn in a visual")
 _POSE = _read("with `relative_to`, `degrees`, `rotation_format`; `frame` as before SDF 1.7")
 _NO_PLUGINS = _ignored("a world cannot execute code")
 _DRAWN_PLAIN = _ignored("pictures have plain colours")
@@ -161,9 +158,9 @@ WORDS: Mapping[str, Mapping[str, Word]] = {
         "empty": _read("no shape"),
         "ellipsoid": _read("radii; as 1,280 triangles, up to 0.5 % inside it"),
         "cone": _read("radius and length; as a pyramid of 32 sides"),
-        "heightmap": _refused("in a collision; not drawn in a visual"),
-        "image": _refused("in a collision; not drawn in a visual"),
-        "polyline": _refused("in a collision; not drawn in a visual"),
+        "heightmap": _UNDRAWN,
+        "image": _UNDRAWN,
+        "polyline": _UNDRAWN,
     },
     "mesh": {
         "uri": _read("as in an include, or relative to the file"),

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
-from harness.core.solids import is_inertia_of_a_body, solid_of
+from harness.core.solids import is_inertia_of_a_body, point_inertia, solid_of
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import ShapeSpec
 from harness.world.notes import Notes
+from harness.world.objects import primitive
 from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.values import is_true, number, pose_of
 
@@ -49,9 +49,8 @@ def together(parts: Sequence[MassProperties]) -> MassProperties:
     center = sum((part.mass * part.center for part in parts), np.zeros(3)) / mass
     inertia = np.zeros((3, 3))
     for part in parts:
-        offset = part.center - center
         inertia += part.inertia
-        inertia += part.mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+        inertia += point_inertia(part.mass, part.center - center)
     return MassProperties(mass, center, inertia)
 
 
@@ -114,7 +113,7 @@ def _automatic(
     density = number(inertial, "density", WATER)
     parts: list[MassProperties] = []
     for collision, spec in shapes:
-        solid = None if (kind := _geometry(spec)) is None else solid_of(kind)
+        solid = None if (kind := primitive(spec)) is None else solid_of(kind)
         if solid is None:
             hint = "add <mass> and <inertia>"
             collision.refuse("automatic inertia needs boxes, cylinders, spheres or capsules", hint)
@@ -132,15 +131,3 @@ def _automatic(
     if scale <= 0:
         inertial.refuse("a mass is above 0")
     return MassProperties(whole.mass * scale, whole.center, whole.inertia * scale)
-
-
-def _geometry(spec: ShapeSpec) -> Geometry | None:
-    if spec.box is not None:
-        return Box(spec.box.size)
-    if spec.cylinder is not None:
-        return Cylinder(spec.cylinder.radius, spec.cylinder.length)
-    if spec.sphere is not None:
-        return Sphere(spec.sphere.radius)
-    if spec.capsule is not None:
-        return Capsule(spec.capsule.radius, spec.capsule.length)
-    return None

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE, SpecModel
 from harness.language.files.xml_file import XmlElement
+from harness.world.plain_values import first_mistake
 
 UNBOUNDED = ("mu", "mu2")
 """Elements in which worlds write 1e16 to exclude slip."""
@@ -87,9 +88,7 @@ def validated(model: type[M], words: Mapping[str, Any], element: XmlElement) -> 
     try:
         return model.model_validate(words)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        key = ".".join(map(str, first["loc"]))
-        element.refuse(f"<{element.tag}>: {key}: {first['msg'].removeprefix('Value error, ')}")
+        element.refuse(f"<{element.tag}>: {first_mistake(error)}")
 
 
 def is_flag(parent: XmlElement, tag: str, default: bool = False) -> bool:

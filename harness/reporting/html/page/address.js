@@ -25,7 +25,7 @@ export function readAddress(hash) {
 
 /** Have the address say where the page is, without a new entry in the history. @param {Record<string, string | number | null>} place */
 export function writeAddress(place) {
-  const said = Object.entries(place).filter(([, value]) => value !== null && value !== undefined);
-  const hash = `#${said.map(([name, value]) => `${name}=${value}`).join("&")}`;
+  const given = Object.entries(place).filter(([, value]) => value !== null && value !== undefined);
+  const hash = `#${given.map(([name, value]) => `${name}=${value}`).join("&")}`;
   if (location.hash !== hash) history.replaceState(null, "", hash);
 }

@@ -4,7 +4,7 @@
   const section = document.getElementById("map");
   if (!section) return;
   const data = JSON.parse(section.querySelector("script").textContent);
-  const canvas = section.querySelector("canvas"), said = section.querySelector("output");
+  const canvas = section.querySelector("canvas"), caption = section.querySelector("output");
   const [across, up, kind] = ["x", "y", "kind"].map((name) => section.querySelector(`select[name=${name}]`));
   const count = data.parameters.length, SHARE = count, CAUSE = count + 1, NAME = count + 2, LINK = count + 3;
   const axes = [...data.parameters, { name: "worst margin (share of its limit)", unit: "", words: [] }];
@@ -158,7 +158,7 @@
   canvas.addEventListener("pointermove", (event) => {
     marked = at(event);
     canvas.style.cursor = marked ? "pointer" : "";
-    said.textContent = describe(marked);
+    caption.textContent = describe(marked);
     draw();
   });
   canvas.addEventListener("click", (event) => {
