@@ -109,6 +109,7 @@ Hundreds of files may be given at once; with a mistake in any of them nothing is
 | `group_name`, scaling factors | read | the step's `group`, `planning` |
 | planner, time, attempts, colours, octomaps, padding | ignored | with a note |
 | `planes` | read | solid below their surface, with a note |
+| poses of shapes | read | a shape without a pose is at the origin of its object |
 | attached objects, other frames | refused | |
 | path and trajectory constraints | refused | the motion would be another one |"""
 
