@@ -26,18 +26,23 @@ print(session.run_case(request).outcome, begun, len(list((folder / "images").ite
 """
 
 
-def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_path):
-    rest = "expect: [{joints: {positions: {joint1: 0.25}, tolerance: 0.01}}]"
-    steps = "- ptp: {joints: {joint1: 0.5}}"
-    file = file_of(tmp_path, steps, robot="open_manipulator_x", rest=rest)
+def first_line(program, file):
+    """What a program without threads, which can be forked, prints of a scenario."""
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(file)],
+        [sys.executable, "-c", program, str(file)],
         capture_output=True,
         text=True,
         check=True,
         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
     )
-    assert done.stdout.split("\n")[0] == "failed [True] 1"
+    return done.stdout.split("\n")[0]
+
+
+def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_path):
+    rest = "expect: [{joints: {positions: {joint1: 0.25}, tolerance: 0.01}}]"
+    steps = "- ptp: {joints: {joint1: 0.5}}"
+    file = file_of(tmp_path, steps, robot="open_manipulator_x", rest=rest)
+    assert first_line(PROGRAM, file) == "failed [True] 1"
 
 
 BEFORE_OR_HERE = """
@@ -59,11 +64,4 @@ print(len(found[0]), found[0] == found[1])
 def test_pictures_are_the_same_from_a_process_begun_before_the_run_and_from_its_own(tmp_path):
     steps = "- ptp: {joints: {joint1: 0.5}}\n- ptp: {joints: {joint1: 0.1}}"
     file = file_of(tmp_path, steps, robot="open_manipulator_x", rest="")
-    done = subprocess.run(
-        [sys.executable, "-c", BEFORE_OR_HERE, str(file)],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-    )
-    assert done.stdout.split("\n")[0] == "2 True"
+    assert first_line(BEFORE_OR_HERE, file) == "2 True"
