@@ -59,7 +59,8 @@ class ContactRecord:
     """The contacts of consecutive samples, and sums of them for each pair of bodies.
 
     Keeping a sample only copies what MuJoCo has computed; everything else follows from the copies
-    of many samples at a time.
+    of many samples at a time. MuJoCo computes no contacts of bodies that are asleep: as nothing
+    moves there, they are those of the last sample in which the bodies were awake.
     """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
@@ -74,6 +75,7 @@ class ContactRecord:
         self._frictions = np.empty((size, 3), dtype=np.float32)
         self._unresolved = _Unresolved(data)
         self._resolved = 0
+        self._sleep = b""  # the state of sleep for which contacts of bodies asleep are known
         self.count = 0
 
     def reserve(self, rows: int) -> None:
@@ -85,13 +87,16 @@ class ContactRecord:
         """Forget the contacts of all samples after the first `rows`."""
         self._resolve(self.count)
         self.count = self._resolved = int(self._end[rows - 1]) if rows else 0
+        self._sleep = b""
 
     def keep(self, row: int) -> None:
         """Copy the contacts of the current physics state as those of one sample."""
+        if self._data.tree_asleep.tobytes() != self._sleep:
+            self._find_asleep(row)
         begin, count = self.count, self._data.ncon
-        self.count = end = begin + count
+        self.count = end = begin + count + len(self._unresolved.asleep.forces)
         self._end[row] = end
-        if not count:
+        if begin == end:
             return
         if end > len(self._forces):
             self._grow()
@@ -119,9 +124,23 @@ class ContactRecord:
         self.count = self._resolved = end = begin + len(part.forces)
         while end > len(self._forces):
             self._grow()
+        self._sleep = b""
         taken = (part.geoms, part.forces, part.normals, part.points, part.frictions)
         for values, more in zip(self._values, taken, strict=True):
             values[begin:end] = more
+
+    def _find_asleep(self, row: int) -> None:
+        """Take the contacts of bodies asleep from the sample before."""
+        model, data = self._physics.model, self._data
+        self._sleep = data.tree_asleep.tobytes()
+        is_asleep = np.append(data.tree_asleep, -1) >= 0
+        trees = model.body_treeid[model.geom_bodyid]  # -1, the last, for a static body
+        before = self.part(max(0, row - 1), row)
+        chosen = is_asleep[trees[before.geoms]].any(axis=1)
+        values = (before.geoms, before.forces, before.normals, before.points, before.frictions)
+        self._unresolved.asleep = RecordedContacts(
+            chosen.sum(keepdims=True), *(each[chosen] for each in values)
+        )
 
     @property
     def _values(self) -> tuple[Array, ...]:
@@ -294,6 +313,9 @@ class _Unresolved:
     constraint, as for an arm without a gripper, there are no rows at all. Every contact has
     `CONTACT_DIMENSIONS`: its first row is the normal force, the next two are friction along the
     second and third axis of its frame.
+
+    Attributes:
+        asleep: Contacts of bodies asleep, which each sample has in addition to those copied.
     """
 
     def __init__(self, data: mujoco.MjData) -> None:
@@ -302,6 +324,7 @@ class _Unresolved:
         self._fields = np.dtype([])
         self._contacts = np.empty((0, 0))
         self._forces = np.empty(8 * MOST_UNRESOLVED)
+        self.asleep = RecordedContacts(*(np.empty(0) for _ in range(6)))
         self._clear()
 
     def _clear(self) -> None:
@@ -315,14 +338,17 @@ class _Unresolved:
         end, last = begin + count, row + len(forces)
         if count > len(self._memory[0]):
             self._find_memory(count)
-        if end > len(self._contacts) or last > len(self._forces):
-            if begin:
-                return False
+        room = len(self._contacts), len(self._forces), MOST_UNRESOLVED
+        if self._samples and (end > room[0] or last > room[1] or len(self._samples) == room[2]):
+            return False
+        if end > len(self._contacts):
             self._contacts = np.empty((max(end, MOST_UNRESOLVED), self._fields.itemsize // 8))
-            self._forces = np.empty(max(last, len(self._forces)))
-        head, tail = self._memory
-        self._contacts[begin:end, : head.shape[1]] = head[:count]
-        self._contacts[begin:end, head.shape[1] :] = tail[:count]
+        if last > len(self._forces):
+            self._forces = np.empty(last)
+        if count:
+            head, tail = self._memory
+            self._contacts[begin:end, : head.shape[1]] = head[:count]
+            self._contacts[begin:end, head.shape[1] :] = tail[:count]
         self._forces[row:last] = forces
         self._samples.append((count, row))
         self._count, self._rows = end, last
@@ -357,6 +383,18 @@ class _Unresolved:
         if not self._samples:
             return
         counts, rows = np.array(self._samples, dtype=np.int64).T
+        asleep = self.asleep
+        computed, size = slice(None), len(asleep.forces)
+        if size:  # they follow the computed ones of each sample
+            ends = np.cumsum(counts + size)
+            repeated = ends[:, None] - np.arange(size, 0, -1)
+            geoms[repeated], points[repeated] = asleep.geoms, asleep.points
+            normals[repeated], frictions[repeated] = asleep.normals, asleep.frictions
+            forces[repeated] = asleep.forces
+            computed = np.delete(np.arange(len(forces)), repeated)
+        if not self._count:
+            self._clear()
+            return
         contacts = self._contacts[: self._count].view(self._fields)[:, 0]
         axes = np.ascontiguousarray(contacts["frame"].T)  # (9, C)
         addresses = contacts["efc_address"].astype(np.int64)
@@ -365,9 +403,9 @@ class _Unresolved:
         values = [self._forces.take(addresses + row, mode="clip") for row in range(3)]
         for each in values:
             each[is_inactive] = 0.0
-        geoms[:], points[:], normals[:] = contacts["geom"], contacts["pos"], axes[:3].T
-        forces[:] = values[0]
-        frictions[:] = (values[1] * axes[3:6] + values[2] * axes[6:]).T
+        geoms[computed], points[computed] = contacts["geom"], contacts["pos"]
+        normals[computed], forces[computed] = axes[:3].T, values[0]
+        frictions[computed] = (values[1] * axes[3:6] + values[2] * axes[6:]).T
         self._clear()
 
 

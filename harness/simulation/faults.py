@@ -14,6 +14,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.simulation.geoms import set_smaller_frictions
 from harness.simulation.model import PhysicsModel
+from harness.simulation.step_state import wake
 
 STALL_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of the stop that holds a stalled joint."""
@@ -66,6 +67,7 @@ class MujocoFaults:
         new = (sliding, old.torsional * ratio, old.rolling * ratio)
         model.geom_friction[place.geoms] = new
         set_smaller_frictions(model)
+        wake(model, self._data)
         return before
 
     def weaken_gripper(self, share: float) -> float:

@@ -26,6 +26,7 @@ from harness.simulation.geoms import (
 )
 from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
 from harness.simulation.servo import Servos, add_servos, design_servos
+from harness.simulation.step_state import allow_sleep
 from harness.simulation.world_mjcf import add_object, parking_pose
 
 FRICTION_DAMPING_PER_STEP = 1.5
@@ -158,6 +159,7 @@ def _compiled(
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio = 10.0
     option.disableflags = mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    allow_sleep(option)
     add_robot(spec, description)
     add_servos(spec, description, servos)
     for index, obj in enumerate(objects):

@@ -25,7 +25,7 @@ from harness.simulation.gripper_drive import GripperDrive
 from harness.simulation.joint_drive import JointDrive
 from harness.simulation.model import build_model
 from harness.simulation.objects import Objects, overlaps
-from harness.simulation.recording import Recording, refresh
+from harness.simulation.recording import Recording
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.set_points import SetPoints, sample_trajectory
 from harness.simulation.shared_physics import SharedPhysics
@@ -35,6 +35,7 @@ from harness.simulation.snapshot import (
     load_state,
     saved_state,
 )
+from harness.simulation.step_state import refresh
 
 CHECK_EVERY = 100
 """Samples between checks of the path tolerance; the record shows which sample exceeded it."""

@@ -11,7 +11,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.scene import Touch
 from harness.simulation.model import ObjectPlace, PhysicsModel, set_presence
-from harness.simulation.recording import Recording, refresh
+from harness.simulation.recording import Recording
+from harness.simulation.step_state import wake
 from harness.simulation.world_mjcf import weld_name
 
 SMALLEST_OVERLAP = 1e-4
@@ -70,7 +71,7 @@ class Objects:
     def weld(self, name: str, link: str) -> None:
         """Fix a free object to a link at their current poses."""
         model, data = self._physics.model, self._data
-        refresh(model, data)
+        wake(model, data)
         link_body, object_body = model.body(link).id, self._physics.objects[name].body
         T_world_link = SE3.from_xyz_quat(data.xpos[link_body], data.xquat[link_body])
         T_world_object = SE3.from_xyz_quat(data.xpos[object_body], data.xquat[object_body])
@@ -82,8 +83,12 @@ class Objects:
 
     def unweld(self, name: str) -> None:
         """Release a welded object; an object that is not welded does not change."""
-        if not self._physics.objects[name].obj.is_static:
-            self._data.eq_active[self._physics.model.equality(weld_name(name)).id] = 0
+        if self._physics.objects[name].obj.is_static:
+            return
+        weld = self._physics.model.equality(weld_name(name)).id
+        if self._data.eq_active[weld]:
+            self._data.eq_active[weld] = 0
+            wake(self._physics.model, self._data)
 
     def recorded_poses(self) -> dict[str, FloatArray]:
         """T_world_object of every sample, NaN while absent, shape (N, 7) each."""
@@ -124,6 +129,7 @@ class Objects:
         else:
             self._physics.model.body_pos[place.body] = pose[:3]
             self._physics.model.body_quat[place.body] = pose[3:]
+        wake(self._physics.model, self._data)
 
 
 def overlaps(physics: PhysicsModel, data: mujoco.MjData) -> tuple[Touch, ...]:

@@ -24,6 +24,7 @@ from harness.simulation.contact_record import (
     doubled,
 )
 from harness.simulation.model import PhysicsModel
+from harness.simulation.step_state import refresh
 
 MOST_BYTES = 2**30
 """Largest record of states, sensors and contacts; judging it takes about four times as much."""
@@ -31,12 +32,7 @@ MOST_BYTES = 2**30
 LOOK_BACK = 25
 """Number of samples before a failure in which contacts are searched."""
 
-_DIVERGED = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-    mujoco.mjtWarning.mjWARN_BADCTRL,
-)
+_DIVERGED = (mujoco.mjtWarning.mjWARN_BADQACC, mujoco.mjtWarning.mjWARN_BADCTRL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +55,10 @@ class RecordedPart:
 class Recording:
     """The samples of a run: row i is the state at `i * timestep` and the forces in it.
 
-    The last row is always the current state of the physics. A plain loop over `mj_step` with copies
-    into prepared arrays costs 8 % over the bare loop; `mujoco.rollout` reports which bodies
-    touch only with a contact sensor for each pair.
+    The last row is always the current state of the physics. A plain loop with copies into prepared
+    arrays costs 8 % over bare calls of `mj_step`; `mujoco.rollout` reports which bodies touch only
+    with a contact sensor for each pair. A step is made of the two calls that `mj_step` consists of,
+    because it computes forces a second time, without their velocities, where bodies fall asleep.
     """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
@@ -105,16 +102,19 @@ class Recording:
         self._reserve(first + steps)
         self._commands[first : first + steps] = commands
         self._command_velocities[first : first + steps] = command_velocities
-        model, data, step = self._physics.model, self._data, mujoco.mj_step
+        model, data = self._physics.model, self._data
+        forward, check, integrate = mujoco.mj_forward, mujoco.mj_checkAcc, mujoco.mj_implicit
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
         positions, velocities, sensed = self._qpos, self._qvel, self._sensors
         keep_contacts = self._contacts.keep
         for row in range(first, first + steps):
             control[:] = controls[row - first]
-            step(model, data)
+            forward(model, data)
             if row > first:
                 sensed[row - 1] = sensors
                 keep_contacts(row - 1)
+            check(model, data)
+            integrate(model, data)
             positions[row] = qpos
             velocities[row] = qvel
         control[:] = controls[-1]
@@ -200,10 +200,10 @@ class Recording:
 
     def _refuse_divergence(self, first: int) -> None:
         warned = any(self._data.warning[kind].number for kind in _DIVERGED)
-        rows = self._qpos[first : self.count]
-        finite = np.isfinite(rows).all(axis=1)
-        if warned or not finite.all() or not np.isfinite(self._data.qvel).all():
-            row = first + (int(np.argmin(finite)) if not finite.all() else 0)
+        rows = self._qpos[first : self.count], self._qvel[first : self.count]
+        usable = np.logical_and(*((np.abs(part) <= mujoco.mjMAXVAL).all(axis=1) for part in rows))
+        if warned or not usable.all():
+            row = first + (int(np.argmin(usable)) if not usable.all() else 0)
             raise SimulationDiverged(
                 f"the physics left the finite numbers near t={row * self.timestep:.3f} s"
             )
@@ -308,10 +308,3 @@ class Recording:
     def free_poses(self, qpos: int) -> FloatArray:
         """Recorded poses of a free body, shape (N, 7)."""
         return self._qpos[: self.count, qpos : qpos + 7].copy()
-
-
-def refresh(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Update poses, contacts and forces without changing the start of the next step."""
-    warmstart = data.qacc_warmstart.copy()
-    mujoco.mj_forward(model, data)
-    data.qacc_warmstart[:] = warmstart

@@ -20,7 +20,8 @@ from harness.core.exact_key import exact_key
 from harness.core.sharing import chain
 from harness.core.types import FloatArray, IntArray
 from harness.simulation.recording import RecordedPart, Recording
-from harness.simulation.snapshot import CHANGED_IN_PLACE, STATE
+from harness.simulation.snapshot import CHANGED_IN_PLACE
+from harness.simulation.step_state import StepState, set_step_state, step_state
 
 SURFACES = ("geom_friction", "geom_priority", "pair_friction")
 """Arrays of the model that only contacts read."""
@@ -40,13 +41,13 @@ class _Stretch:
         touching: The pairs of geoms that touched, shape (K, 2).
         surfaces: Key of their friction.
         recorded: The samples that it consists of.
-        state: MuJoCo's state at the end.
+        state: The state at the end.
     """
 
     touching: IntArray
     surfaces: str
     recorded: RecordedPart
-    state: FloatArray
+    state: StepState
 
 
 class SharedPhysics:
@@ -80,7 +81,7 @@ class SharedPhysics:
         for stretch in known:
             if self._surfaces(stretch.touching) == stretch.surfaces:
                 self._chain.take(steps)
-                mujoco.mj_setState(self._model, self._data, stretch.state, STATE)
+                set_step_state(self._model, self._data, stretch.state)
                 recording.take(stretch.recorded, commands, command_velocities)
                 return
         recording.advance(controls, commands, command_velocities)
@@ -88,7 +89,8 @@ class SharedPhysics:
         surfaces = self._surfaces(touching)
 
         def variants() -> tuple[_Stretch, ...]:
-            stretch = _Stretch(touching, surfaces, recording.part(first), self._state())
+            state = step_state(self._model, self._data)
+            stretch = _Stretch(touching, surfaces, recording.part(first), state)
             return (*known[1 - MOST_VARIANTS :], stretch)
 
         self._chain.keep(key, variants, steps, surfaces)
@@ -99,14 +101,10 @@ class SharedPhysics:
         The shapes of all arrays but the last one are those of the model.
         """
         hasher = hashlib.sha256(self._model_key)
-        for values in (*self._changed, self._state(), controls):
+        state = step_state(self._model, self._data)
+        for values in (*self._changed, state.integration, *state.arrays, controls):
             hasher.update(np.ascontiguousarray(values).data)
         return hasher.hexdigest()
-
-    def _state(self) -> FloatArray:
-        state = np.empty(mujoco.mj_stateSize(self._model, STATE))
-        mujoco.mj_getState(self._model, self._data, state, STATE)
-        return state
 
     def _surfaces(self, touching: IntArray) -> str:
         """Key of the friction of pairs of geoms that touch, shape (K, 2).

@@ -13,11 +13,8 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.ports.joint_control import JointController
-from harness.simulation.recording import refresh
 from harness.simulation.set_points import SetPoints
-
-STATE = mujoco.mjtState.mjSTATE_INTEGRATION
-"""All that MuJoCo integrates, and the warm start, without which a step differs in its last bits."""
+from harness.simulation.step_state import StepState, refresh, set_step_state, step_state
 
 CHANGED_IN_PLACE = (
     "geom_contype",
@@ -67,7 +64,7 @@ class PhysicsState:
     """A snapshot of a simulator.
 
     Attributes:
-        integration: The integration state of MuJoCo.
+        step: The state that the next step follows from.
         model: Arrays of the model that change during a run, by name.
         command: The set points of the robot.
         samples: The number of samples recorded so far.
@@ -75,7 +72,7 @@ class PhysicsState:
         faults: The state of the active faults.
     """
 
-    integration: FloatArray
+    step: StepState
     model: Mapping[str, Any]
     command: SimulatorCommand
     samples: int
@@ -92,15 +89,13 @@ def saved_state(
     faults: Mapping[str, Any],
 ) -> PhysicsState:
     """The snapshot of a model, its data, and what the simulator keeps besides."""
-    integration = np.empty(mujoco.mj_stateSize(model, STATE))
-    mujoco.mj_getState(model, data, integration, STATE)
     arrays = {name: getattr(model, name).copy() for name in CHANGED_IN_PLACE}
-    return PhysicsState(integration, arrays, command, samples, history, faults)
+    return PhysicsState(step_state(model, data), arrays, command, samples, history, faults)
 
 
 def load_state(model: mujoco.MjModel, data: mujoco.MjData, state: PhysicsState) -> None:
     """Set model and data to a snapshot, and update poses, contacts and forces."""
     for name, values in state.model.items():
         getattr(model, name)[...] = values
-    mujoco.mj_setState(model, data, state.integration, STATE)
+    set_step_state(model, data, state.step)
     refresh(model, data)

@@ -13,8 +13,8 @@ import numpy as np
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.session.timed_simulator import TimedSimulator
-from harness.simulation.recording import refresh
 from harness.simulation.set_points import SetPoints
+from harness.simulation.step_state import refresh, wake
 
 CHUNK = 16
 """Samples between two calls of the pace; the results do not depend on it."""
@@ -49,6 +49,7 @@ class LiveSimulator(TimedSimulator):
 
     def resume_record(self) -> None:
         """Let the record go on from the current state, after motions without a record."""
+        wake(self._model, self._data)  # the record holds no contacts of what fell asleep since
         self._recording.replace_last(self._command)
 
     @property
