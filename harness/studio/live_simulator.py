@@ -14,7 +14,7 @@ from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.session.timed_simulator import TimedSimulator
 from harness.simulation.set_points import SetPoints
-from harness.simulation.step_state import refresh, wake
+from harness.simulation.step_state import refresh, set_step_state, step_state, wake
 
 CHUNK = 16
 """Samples between two calls of the pace; the results do not depend on it."""
@@ -71,8 +71,10 @@ class LiveSimulator(TimedSimulator):
         self.command(self._command + np.clip(target - self._command, -most, most))
 
     def contact_forces(self) -> dict[tuple[str, str], float]:
-        """Normal forces of pairs of bodies in contact now [N], without supports at rest."""
+        """Normal forces of pairs of bodies in contact now [N]."""
         names = self.physics.body_names
+        state = step_state(self._model, self._data)
+        wake(self._model, self._data)
         found: dict[tuple[str, str], float] = {}
         force = np.zeros(6)
         for index in range(self._data.ncon):
@@ -81,6 +83,7 @@ class LiveSimulator(TimedSimulator):
             first, second = sorted(names[int(body)] for body in bodies)
             if force[0] > 0:
                 found[first, second] = found.get((first, second), 0.0) + float(force[0])
+        set_step_state(self._model, self._data, state)
         return found
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:

@@ -39,7 +39,7 @@ SAGS = (
 HOLD = (
     "steps:\n  - gripper: open\n  - ptp: {joints: {slide: 0, lift: 0.08}}\n"
     "  - gripper: {position: 0.0, max_effort: 17}\n  - ptp: {joints: {slide: 0, lift: 0.2}}\n"
-    "  - wait: 1 s\n"
+    "  - wait: 2 s\n"
 )
 FINGERS = ("palm", "finger_left", "finger_right")
 ROD = "objects:\n  - {name: rod, in: simulation, box: {size: [0.4, 0.03, 0.04]}, mass: 100 g, pose: {xyz: [0, 0, 0.0201]}}\n"  # noqa: E501

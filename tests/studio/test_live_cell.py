@@ -36,7 +36,7 @@ def cell(tmp_path):
 
 def full_state(cell):
     snapshot = cell.simulator.snapshot()
-    return snapshot.integration, snapshot.samples
+    return np.concatenate([snapshot.step.integration, *snapshot.step.arrays]), snapshot.samples
 
 
 def test_the_digest_of_the_studio_is_that_of_a_run_of_the_saved_file(cell):
