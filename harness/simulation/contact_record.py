@@ -54,6 +54,11 @@ class RecordedContacts:
     points: Array
     frictions: Array
 
+    @property
+    def values(self) -> tuple[Array, ...]:
+        """All but the counts, in order."""
+        return self.geoms, self.forces, self.normals, self.points, self.frictions
+
 
 class ContactRecord:
     """The contacts of consecutive samples, and sums of them for each pair of bodies.
@@ -125,8 +130,7 @@ class ContactRecord:
         while end > len(self._forces):
             self._grow()
         self._sleep = b""
-        taken = (part.geoms, part.forces, part.normals, part.points, part.frictions)
-        for values, more in zip(self._values, taken, strict=True):
+        for values, more in zip(self._values, part.values, strict=True):
             values[begin:end] = more
 
     def _find_asleep(self, row: int) -> None:
@@ -137,9 +141,8 @@ class ContactRecord:
         trees = model.body_treeid[model.geom_bodyid]  # -1, the last, for a static body
         before = self.part(max(0, row - 1), row)
         chosen = is_asleep[trees[before.geoms]].any(axis=1)
-        values = (before.geoms, before.forces, before.normals, before.points, before.frictions)
         self._unresolved.asleep = RecordedContacts(
-            chosen.sum(keepdims=True), *(each[chosen] for each in values)
+            chosen.sum(keepdims=True), *(values[chosen] for values in before.values)
         )
 
     @property
@@ -324,7 +327,9 @@ class _Unresolved:
         self._fields = np.dtype([])
         self._contacts = np.empty((0, 0))
         self._forces = np.empty(8 * MOST_UNRESOLVED)
-        self.asleep = RecordedContacts(*(np.empty(0) for _ in range(6)))
+        self.asleep = RecordedContacts(
+            np.empty(0, dtype=np.int64), *(np.empty(0) for _ in range(5))
+        )
         self._clear()
 
     def _clear(self) -> None:
@@ -383,18 +388,19 @@ class _Unresolved:
         if not self._samples:
             return
         counts, rows = np.array(self._samples, dtype=np.int64).T
-        asleep = self.asleep
-        computed, size = slice(None), len(asleep.forces)
-        if size:  # they follow the computed ones of each sample
-            ends = np.cumsum(counts + size)
-            repeated = ends[:, None] - np.arange(size, 0, -1)
-            geoms[repeated], points[repeated] = asleep.geoms, asleep.points
-            normals[repeated], frictions[repeated] = asleep.normals, asleep.frictions
-            forces[repeated] = asleep.forces
-            computed = np.delete(np.arange(len(forces)), repeated)
+        arrays = geoms, forces, normals, points, frictions
         if not self._count:
+            for values, asleep in zip(arrays, self.asleep.values, strict=True):
+                values.reshape(len(counts), *asleep.shape)[:] = asleep
             self._clear()
             return
+        computed: slice | Array = slice(None)
+        if size := len(self.asleep.forces):  # they follow the computed ones of each sample
+            following = np.cumsum(counts + size)[:, None] - np.arange(size, 0, -1)
+            for values, asleep in zip(arrays, self.asleep.values, strict=True):
+                values[following] = asleep
+            computed = np.ones(len(forces), dtype=bool)
+            computed[following] = False
         contacts = self._contacts[: self._count].view(self._fields)[:, 0]
         axes = np.ascontiguousarray(contacts["frame"].T)  # (9, C)
         addresses = contacts["efc_address"].astype(np.int64)

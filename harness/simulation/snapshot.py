@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from harness.core.types import FloatArray
 from harness.ports.joint_control import JointController

@@ -43,9 +43,9 @@ class StepState:
     """All that the next step of a model follows from, besides its controls.
 
     Attributes:
-        integration: MuJoCo's integration state.
-        arrays: Which trees, bodies and degrees of freedom are asleep, in the order of `_ARRAYS`.
-        counts: Numbers of those awake, in the order of `_COUNTS`.
+        integration: The positions, velocities and warm start that MuJoCo integrates.
+        arrays: The trees, bodies and degrees of freedom that are asleep, as `_ARRAYS` lists them.
+        counts: The numbers of those that are awake, as `_COUNTS` lists them.
     """
 
     integration: FloatArray

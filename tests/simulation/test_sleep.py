@@ -1,4 +1,6 @@
-"""Objects at rest fall asleep in MuJoCo: nothing that is recorded or that follows may depend on it."""
+"""Objects at rest fall asleep in MuJoCo; what is recorded, and what follows, stays the same."""
+
+# pyright: reportAttributeAccessIssue=false
 
 from dataclasses import replace
 
@@ -16,7 +18,7 @@ SLOPE = np.radians(20)
 
 
 def a_stack():
-    """A box on a box on a board, beside a cylinder, away from the gripper at the origin."""
+    """A box on a box on a board, with a cylinder next to them, away from the gripper."""
     return (
         a_box("board", (0.6, 0.6, 0.02), (0.6, 0, 0.06), friction=0.6),
         a_box("lower", (0.06, 0.06, 0.06), (0.6, 0, 0.1), mass=0.2),
@@ -196,5 +198,7 @@ def test_mujoco_computes_no_contacts_of_what_is_asleep(gripper_over_table):
     data = mujoco.MjData(physics.model)
     for _ in range(2000):
         mujoco.mj_step(physics.model, data)
-    bodies = {physics.body_names[body] for body in physics.model.geom_bodyid[data.contact.geom].flat}
+    bodies = {
+        physics.body_names[body] for body in physics.model.geom_bodyid[data.contact.geom].flat
+    }
     assert not bodies & {"lower", "upper", "cylinder"}
