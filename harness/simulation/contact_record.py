@@ -338,22 +338,24 @@ class _Unresolved:
 
     def keep(self, count: int) -> bool:
         """Copy all `count` contacts of the current state; False where others leave no room."""
+        if len(self._samples) == MOST_UNRESOLVED:
+            return False
+        if not count:
+            self._samples.append((0, 0))
+            return True
         forces = self._data.efc_force
         begin, row = self._count, self._rows
         end, last = begin + count, row + len(forces)
         if count > len(self._memory[0]):
             self._find_memory(count)
-        room = len(self._contacts), len(self._forces), MOST_UNRESOLVED
-        if self._samples and (end > room[0] or last > room[1] or len(self._samples) == room[2]):
-            return False
-        if end > len(self._contacts):
+        if end > len(self._contacts) or last > len(self._forces):
+            if self._samples:
+                return False
             self._contacts = np.empty((max(end, MOST_UNRESOLVED), self._fields.itemsize // 8))
-        if last > len(self._forces):
-            self._forces = np.empty(last)
-        if count:
-            head, tail = self._memory
-            self._contacts[begin:end, : head.shape[1]] = head[:count]
-            self._contacts[begin:end, head.shape[1] :] = tail[:count]
+            self._forces = np.empty(max(last, len(self._forces)))
+        head, tail = self._memory
+        self._contacts[begin:end, : head.shape[1]] = head[:count]
+        self._contacts[begin:end, head.shape[1] :] = tail[:count]
         self._forces[row:last] = forces
         self._samples.append((count, row))
         self._count, self._rows = end, last
