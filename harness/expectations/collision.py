@@ -14,6 +14,7 @@ from harness.assertions.contacts import (
     bodies,
     could_touch,
     pairs_of,
+    sample_time,
     unseen_contacts,
 )
 from harness.assertions.excused_force import SPAN
@@ -308,7 +309,7 @@ def _collided(window: Window, forces: dict[Pair, FloatArray]) -> MarginSignal:
             spans = episodes(forces[pair] > 0)
             started = window.time(spans[0][0])
             largest = float(forces[pair].max())
-            lasted = sum(window.time(stop - 1) - window.time(start) for start, stop in spans)
+            lasted = sum(stop - start for start, stop in spans) * sample_time(window.run)
             in_all = " in all" if len(spans) > 1 else ""
             names = f"{pair[0]} and {pair[1]}"
             why = why_not_excused(window.run, pair)

@@ -31,10 +31,10 @@ def test_a_link_that_hits_a_wall_is_reported_with_pair_force_first_time_and_dura
     assert answer.status == "failed"
     assert (answer.margin, answer.unit, answer.time) == (-12.0, "N", pytest.approx(0.3))
     assert answer.reason == (
-        "arm_link and wall collide from t=0.300 s for 0.19 s in all, with up to 12.0 N"
+        "arm_link and wall collide from t=0.300 s for 0.21 s in all, with up to 12.0 N"
     )
     once = verdict(touching("arm_link", "wall", (30, 41), value=12.0), NEVER)
-    assert once.reason == "arm_link and wall collide from t=0.300 s for 0.1 s, with up to 12.0 N"
+    assert once.reason == "arm_link and wall collide from t=0.300 s for 0.11 s, with up to 12.0 N"
     measure = answer.measures[0]
     assert (measure.detail, measure.limit, measure.comparison) == ("arm_link and wall", 0.0, "<=")
     assert verdict(run, Collision(between=("robot", "wall"))).status == "passed"

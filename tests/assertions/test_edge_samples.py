@@ -149,8 +149,8 @@ def test_of_six_collisions_the_first_two_are_described_and_four_are_measured():
     answer = verdict(hitting(), Never(predicate=Collision()))
     assert (answer.status, answer.margin, answer.time) == ("failed", -6.0, pytest.approx(0.1))
     assert answer.reason == (
-        "arm_link and wall0 collide from t=0.100 s for 0.01 s, with up to 1.0 N; arm_link and wall1"
-        " collide from t=0.200 s for 0.01 s, with up to 2.0 N; and 4 more pairs"
+        "arm_link and wall0 collide from t=0.100 s for 0.02 s, with up to 1.0 N; arm_link and wall1"
+        " collide from t=0.200 s for 0.02 s, with up to 2.0 N; and 4 more pairs"
     )
     assert [each.value for each in answer.measures] == [1.0, 2.0, 3.0, 4.0]
     assert [each.time for each in answer.measures] == pytest.approx([0.1, 0.2, 0.3, 0.4])

@@ -222,7 +222,7 @@ def test_what_the_hand_holds_may_leave_and_be_put_down_but_hits_nothing_on_its_w
 def test_a_contact_that_nothing_excuses_is_not_explained_by_one_that_is_excused():
     """It leaves the shelf, which presses it with 1 N of 3 N, and hits it again."""
     reason = verdict(carried((40, 60), (80, 85)), NEVER).reason
-    assert reason == "box and shelf collide from t=0.800 s for 0.04 s, with up to 1.0 N"
+    assert reason == "box and shelf collide from t=0.800 s for 0.05 s, with up to 1.0 N"
 
 
 def test_what_is_gripped_again_is_in_the_hand_again():
