@@ -16,6 +16,7 @@ from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.compiled import Certify
 from harness.planning.collision.convex_tree import ConvexTree
+from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
 
@@ -33,7 +34,7 @@ MOST_WAITING, SCRATCH = 1024, 16
 Array = np.ndarray[Any, Any]
 Arrays = tuple[Array, ...]
 
-VARYING = 3
+VARYING = 4
 """Number of arrays that differ from motion to motion; they are the first ones of the table."""
 
 
@@ -60,25 +61,25 @@ class MotionArrays:
             self._enter(row, array)
 
     def certify(
-        self, check: Certify, states: FloatArray, count: int, *, straight: bool
+        self, check: Certify, motion: SampledMotion, low: int, high: int
     ) -> tuple[int, IntArray]:
-        """Classify the states of a motion.
+        """Classify the states of a motion from `low` to `high`.
 
         Args:
             check: The compiled function `certify`.
-            states: Group positions at each state, shape (count, dof); of a straight motion both its
-                ends, shape (2, dof), the first of which is not one of the states.
-            count: The number of states.
-            straight: Whether the motion is straight.
+            motion: The motion of the group.
+            low: The first state.
+            high: The last state.
 
         Returns:
             A blocked state or -1, and the undecided states.
         """
-        values = np.ascontiguousarray(self._rest + states @ self._drive.T)
+        count = high - low + 1
+        corners = np.ascontiguousarray(self._rest + motion.corners @ self._drive.T)
         queue, found = np.empty((2 * count + 4, 4), dtype=np.int64), np.empty(count, dtype=np.int64)
-        for row, array in enumerate((values, queue, found)):
+        for row, array in enumerate((corners, motion.places, queue, found)):
             self._enter(row, array)
-        undecided = check(self.table.ctypes.data, count, straight)
+        undecided = check(self.table.ctypes.data, low, high)
         return (-1, found[:undecided]) if undecided >= 0 else (-1 - undecided, found[:0])
 
     def _enter(self, row: int, array: Array) -> None:
