@@ -91,9 +91,11 @@ ROBOTS = {
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-@pytest.mark.parametrize("padding", [0.0, 0.01])
+@pytest.mark.parametrize(
+    ("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 8000)]
+)
 def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
-    name, padding, stages, tmp_path
+    name, padding, resolution, stages, tmp_path
 ):
     make, group = ROBOTS[name]
     cell = crowded(make(), tmp_path)
@@ -114,7 +116,7 @@ def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
         for when in ("never", "always"):
             stages(when)
             before = checker.checks
-            verdicts.append(checker.edge_free(first, second, 1 / 40))
+            verdicts.append(checker.edge_free(first, second, resolution))
             counts.append(checker.checks - before)
         assert verdicts[0] == verdicts[1]
         assert counts[0] == counts[1]

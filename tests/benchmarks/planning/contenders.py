@@ -26,9 +26,6 @@ RANGE = 1.5  # [rad]
 PATIENCE = 5.0
 """Processor time after which the other planners are stopped, to plan and to shorten [s]."""
 
-JUDGED = 1 / 512
-"""Joint-space distance between the states at which final paths are judged [rad]."""
-
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -128,17 +125,3 @@ def _state(space: ob.RealVectorStateSpace, positions: FloatArray) -> ob.State:
     for joint, value in enumerate(positions):
         state[joint] = float(value)
     return state
-
-
-def is_free(problem: Problem, waypoints: FloatArray) -> bool:
-    """Whether a path keeps its margins at `JUDGED`, by Coal alone.
-
-    States are taken evenly from the start on, whatever the waypoints: others than those that the
-    planner checked edge by edge.
-    """
-    free = free_by_broad_phase(problem)
-    lengths = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
-    knots = np.concatenate([[0.0], np.cumsum(lengths)])
-    places = np.append(np.arange(0.0, knots[-1], JUDGED), knots[-1])
-    states = np.column_stack([np.interp(places, knots, column) for column in waypoints.T])
-    return all(free(state) for state in (*states, *waypoints))
