@@ -12,7 +12,7 @@ import pinocchio as pin
 from harness.core.types import FloatArray
 from tests.benchmarks.planning.problems import Problem, free_by_margins
 
-JUDGED = 1 / 65536
+JUDGED = 1 / 131072
 """Joint-space distance between the states at which final paths are judged [rad]."""
 
 WIDEST = 1 / 16
