@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
@@ -36,7 +37,7 @@ TOUCHING = 0.0001
 MARGIN_SLACK = 0.0005
 """How much nearer a pair may get that is below its margin at the start [m]."""
 
-CERTIFIED_REACHES = tuple(2.0**exponent for exponent in range(-15, -4))
+CERTIFIED_REACHES = tuple(2.0**exponent for exponent in range(-12, -4))
 """Joint-space distances up to which Coal certifies states around the one that it checks [rad]."""
 
 
@@ -114,8 +115,8 @@ class MotionChecker:
             resolution: The largest joint-space distance between checked states [rad].
         """
         length = self.space.distance(first, second)
-        count = max(1.0, np.ceil(length / resolution))
-        places = np.array([-1.0, count - 1.0])
+        count = max(1, math.ceil(length / resolution))
+        places = np.array([-1.0, count - 1])
         motion = SampledMotion(np.array([first, second]), places, length / count)
         return self._is_free(motion)
 
@@ -154,8 +155,10 @@ class MotionChecker:
         if certify is None:
             return self._blocked_by_coal(motion, low, high)
         blocked, undecided = self._arrays.certify(certify, motion, low, high)
-        if blocked >= 0 or not len(undecided):
-            return blocked if blocked >= 0 else None
+        if blocked >= 0:
+            return blocked
+        if not len(undecided):
+            return None
         states = np.sort(undecided)
         stretches = np.split(states, np.flatnonzero(np.diff(states) > 1) + 1)
         found = (self._blocked_by_coal(motion, int(each[0]), int(each[-1])) for each in stretches)
@@ -170,11 +173,10 @@ class MotionChecker:
                 continue
             middle = (low + high) // 2
             state = motion.state(middle)
-            if low < high:
-                reach = (high - middle) * motion.spacing
-                level = next((each for each in CERTIFIED_REACHES if reach <= each), None)
-                if level is not None and self._exact(state, level):
-                    continue
+            reach = (high - middle) * motion.spacing
+            level = next((each for each in CERTIFIED_REACHES if each / 2 < reach <= each), None)
+            if level is not None and self._exact(state, level):
+                continue
             if not self._exact(state):
                 return middle
             waiting.extend([(low, middle - 1), (middle + 1, high)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ COUNTED_RESOLUTION = 1 / 512
 most states are certified by others [rad]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class SampledMotion:
     """States along a polyline, evenly spaced from corner to corner; its start is not one of them.
 
@@ -51,7 +52,9 @@ class SampledMotion:
     def counted(self) -> int:
         """The number of states; at most one every `COUNTED_RESOLUTION`."""
         count = self.last + 1
-        return max(1, min(count, int(np.ceil(count * self.spacing / COUNTED_RESOLUTION))))
+        if self.spacing >= COUNTED_RESOLUTION:
+            return count
+        return max(1, min(count, math.ceil(count * self.spacing / COUNTED_RESOLUTION)))
 
     def row(self, state: int) -> float:
         """Where a state is: 1.25 is a quarter of the way from the second corner to the third."""

@@ -22,6 +22,7 @@ from harness.planning.collision.kernel.motion_bound import (
     relative_motion,
     relative_transform,
 )
+from harness.planning.collision.kernel.results import FULL
 from harness.planning.collision.kernel.tree_distance import (
     BLOCKED,
     FREE,
@@ -80,7 +81,7 @@ def certify(table, low, high):
         high: The last state.
 
     Returns:
-        The number of undecided states; -1 - i where the state i is blocked.
+        The number of undecided states; -1 - i where the state i is blocked; `FULL`.
     """
     corners, places = floats_2d(table, 0), floats_1d(table, 1)
     queue, found = integers_2d(table, 2), integers_1d(table, 3)
@@ -231,6 +232,8 @@ def certify(table, low, high):
             undecided += 1
         if failed == 0 or high == low:
             continue
+        if tail + 2 > queue.shape[0]:
+            return FULL
         first, last = begin, end
         if share:
             first, last = kept, kept + failed
