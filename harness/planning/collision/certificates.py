@@ -76,8 +76,8 @@ class MotionArrays:
         Args:
             check: The compiled function `certify`.
             motion: The motion of the group.
-            low: The first state.
-            high: The last state.
+            low: The number of the first state to classify.
+            high: The number of the last state to classify.
 
         Returns:
             A blocked state or -1, and the undecided states.

@@ -21,9 +21,9 @@ FINAL_RESOLUTION = 1 / 128
 """Joint-space distance between states checked on the path that is found and shortened [rad]."""
 
 VERIFIED_RESOLUTION = 1 / 65536
-"""Between states checked on the trajectory that is commanded. Most of them are certified by their
-neighbours; at 1/1024 rad, 9 of 1,120 paths on meshes were still up to 0.04 mm deep in between
-[rad]."""
+"""Between states checked on the trajectory that is commanded; most are certified by their
+neighbours. At 1/384 rad, 8 of 1,680 paths came up to 0.1 mm nearer than their padding in between;
+at 1/1024 rad, 14 of 1,680 on meshes without padding were up to 0.04 mm deep [rad]."""
 
 END_TOLERANCE = 1e-6
 """How far a trajectory may start or end from where it should [rad or m]."""

@@ -77,8 +77,8 @@ def certify(table, low, high):
             the joints that move them relative to each other, as ranges of the next array, shape
             (R, 6); moving joints, tip first, shape (J,);
             and the working memory of `certificates._working_memory`.
-        low: The first state.
-        high: The last state.
+        low: The number of the first state to classify.
+        high: The number of the last state to classify.
 
     Returns:
         The number of undecided states; -1 - i where the state i is blocked; `FULL`.
