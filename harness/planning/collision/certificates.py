@@ -41,7 +41,7 @@ VARYING = 4
 INTERVALS = 1024
 """Number of intervals of a motion for which there is memory at first."""
 
-NONE: IntArray = np.empty(0, dtype=np.int64)
+NONE: IntArray = np.empty((0, 2), dtype=np.int64)
 
 
 class MotionArrays:
@@ -80,7 +80,7 @@ class MotionArrays:
             high: The number of the last state to classify.
 
         Returns:
-            A blocked state or -1, and the undecided states.
+            A blocked state or -1, and the first and last states of undecided stretches, (n, 2).
         """
         corners = np.ascontiguousarray(self._rest + motion.corners @ self._drive.T)
         self._enter(0, corners)
@@ -94,7 +94,7 @@ class MotionArrays:
     def _make_room(self, rows: int) -> None:
         """Provide the memory for a number of intervals."""
         self._queue = np.empty((rows, 4), dtype=np.int64)
-        self._found = np.empty(rows, dtype=np.int64)
+        self._found = np.empty((rows, 2), dtype=np.int64)
         self._enter(2, self._queue)
         self._enter(3, self._found)
 

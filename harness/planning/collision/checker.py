@@ -159,9 +159,12 @@ class MotionChecker:
             return blocked
         if not len(undecided):
             return None
-        states = np.sort(undecided)
-        stretches = np.split(states, np.flatnonzero(np.diff(states) > 1) + 1)
-        found = (self._blocked_by_coal(motion, int(each[0]), int(each[-1])) for each in stretches)
+        first, last = undecided[np.argsort(undecided[:, 0])].T
+        starts = np.append(True, first[1:] > last[:-1] + 1)
+        stretches = zip(
+            first[starts].tolist(), last[np.append(starts[1:], True)].tolist(), strict=True
+        )
+        found = (self._blocked_by_coal(motion, *stretch) for stretch in stretches)
         return next((state for state in found if state is not None), None)
 
     def _blocked_by_coal(self, motion: SampledMotion, low: int, high: int) -> int | None:

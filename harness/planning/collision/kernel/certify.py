@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from harness.planning.collision.kernel.compiling import (
     compiled,
     floats_1d,
@@ -30,6 +32,10 @@ from harness.planning.collision.kernel.tree_distance import (
     box_gap,
     compare_trees,
 )
+
+CONTACT_STATES = 64
+"""Number of states up to which a stretch is left undecided as a whole, where all pairs that are not
+certified may be in contact: how deep they are is not measured here."""
 
 
 @compiled
@@ -66,7 +72,8 @@ def certify(table, low, high):
     Args:
         table: The address of `MotionArrays.table`. Its arrays are: the positions of the moving
             joints at the corners of a polyline, shape (C, M); where the corners are, in states,
-            shape (C,); working memory; the undecided states that are found, shape (states,);
+            shape (C,); working memory; the undecided stretches that are found, their first and last
+            state, shape (stretches, 2);
             the moving joint before each moving joint, or -1, shape (M,); each joint's pose on its
             parent at 0 (12), axis (3), 1 if prismatic, shape (M, 16); the poses of the bodies on
             their joints or in the world, shape (B, 12); the joint or -1 and the root node of each
@@ -81,10 +88,10 @@ def certify(table, low, high):
         high: The number of the last state to classify.
 
     Returns:
-        The number of undecided states; -1 - i where the state i is blocked; `FULL`.
+        The number of undecided stretches; -1 - i where the state i is blocked; `FULL`.
     """
     corners, places = floats_2d(table, 0), floats_1d(table, 1)
-    queue, found = integers_2d(table, 2), integers_1d(table, 3)
+    queue, found = integers_2d(table, 2), integers_2d(table, 3)
     parent, chain = integers_1d(table, 4), floats_2d(table, 5)
     body_poses, bodies, boxes = floats_2d(table, 6), integers_2d(table, 7), floats_2d(table, 8)
     spheres, nodes, convexes = floats_2d(table, 9), integers_2d(table, 10), integers_2d(table, 11)
@@ -138,7 +145,7 @@ def certify(table, low, high):
         kept = room
         share = room + (end - begin) <= left.shape[0]
         failed = 0
-        is_open = False
+        is_open, is_contact = False, True
         for place in range(begin, end):
             check = left[place]
             key = checks[check, 2]
@@ -227,11 +234,16 @@ def certify(table, low, high):
                 left[room + failed] = check
             failed += 1
             is_open |= answer == UNDECIDED
-        if is_open:
-            found[undecided] = middle
-            undecided += 1
-        if failed == 0 or high == low:
+            is_contact &= blocked == -np.inf
+        if failed == 0 or (high == low and not is_open):
             continue
+        if high == low or (is_contact and high - low < CONTACT_STATES):
+            found[undecided, 0], found[undecided, 1] = low, high
+            undecided += 1
+            continue
+        if is_open:
+            found[undecided, 0], found[undecided, 1] = middle, middle
+            undecided += 1
         if tail + 2 > queue.shape[0]:
             return FULL
         first, last = begin, end
