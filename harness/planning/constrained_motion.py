@@ -19,7 +19,11 @@ from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
-from harness.planning.verification.verify import FINAL_RESOLUTION, Defect
+from harness.planning.verification.verify import (
+    FINAL_RESOLUTION,
+    VERIFIED_RESOLUTION,
+    Defect,
+)
 from harness.ports.motion_planning import MotionPlan
 from harness.recording.motion_failures import SearchFailure
 from harness.recording.plan_statistics import SearchStatistics
@@ -29,7 +33,7 @@ PLANNER_ID = "RRTConnect, projected"
 LONGEST_STEP = 0.1
 """Largest distance between adjacent states of a tree [rad]; smaller for narrow tolerances."""
 
-RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, FINAL_RESOLUTION / 4)
+RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, VERIFIED_RESOLUTION)
 """Distances between checked states during a search [rad]; finer after a path has failed."""
 
 _LEAST_STEP = 0.01

@@ -22,11 +22,11 @@ from harness.planning.task import PlanningTask
 from harness.planning.timing.timing import TimingError, time_blended, time_stopping, time_straight
 from harness.planning.verification.verify import (
     FINAL_RESOLUTION,
+    VERIFIED_RESOLUTION,
     Defect,
     distances_to_path,
     find_departure,
     path_collision,
-    verified_resolution,
 )
 from harness.ports.motion_planning import MotionPlan, PlanningOptions
 from harness.ports.path_planning import PathPlanner
@@ -144,7 +144,7 @@ def _first_verified_motion(
     """
     defect: Defect | None = None
     for found in verified_paths(task.checker, task.start, goals, options, effort):
-        for resolution in (FINAL_RESOLUTION, verified_resolution(task.checker.padding)):
+        for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
             short = shorten(found.waypoints, task.checker, resolution, found.seed)
             timed = _timed(task, short)
             if isinstance(timed, JointTrajectory):
@@ -219,9 +219,10 @@ def _search_failure(
         f"{options.max_state_checks} state checks"
     )
     straight_way = None
-    blocked = task.checker.first_block(task.start, goals[0], FINAL_RESOLUTION)
+    straight = np.array([task.start, goals[0]])
+    blocked = task.checker.first_block(straight, FINAL_RESOLUTION)
     if blocked is not None:
-        share, touches = blocked
+        share, _, touches = blocked
         straight_way = BlockedWay(share, touch_records(touches))
         message += (
             f"; the straight path is blocked after {100 * share:.0f} % by "

@@ -1,6 +1,7 @@
 """The lesson's robots and objects, made by hand for the planning tests."""
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from harness.planning.backend import make_planning
 from harness.ports.goals import PoseGoal
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
+from tests.second_opinion.runs import SRDF, URDF
 
 GRASP_QUAT_WXYZ = (0.0, 0.924, -0.383, 0.0)
 ARM = "ur_manipulator"
@@ -93,3 +95,14 @@ def grasp_goal(x, y, z, **tolerances) -> PoseGoal:
     return PoseGoal(
         TCP, at(0, 0, 1.02) @ SE3.from_xyz_quat((x, y, z), GRASP_QUAT_WXYZ), **tolerances
     )
+
+
+def gantry_cell(folder: Path) -> Cell:
+    """A gantry of prismatic joints with two fingers, its files in a folder."""
+    files = {"urdf": folder / "gantry.urdf", "srdf": folder / "gantry.srdf"}
+    files["urdf"].write_text(URDF)
+    files["srdf"].write_text(SRDF)
+    spec = RobotSpec.model_validate({name: str(file) for name, file in files.items()})
+    cell = Cell(load_robot(spec), with_tables=False)
+    cell.state = cell.with_arm([-0.2, 0.3])
+    return cell

@@ -14,6 +14,7 @@ from harness.planning.collision import compiled
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.collision.compiled import use_compiled
 from harness.planning.collision.rigid_shapes import RigidShapes
+from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
@@ -90,9 +91,11 @@ ROBOTS = {
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-@pytest.mark.parametrize("padding", [0.0, 0.01])
+@pytest.mark.parametrize(
+    ("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 8000)]
+)
 def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
-    name, padding, stages, tmp_path
+    name, padding, resolution, stages, tmp_path
 ):
     make, group = ROBOTS[name]
     cell = crowded(make(), tmp_path)
@@ -113,7 +116,7 @@ def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
         for when in ("never", "always"):
             stages(when)
             before = checker.checks
-            verdicts.append(checker.edge_free(first, second, 1 / 40))
+            verdicts.append(checker.edge_free(first, second, resolution))
             counts.append(checker.checks - before)
         assert verdicts[0] == verdicts[1]
         assert counts[0] == counts[1]
@@ -129,16 +132,18 @@ def test_a_bent_motion_is_judged_alike_and_its_first_blocked_state_is_found(stag
     found = []
     for _ in range(30):
         bends = np.vstack([start, start + generator.normal(0, 0.5, (2, 6))])
-        shares = np.linspace(0, 2, 181)
-        states = np.column_stack([np.interp(shares, [0, 1, 2], column) for column in bends.T])
-        answers = []
+        motion = SampledMotion.of(bends, space.metric, 1 / 90)
+        each = [place for place in range(motion.last + 1) if checker.touches(motion.state(place))]
         for when in ("never", "always"):
             stages(when)
-            answers.append(checker.first_blocked(states))
-        assert answers[0] == answers[1]
-        found.append(answers[0])
-    assert None in found
-    assert any(index is not None for index in found)
+            blocked = checker.first_block(bends, 1 / 90)
+            assert checker.path_free(bends, 1 / 90) == (blocked is None) == (not each)
+            if blocked is not None:
+                row, state, _ = blocked
+                assert row == motion.row(each[0])
+                assert np.array_equal(state, motion.state(each[0]))
+        found.append(bool(each))
+    assert {*found} == {True, False}
 
 
 @pytest.mark.parametrize("when", ["never", "always"])
@@ -229,7 +234,10 @@ def test_whole_motions_are_as_free_as_their_states(model, kind, stages):
             verdicts.append(all(each))
             stages("always")
             assert checker.edge_free(start, states[-1], 1 / 512) == verdicts[-1]
-            assert checker.first_blocked(states) == (None if verdicts[-1] else each.index(False))
+            blocked = checker.first_block(np.array([start, states[-1]]), 1 / 512)
+            assert (blocked is None) == verdicts[-1]
+            if blocked is not None:
+                assert blocked[0] == (each.index(False) + 1) / len(states)
     assert 0.1 < np.mean(verdicts) < 0.98 or kind == "gripper"
 
 
@@ -251,9 +259,8 @@ def test_a_motion_that_only_just_touches_on_its_way_is_not_free(model, stages):
             middle = 0.5 * (free + blocked)
             free, blocked = (middle, blocked) if checker.state_free(middle) else (free, middle)
         back = blocked + (start - blocked) * generator.uniform(0.1, 0.9)
-        states = np.concatenate([line(start, blocked, space), line(blocked, back, space)])
         seen += 1
-        assert not checker.states_free(states)
+        assert not checker.path_free(np.array([start, blocked, back]), 1 / 512)
 
 
 def test_states_at_20_micrometres_from_their_margin_are_judged_by_the_distance(stages, tmp_path):

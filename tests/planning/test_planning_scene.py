@@ -5,7 +5,7 @@ import pytest
 
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
-from harness.planning.collision.checker import MotionChecker, coarse_to_fine
+from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal
 from tests.planning.lesson import ARM, TCP, Cell, at, thing, ur
@@ -172,8 +172,3 @@ def test_free_states_are_those_without_touches(cell):
     for _ in range(100):
         positions = rng.uniform(np.maximum(space.lower, -3), np.minimum(space.upper, 3))
         assert checker.state_free(positions) == (not checker.touches(positions))
-
-
-def test_an_edge_is_checked_whole():
-    for count in (1, 2, 3, 7, 8, 33):
-        assert sorted(coarse_to_fine(count)) == list(range(count))

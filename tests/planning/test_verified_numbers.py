@@ -11,11 +11,11 @@ from harness.core.trajectory import JointTrajectory
 from harness.planning.timing.limits import Limits
 from harness.planning.verification.verify import (
     FINAL_RESOLUTION,
+    VERIFIED_RESOLUTION,
     distances_to_path,
     find_defect,
     find_departure,
     path_collision,
-    verified_resolution,
 )
 from harness.recording.motion_failures import ConstraintFailure
 
@@ -34,23 +34,23 @@ class Checker:
     """A checker whose states are blocked where the first joint is beyond a value."""
 
     beyond: float = np.inf
-    padding: float = 0.001
     space: SimpleNamespace = field(default_factory=lambda: SPACE)
-    states: object = None
+    verified: object = None
 
-    def first_blocked(self, states):
-        self.states = states
-        blocked = np.flatnonzero(states[:, 0] > self.beyond)
-        return int(blocked[0]) if len(blocked) else None
+    def path_free(self, path, resolution):
+        assert resolution == VERIFIED_RESOLUTION
+        self.verified = path
+        return bool(np.all(path[:, 0] <= self.beyond))
 
     def touches(self, _):
         return []
 
-    def first_block(self, first, second, resolution):
+    def first_block(self, path, resolution):
         assert resolution == FINAL_RESOLUTION
-        if second[0] <= self.beyond:
-            return None
-        return (self.beyond - first[0]) / (second[0] - first[0]), []
+        for row in np.flatnonzero(path[:, 0] > self.beyond)[:1]:
+            share = (self.beyond - path[row - 1, 0]) / (path[row, 0] - path[row - 1, 0])
+            return row - 1 + share, path[row - 1] + share * (path[row] - path[row - 1]), []
+        return None
 
 
 def moving():
@@ -152,24 +152,11 @@ def test_jerks_are_those_between_samples():
     assert defect(limited, **slower) is None
 
 
-def test_states_are_checked_at_least_as_near_as_the_resolution_and_both_ends():
-    """The path is 0.5 rad long: 192 steps of a 384th, or 512 of a 1024th without padding."""
-    for padding, count in ((0.001, 193), (0.000999, 513), (0.0, 513), (0.01, 193)):
-        checker = Checker(padding=padding)
-        assert defect(checker=checker) is None
-        assert len(checker.states) == count
-        assert checker.states[[0, -1]].tolist() == [START.tolist(), END.tolist()]
-        steps = np.linalg.norm(np.diff(checker.states, axis=0) * SPACE.metric, axis=1)
-        assert steps.max() <= verified_resolution(padding) * (1 + 1e-9)
-        assert steps == pytest.approx(steps[0])
-    weighed = Checker()
-    assert defect(checker=weighed, positions=((5, 1), 1.2)) is None
-    assert len(weighed.states) > 193 + 2 * 3 * 0.15 / verified_resolution(0.001)
-    there = find_defect(
-        replace(moving(), positions=np.tile(START, (N, 1))), weighed, START, START, LIMITS
-    )
-    assert there is None
-    assert weighed.states.tolist() == [START.tolist()] * 2
+def test_the_commanded_samples_are_verified_as_they_are():
+    checker = Checker()
+    assert defect(checker=checker, positions=((5, 1), 1.2)) is None
+    assert checker.verified.shape == (N, 2)
+    assert checker.verified[5].tolist() == [0.25, 1.2]
 
 
 def test_what_is_in_the_way_is_found_at_its_time_even_after_a_rest():

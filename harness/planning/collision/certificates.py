@@ -16,6 +16,8 @@ from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.compiled import Certify
 from harness.planning.collision.convex_tree import ConvexTree
+from harness.planning.collision.kernel.results import FULL
+from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
 
@@ -33,8 +35,13 @@ MOST_WAITING, SCRATCH = 1024, 16
 Array = np.ndarray[Any, Any]
 Arrays = tuple[Array, ...]
 
-VARYING = 3
+VARYING = 4
 """Number of arrays that differ from motion to motion; they are the first ones of the table."""
+
+INTERVALS = 1024
+"""Number of intervals of a motion for which there is memory at first."""
+
+NONE: IntArray = np.empty((0, 2), dtype=np.int64)
 
 
 class MotionArrays:
@@ -56,30 +63,40 @@ class MotionArrays:
         self._rest, self._drive = rest, drive
         self._arrays: list[Array] = [np.ascontiguousarray(array) for array in arrays]
         self.table = np.ones((VARYING + len(arrays), 4), dtype=np.int64)
+        self._address = int(self.table.ctypes.data)
         for row, array in enumerate(self._arrays, start=VARYING):
             self._enter(row, array)
+        self._make_room(INTERVALS)
 
     def certify(
-        self, check: Certify, states: FloatArray, count: int, *, straight: bool
+        self, check: Certify, motion: SampledMotion, low: int, high: int
     ) -> tuple[int, IntArray]:
-        """Classify the states of a motion.
+        """Classify the states of a motion from `low` to `high`.
 
         Args:
             check: The compiled function `certify`.
-            states: Group positions at each state, shape (count, dof); of a straight motion both its
-                ends, shape (2, dof), the first of which is not one of the states.
-            count: The number of states.
-            straight: Whether the motion is straight.
+            motion: The motion of the group.
+            low: The number of the first state to classify.
+            high: The number of the last state to classify.
 
         Returns:
-            A blocked state or -1, and the undecided states.
+            A blocked state or -1, and the first and last states of undecided stretches, (n, 2).
         """
-        values = np.ascontiguousarray(self._rest + states @ self._drive.T)
-        queue, found = np.empty((2 * count + 4, 4), dtype=np.int64), np.empty(count, dtype=np.int64)
-        for row, array in enumerate((values, queue, found)):
-            self._enter(row, array)
-        undecided = check(self.table.ctypes.data, count, straight)
-        return (-1, found[:undecided]) if undecided >= 0 else (-1 - undecided, found[:0])
+        corners = np.ascontiguousarray(self._rest + motion.corners @ self._drive.T)
+        self._enter(0, corners)
+        self._enter(1, motion.places)
+        undecided = check(self._address, low, high)
+        while undecided == FULL:
+            self._make_room(4 * len(self._queue))
+            undecided = check(self._address, low, high)
+        return (-1, self._found[:undecided]) if undecided >= 0 else (-1 - undecided, NONE)
+
+    def _make_room(self, rows: int) -> None:
+        """Provide the memory for a number of intervals."""
+        self._queue = np.empty((rows, 4), dtype=np.int64)
+        self._found = np.empty((rows, 2), dtype=np.int64)
+        self._enter(2, self._queue)
+        self._enter(3, self._found)
 
     def _enter(self, row: int, array: Array) -> None:
         self.table[row, 0] = array.__array_interface__["data"][0]

@@ -4,10 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections import deque
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,10 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.approximation import approximation_note
-from harness.planning.collision.certificates import MotionArrays, motion_arrays
+from harness.planning.collision.certificates import ROUNDING, MotionArrays, motion_arrays
 from harness.planning.collision.compiled import compiled_check
+from harness.planning.collision.motion_rates import motion_rates
+from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.scene import Touch
@@ -34,6 +37,9 @@ TOUCHING = 0.0001
 MARGIN_SLACK = 0.0005
 """How much nearer a pair may get that is below its margin at the start [m]."""
 
+CERTIFIED_REACHES = tuple(2.0**exponent for exponent in range(-12, -4))
+"""Joint-space distances up to which Coal certifies states around the one that it checks [rad]."""
+
 
 class MotionChecker:
     """Answers whether a group's joint positions, and straight lines between them, are free.
@@ -43,13 +49,14 @@ class MotionChecker:
     grasps) keeps its start distance minus `MARGIN_SLACK` instead: it may separate and slide, but
     not penetrate deeper. A pair without contact at the start never gets into contact.
 
-    A motion is free when all its states at the requested spacing are free, and it counts as that
-    many states. The compiled check decides most of them at once, by conservative advancement on the
-    same shapes; Coal decides the others, and all while the compiled check is not loaded. Results,
-    counts and plans do not depend on which of them decides.
+    A motion is free when all its states at the requested spacing are free. Most of them are not
+    checked one by one: where every pair is farther apart than a stretch of the motion can bring it
+    nearer, the whole stretch is free (conservative advancement). The compiled check does so with
+    exact distances on the same shapes; Coal decides what is left, and everything while the compiled
+    check is not loaded. Results, counts and plans do not depend on which of them decides.
 
     Attributes:
-        checks: The number of states checked.
+        checks: The number of states checked, as `SampledMotion.counted` has it.
         lowered: The pairs with a lowered margin.
     """
 
@@ -70,6 +77,7 @@ class MotionChecker:
         self._robot = self._scene_model.robot.model
         self._data = self._robot.createData()
         self._margins = self._choose_margins(start)
+        self._managers: dict[float, tuple[Any, pin.GeometryData]] = {}
 
     def _choose_margins(self, start: FloatArray) -> FloatArray:
         margins = self._scene_model.margins(self.padding)
@@ -96,7 +104,7 @@ class MotionChecker:
 
     def state_free(self, positions: FloatArray) -> bool:
         """Whether every pair keeps its margin at group positions."""
-        return self.states_free(np.asarray(positions)[None])
+        return self.edge_free(positions, positions, 1.0)
 
     def edge_free(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
         """Whether the straight line between two positions is free; its start is not checked.
@@ -106,41 +114,75 @@ class MotionChecker:
             second: Group positions at the end.
             resolution: The largest joint-space distance between checked states [rad].
         """
-        count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
-        return self._blocked(np.array([first, second]), count, straight=True) is None
+        length = self.space.distance(first, second)
+        count = max(1, math.ceil(length / resolution))
+        places = np.array([-1.0, count - 1])
+        motion = SampledMotion(np.array([first, second]), places, length / count)
+        return self._is_free(motion)
 
-    def states_free(self, states: FloatArray) -> bool:
-        """Whether all states of a motion are free, shape (N, dof), densely sampled."""
-        return self._blocked(states, len(states), straight=False) is None
+    def path_free(self, path: FloatArray, resolution: float) -> bool:
+        """Whether a polyline is free, shape (N, dof); its start is not checked."""
+        return self._is_free(SampledMotion.of(path, self.space.metric, resolution))
 
-    def first_blocked(self, states: FloatArray) -> int | None:
-        """Index of the first state of a motion that is not free, shape (N, dof), or None."""
-        blocked = self._blocked(states, len(states), straight=False)
+    def first_block(
+        self, path: FloatArray, resolution: float
+    ) -> tuple[float, FloatArray, list[Touch]] | None:
+        """Where a polyline is blocked first, as `SampledMotion.row`; the state, its touches."""
+        motion = SampledMotion.of(path, self.space.metric, resolution)
+        self.checks += motion.counted
+        blocked = self._blocked(motion, 0, motion.last)
         if blocked is None:
             return None
-        earlier = enumerate(states[:blocked])
-        return next((index for index, state in earlier if not self._exact(state)), blocked)
+        low = 0
+        while low < blocked:
+            middle = (low + blocked) // 2
+            earlier = self._blocked(motion, low, middle)
+            low, blocked = (middle + 1, blocked) if earlier is None else (low, earlier)
+        state = motion.state(blocked)
+        return motion.row(blocked), state, self.touches(state)
 
-    def _blocked(self, states: FloatArray, count: int, *, straight: bool) -> int | None:
-        """A state of a motion that is not free, or None; the arguments of `MotionArrays.certify`.
+    def _is_free(self, motion: SampledMotion) -> bool:
+        self.checks += motion.counted
+        return self._blocked(motion, 0, motion.last) is None
 
-        The compiled check decides all states but those within `ROUNDING` of a margin. These, and
-        all states before it is loaded, are checked by Coal, coarse to fine.
+    def _blocked(self, motion: SampledMotion, low: int, high: int) -> int | None:
+        """A state of a motion from `low` to `high` that is not free, or None.
+
+        The compiled check decides all states but those within `ROUNDING` of a margin and those in
+        contact, which Coal checks.
         """
-        self.checks += count
-        open_states: Iterable[int] | None = None
-        certify = compiled_check(count)
-        if certify is not None:
-            blocked, open_states = self._arrays.certify(certify, states, count, straight=straight)
-            if blocked >= 0:
-                return blocked
-        for index in coarse_to_fine(count) if open_states is None else open_states:
-            if straight:
-                state = states[0] + (states[1] - states[0]) * ((index + 1) / count)
-            else:
-                state = states[index]
+        certify = compiled_check(min(high - low + 1, motion.counted))
+        if certify is None:
+            return self._blocked_by_coal(motion, low, high)
+        blocked, undecided = self._arrays.certify(certify, motion, low, high)
+        if blocked >= 0:
+            return blocked
+        if not len(undecided):
+            return None
+        first, last = undecided[np.argsort(undecided[:, 0])].T
+        starts = np.append(True, first[1:] > last[:-1] + 1)
+        stretches = zip(
+            first[starts].tolist(), last[np.append(starts[1:], True)].tolist(), strict=True
+        )
+        found = (self._blocked_by_coal(motion, *stretch) for stretch in stretches)
+        return next((state for state in found if state is not None), None)
+
+    def _blocked_by_coal(self, motion: SampledMotion, low: int, high: int) -> int | None:
+        """The same by Coal alone, with margins that are larger by bounds of the motion."""
+        waiting = deque([(high, high), (low, high - 1)])
+        while waiting:
+            low, high = waiting.popleft()
+            if low > high:
+                continue
+            middle = (low + high) // 2
+            state = motion.state(middle)
+            reach = (high - middle) * motion.spacing
+            level = next((each for each in CERTIFIED_REACHES if each / 2 < reach <= each), None)
+            if level is not None and self._exact(state, level):
+                continue
             if not self._exact(state):
-                return int(index)
+                return middle
+            waiting.extend([(low, middle - 1), (middle + 1, high)])
         return None
 
     @cached_property
@@ -148,51 +190,38 @@ class MotionChecker:
         return motion_arrays(self._scene_model, self.space, self._margins)
 
     @cached_property
-    def _manager(self) -> tuple[Any, pin.GeometryData]:
-        """Coal's broad phase with this checker's margins, and its data, to which it only refers."""
-        geometry = self._scene_model.geometry
-        data = self._scene_model.check_data(self._margins)
-        manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(self._robot, geometry, data)
-        return manager, data
+    def _rates(self) -> FloatArray:
+        return motion_rates(self._scene_model, self.space)
 
-    def _exact(self, positions: FloatArray) -> bool:
-        manager, _ = self._manager
+    def _manager(self, reach: float) -> tuple[Any, pin.GeometryData]:
+        """Coal's broad phase with margins for states near others, and its data, to which it refers.
+
+        Args:
+            reach: The largest joint-space distance of the others [rad].
+        """
+        if reach not in self._managers:
+            geometry, margins = self._scene_model.geometry, self._margins
+            if reach > 0:
+                margins = margins + reach * self._rates + ROUNDING
+            data = self._scene_model.check_data(margins)
+            manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
+                self._robot, geometry, data
+            )
+            self._managers[reach] = manager, data
+        return self._managers[reach]
+
+    def _exact(self, positions: FloatArray, reach: float = 0.0) -> bool:
+        """Whether Coal finds all states free that are at most that near."""
+        manager, _ = self._manager(reach)
         configuration = self.space.configuration(positions)
         return not pin.computeCollisions(self._robot, self._data, manager, configuration, True)
-
-    def path_free(self, waypoints: FloatArray, resolution: float) -> bool:
-        """Whether all edges of a path are free; its first waypoint is not checked."""
-        return all(
-            self.edge_free(first, second, resolution) for first, second in pairwise(waypoints)
-        )
 
     def touches(self, positions: FloatArray) -> list[Touch]:
         """Pairs nearer than their margin at group positions, nearest first."""
         configuration = self.space.configuration(positions)
         return [touch for _, touch in self._scene_model.near(configuration, self._margins)]
 
-    def first_block(
-        self, first: FloatArray, second: FloatArray, resolution: float
-    ) -> tuple[float, list[Touch]] | None:
-        """Where a straight line (0 to 1) is first blocked, and the pairs too near there."""
-        count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
-        states = first + (second - first) * (np.arange(1, count + 1) / count)[:, None]
-        index = self.first_blocked(states)
-        return None if index is None else ((index + 1) / count, self.touches(states[index]))
-
 
 def touch_records(touches: Sequence[Touch]) -> tuple[TouchRecord, ...]:
     """Touches as a failure records them."""
     return tuple(TouchRecord((touch.first, touch.second), touch.distance) for touch in touches)
-
-
-def coarse_to_fine(count: int) -> Iterator[int]:
-    """Indices of states: the last, then at halves, quarters ...; collisions are found early."""
-    step = 1
-    while step < count:
-        step *= 2
-    yield count - 1
-    while step > 1:
-        half = step // 2
-        yield from range(half - 1, count - 1, step)
-        step = half

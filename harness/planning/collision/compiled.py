@@ -23,7 +23,7 @@ COMPILING_PAYS_AFTER = 100_000
 """States that a process checks before it compiles the check, where no earlier process did."""
 
 When = Literal["always", "when it pays", "never"]
-Certify = Callable[[int, int, bool], int]
+Certify = Callable[[int, int, int], int]
 """The type of `certify` in `harness.planning.collision.kernel`."""
 
 _SOURCES = Path(__file__).with_name("kernel")
@@ -115,8 +115,8 @@ def _linked(code: bytes, name: str) -> Certify:
     kind = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, *numbers)
     function = kind(address)
 
-    def certify(table: int, count: int, straight: bool) -> int:
-        status = function(ctypes.addressof(result), None, table, count, straight)
+    def certify(table: int, low: int, high: int) -> int:
+        status = function(ctypes.addressof(result), None, table, low, high)
         assert status == 0, holder  # whose memory holds the code
         return result.value
 

@@ -143,15 +143,16 @@ def _blocked(
         shown = NearestState("as far as it goes", joints, touches=traced.touches or ())
     elif request.checker is not None and target is not None:
         start = request.space.part(request.start)
-        blocked = request.checker.first_block(start, target, RESOLUTION)
+        straight = np.array([start, target])
+        blocked = request.checker.first_block(straight, RESOLUTION)
         if blocked is not None:
-            share, found = blocked
+            share, state, found = blocked
             details.append(
                 f"what blocks: after {100 * share:.0f} % of the straight path, {touches(found)}"
             )
             shown = NearestState(
                 "where the straight way is blocked",
-                request.joints(start + share * (target - start)),
+                request.joints(state),
                 touches=touch_records(found),
             )
     search = failure.find(SearchFailure)

@@ -10,10 +10,10 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.search.search import Search, search
-from harness.planning.verification.verify import FINAL_RESOLUTION
+from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
 from harness.ports.motion_planning import PlanningOptions
 
-PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128, 1 / 128, 1 / 128, 1 / 128)
+PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128, *(VERIFIED_RESOLUTION,) * 3)
 """Joint-space distance between checked states while searching [rad]; finer when a path fails, then
 from other seeds."""
 

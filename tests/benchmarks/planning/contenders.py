@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.planning.collision.compiled import use_compiled
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
-from harness.planning.verification.verify import FINAL_RESOLUTION, verified_resolution
+from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
 from harness.ports.motion_planning import PlanningOptions
 from tests.benchmarks.planning.problems import Problem, free_by_broad_phase, free_by_pairs
 
@@ -25,9 +25,6 @@ SPACING = 1 / 32
 RANGE = 1.5  # [rad]
 PATIENCE = 5.0
 """Processor time after which the other planners are stopped, to plan and to shorten [s]."""
-
-JUDGED = 1 / 512
-"""Joint-space distance between the states at which final paths are judged [rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +60,12 @@ def ours(problem: Problem, seed: int = 1) -> Outcome:
     checker.edge_free(problem.start, problem.start, SPACING)  # lays out what is checked
     begin = time.process_time()
     scene, planned = begin - before, None
-    options, fine = PlanningOptions(seed=seed), verified_resolution(checker.padding)
+    options = PlanningOptions(seed=seed)
     for found in verified_paths(checker, problem.start, [problem.goal], options, effort):
         planned = planned or time.process_time()
-        for resolution in (FINAL_RESOLUTION, fine):
+        for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
             short = shorten(found.waypoints, checker, resolution, found.seed)
-            if checker.path_free(short, fine):
+            if checker.path_free(short, VERIFIED_RESOLUTION):
                 return Outcome(scene, planned - begin, time.process_time() - begin, short)
     spent = time.process_time() - begin
     return Outcome(scene, spent, spent, None)
@@ -128,17 +125,3 @@ def _state(space: ob.RealVectorStateSpace, positions: FloatArray) -> ob.State:
     for joint, value in enumerate(positions):
         state[joint] = float(value)
     return state
-
-
-def is_free(problem: Problem, waypoints: FloatArray) -> bool:
-    """Whether a path keeps its margins at `JUDGED`, by Coal alone.
-
-    States are taken evenly from the start on, whatever the waypoints: others than those that the
-    planner checked edge by edge.
-    """
-    free = free_by_broad_phase(problem)
-    lengths = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
-    knots = np.concatenate([[0.0], np.cumsum(lengths)])
-    places = np.append(np.arange(0.0, knots[-1], JUDGED), knots[-1])
-    states = np.column_stack([np.interp(places, knots, column) for column in waypoints.T])
-    return all(free(state) for state in (*states, *waypoints))

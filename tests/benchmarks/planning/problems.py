@@ -86,7 +86,12 @@ def free_by_pairs(problem: Problem) -> Callable[[FloatArray], bool]:
 
 def free_by_broad_phase(problem: Problem) -> Callable[[FloatArray], bool]:
     """Collision checking by those who know Pinocchio well: a tree of boxes sorts pairs out."""
-    check = _CoalCheck(problem.scene, problem.space, problem.route.padding)
+    return free_by_margins(problem, 0.0)
+
+
+def free_by_margins(problem: Problem, extra: FloatArray | float) -> Callable[[FloatArray], bool]:
+    """The same with larger margins: what is added for each pair [m], shape (K,)."""
+    check = _CoalCheck(problem.scene, problem.space, problem.route.padding, extra)
     model, data, geometry, found = check.arrays
     manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(model, geometry, found)
     return lambda positions: (
@@ -97,10 +102,16 @@ def free_by_broad_phase(problem: Problem) -> Callable[[FloatArray], bool]:
 class _CoalCheck:
     """What Pinocchio needs for checks with margins, apart from the data of the scene."""
 
-    def __init__(self, scene: CoalScene, space: GroupSpace, padding: float) -> None:
+    def __init__(
+        self,
+        scene: CoalScene,
+        space: GroupSpace,
+        padding: float,
+        extra: FloatArray | float = 0.0,
+    ) -> None:
         model = scene.collision_model()
         self._robot, self._space = model.robot, space
-        found = model.check_data(model.margins(padding))
+        found = model.check_data(model.margins(padding) + extra)
         self.arrays = self._robot.model, self._robot.model.createData(), model.geometry, found
 
     def configuration(self, positions: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ import roboplan.core as core
 import roboplan.rrt as rrt
 
 from harness.core.geometry import Box, Cylinder
-from harness.planning.verification.verify import FINAL_RESOLUTION, UNPADDED_RESOLUTION
+from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.robot.urdf.write import write_urdf
 from tests.benchmarks.planning.arms import packages
 from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
@@ -18,6 +18,8 @@ from tests.benchmarks.planning.problems import GROUND_HEIGHT, Problem
 COLOUR = np.full(4, 0.5)
 GROUND = core.Box(10.0, 10.0, 1.0)
 MOST_NODES = 100_000
+FINE = 1 / 1024
+"""Joint-space distance between the states that are verified [rad]."""
 
 
 def roboplan(problem: Problem, seed: int = 1) -> Outcome:
@@ -26,15 +28,15 @@ def roboplan(problem: Problem, seed: int = 1) -> Outcome:
 
 
 def roboplan_verified(problem: Problem, seed: int = 1) -> Outcome:
-    """Held to what this project's paths are held to: verified, and finer when that fails."""
-    return _planned(problem, seed, LEVELS, UNPADDED_RESOLUTION)
+    """Verified at `FINE`, and planned anew at a finer spacing when that fails."""
+    return _planned(problem, seed, LEVELS, FINE)
 
 
 LEVELS = (
     (SPACING, FINAL_RESOLUTION),
     (FINAL_RESOLUTION, FINAL_RESOLUTION),
-    (FINAL_RESOLUTION, UNPADDED_RESOLUTION),
-    (UNPADDED_RESOLUTION, UNPADDED_RESOLUTION),
+    (FINAL_RESOLUTION, FINE),
+    (FINE, FINE),
 )
 """Spacings of states while planning and while cutting corners [rad]."""
 

@@ -12,14 +12,13 @@ import pytest
 
 from tests.benchmarks.planning.arms import ARMS
 from tests.benchmarks.planning.contenders import (
-    JUDGED,
     PATIENCE,
     Outcome,
     broad_phase,
-    is_free,
     naive,
     ours,
 )
+from tests.benchmarks.planning.judge import JUDGED, Judge
 from tests.benchmarks.planning.layouts import FAMILIES
 from tests.benchmarks.planning.problems import DEFAULT, EXACT, Problem, Route, make_problems
 from tests.benchmarks.planning.scene_setup import scene_times
@@ -99,7 +98,9 @@ class Results:
         """The problems whose path is free when Coal judges it."""
         solved = self.solved().items()
         return [
-            p for p, each in solved if each.waypoints is not None and is_free(p, each.waypoints)
+            p
+            for p, each in solved
+            if each.waypoints is not None and Judge(p).is_free(each.waypoints)
         ]
 
     def ratio_to(self, other: "Results") -> float:

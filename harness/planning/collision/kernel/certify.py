@@ -5,11 +5,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from harness.planning.collision.kernel.compiling import (
     compiled,
     floats_1d,
     floats_2d,
     floats_3d,
+    inlined,
     integers_1d,
     integers_2d,
 )
@@ -21,6 +24,7 @@ from harness.planning.collision.kernel.motion_bound import (
     relative_motion,
     relative_transform,
 )
+from harness.planning.collision.kernel.results import FULL
 from harness.planning.collision.kernel.tree_distance import (
     BLOCKED,
     FREE,
@@ -28,6 +32,10 @@ from harness.planning.collision.kernel.tree_distance import (
     box_gap,
     compare_trees,
 )
+
+CONTACT_STATES = 64
+"""Number of states up to which a stretch is left undecided as a whole, where all pairs that are not
+certified may be in contact: how deep they are is not measured here."""
 
 
 @compiled
@@ -42,17 +50,30 @@ def move_to_front(order, check):
     order[0] = check
 
 
-def certify(table, count, straight):
-    """Classify the states of a motion as free, blocked or undecided.
+@inlined
+def segment_of(places, place):
+    """The number of the segment of a polyline that contains a place."""
+    low, high = 0, places.shape[0] - 2
+    while low < high:
+        middle = (low + high + 1) // 2
+        if places[middle] <= place:
+            low = middle
+        else:
+            high = middle - 1
+    return low
 
-    The last state is checked first, then the whole motion, then its halves: an interval is free for
+
+def certify(table, low, high):
+    """Classify a range of the states of a motion as free, blocked or undecided.
+
+    The last state is checked first, then the whole range, then its halves: an interval is free for
     a pair when the distance at its middle state exceeds the motion bound of the interval.
 
     Args:
         table: The address of `MotionArrays.table`. Its arrays are: the positions of the moving
-            joints at all states, shape (count, M), or of a straight motion at both its ends, shape
-            (2, M), the first of which is not one of the states; working memory; the undecided
-            states that are found, shape (count,);
+            joints at the corners of a polyline, shape (C, M); where the corners are, in states,
+            shape (C,); working memory; the undecided stretches that are found, their first and last
+            state, shape (stretches, 2);
             the moving joint before each moving joint, or -1, shape (M,); each joint's pose on its
             parent at 0 (12), axis (3), 1 if prismatic, shape (M, 16); the poses of the bodies on
             their joints or in the world, shape (B, 12); the joint or -1 and the root node of each
@@ -63,27 +84,28 @@ def certify(table, count, straight):
             the joints that move them relative to each other, as ranges of the next array, shape
             (R, 6); moving joints, tip first, shape (J,);
             and the working memory of `certificates._working_memory`.
-        count: The number of states.
-        straight: Whether the motion is straight.
+        low: The number of the first state to classify.
+        high: The number of the last state to classify.
 
     Returns:
-        The number of undecided states; -1 - i where the state i is blocked.
+        The number of undecided stretches; -1 - i where the state i is blocked; `FULL`.
     """
-    values, queue, found = floats_2d(table, 0), integers_2d(table, 1), integers_1d(table, 2)
-    parent, chain = integers_1d(table, 3), floats_2d(table, 4)
-    body_poses, bodies, boxes = floats_2d(table, 5), integers_2d(table, 6), floats_2d(table, 7)
-    spheres, nodes, convexes = floats_2d(table, 8), integers_2d(table, 9), integers_2d(table, 10)
-    sizes, points = floats_2d(table, 11), floats_2d(table, 12)
-    edges_at, edges = integers_1d(table, 13), integers_1d(table, 14)
-    margins, checks = floats_2d(table, 15), integers_2d(table, 16)
-    keys, joints = integers_2d(table, 17), integers_1d(table, 18)
-    here, rates, poses = floats_1d(table, 19), floats_1d(table, 20), floats_2d(table, 21)
-    body_at, middles, shifts = floats_2d(table, 22), floats_2d(table, 23), floats_3d(table, 24)
-    axes, scratch = floats_2d(table, 25), floats_2d(table, 26)
-    body_stamp, key_stamp = integers_1d(table, 27), integers_1d(table, 28)
-    hints, stack, left = integers_1d(table, 29), integers_2d(table, 30), integers_1d(table, 31)
+    corners, places = floats_2d(table, 0), floats_1d(table, 1)
+    queue, found = integers_2d(table, 2), integers_2d(table, 3)
+    parent, chain = integers_1d(table, 4), floats_2d(table, 5)
+    body_poses, bodies, boxes = floats_2d(table, 6), integers_2d(table, 7), floats_2d(table, 8)
+    spheres, nodes, convexes = floats_2d(table, 9), integers_2d(table, 10), integers_2d(table, 11)
+    sizes, points = floats_2d(table, 12), floats_2d(table, 13)
+    edges_at, edges = integers_1d(table, 14), integers_1d(table, 15)
+    margins, checks = floats_2d(table, 16), integers_2d(table, 17)
+    keys, joints = integers_2d(table, 18), integers_1d(table, 19)
+    here, rates, poses = floats_1d(table, 20), floats_1d(table, 21), floats_2d(table, 22)
+    body_at, middles, shifts = floats_2d(table, 23), floats_2d(table, 24), floats_3d(table, 25)
+    axes, scratch = floats_2d(table, 26), floats_2d(table, 27)
+    body_stamp, key_stamp = integers_1d(table, 28), integers_1d(table, 29)
+    hints, stack, left = integers_1d(table, 30), integers_2d(table, 31), integers_1d(table, 32)
     sets = (convexes, sizes, points, edges_at, edges, hints)
-    width = values.shape[1]
+    width = corners.shape[1]
     total = checks.shape[0]
     for body in range(body_stamp.shape[0]):
         body_stamp[body] = -1
@@ -92,32 +114,38 @@ def certify(table, count, straight):
     room = total
     T, motion, way = scratch[0], scratch[14], scratch[15]
     undecided = 0
-    queue[0, 0], queue[0, 1], queue[0, 2], queue[0, 3] = count - 1, count - 1, 0, total
+    queue[0, 0], queue[0, 1], queue[0, 2], queue[0, 3] = high, high, 0, total
     head, tail = 0, 1
-    if count > 1:
-        queue[1, 0], queue[1, 1], queue[1, 2], queue[1, 3] = 0, count - 2, 0, total
+    if high > low:
+        queue[1, 0], queue[1, 1], queue[1, 2], queue[1, 3] = low, high - 1, 0, total
         tail = 2
     while head < tail:
         low, high, begin, end = queue[head, 0], queue[head, 1], queue[head, 2], queue[head, 3]
         stamp = head
         head += 1
         middle = (low + high) // 2
+        at = segment_of(places, middle)
+        straight = places[at] <= low and high <= places[at + 1]
+        segment, final = segment_of(places, low), segment_of(places, high)
         for m in range(width):
+            rate = (corners[at + 1, m] - corners[at, m]) / (places[at + 1] - places[at])
+            here[m] = corners[at, m] + rate * (middle - places[at])
             if straight:
-                rate = (values[1, m] - values[0, m]) / count
-                here[m] = values[0, m] + rate * (middle + 1)
                 rates[m] = rate * max(high - middle, middle - low)
-            else:
-                here[m] = values[middle, m]
-                widest = 0.0
-                for k in range(low, high + 1):
-                    widest = max(widest, abs(values[k, m] - here[m]))
-                rates[m] = widest
+                continue
+            widest = 0.0
+            for k in range(segment, final + 1):
+                rate = (corners[k + 1, m] - corners[k, m]) / (places[k + 1] - places[k])
+                for side in range(2):
+                    place = max(places[k], low) if side == 0 else min(places[k + 1], high)
+                    there = corners[k, m] + rate * (place - places[k])
+                    widest = max(widest, abs(there - here[m]))
+            rates[m] = widest
         joint_poses(here, parent, chain, poses, scratch)
         kept = room
         share = room + (end - begin) <= left.shape[0]
         failed = 0
-        is_open = False
+        is_open, is_contact = False, True
         for place in range(begin, end):
             check = left[place]
             key = checks[check, 2]
@@ -206,11 +234,18 @@ def certify(table, count, straight):
                 left[room + failed] = check
             failed += 1
             is_open |= answer == UNDECIDED
-        if is_open:
-            found[undecided] = middle
-            undecided += 1
-        if failed == 0 or high == low:
+            is_contact &= blocked == -np.inf
+        if failed == 0 or (high == low and not is_open):
             continue
+        if high == low or (is_contact and high - low < CONTACT_STATES):
+            found[undecided, 0], found[undecided, 1] = low, high
+            undecided += 1
+            continue
+        if is_open:
+            found[undecided, 0], found[undecided, 1] = middle, middle
+            undecided += 1
+        if tail + 2 > queue.shape[0]:
+            return FULL
         first, last = begin, end
         if share:
             first, last = kept, kept + failed
