@@ -8,7 +8,7 @@ from harness.cell.program import step_seed
 from harness.cell.scope import Problems
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
-from harness.ports.motion_planning import PlanningOptions
+from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
 
 CheckPlanner = Callable[[str, str, Mapping[str, float]], str]
 """Normalises the name of a pipeline's planner; ValueError, with what there is, for it or its
@@ -16,7 +16,6 @@ parameters."""
 
 DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
 DEFAULT_PADDING = 0.002  # [m]
-DEFAULT_PIPELINE = "ompl"
 DEFAULT_STATE_CHECKS = 200_000
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.search.find_pipeline import DEFAULT_PIPELINE, find_pipeline, is_built_in
+from harness.planning.search.find_pipeline import find_pipeline, is_built_in
 from harness.planning.search.third_party import find_third_party_path
-from harness.ports.motion_planning import PlanningOptions
+from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
 from harness.ports.path_planning import PathRequest
 
 
