@@ -9,7 +9,7 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3, wxyz_from_xyzw
-from harness.planning.goals.branches import branch_name
+from harness.planning.goals.goal_study import branch_name
 from harness.planning.ik.nearest_pose import (
     EVEN,
     KEEP_TURN,
