@@ -22,7 +22,7 @@ def judge_stored(
 
     Args:
         stored: The run as it was read.
-        run_dir: Its folder.
+        run_dir: The folder of the run.
         with_file: A scenario whose expectations are judged instead of the run's own.
 
     Raises:

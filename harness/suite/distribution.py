@@ -20,7 +20,7 @@ class Choice:
 
     Attributes:
         plain: The distribution as the file writes it.
-        values: The values.
+        values: The values that may be drawn.
     """
 
     plain: Mapping[str, Any]
