@@ -75,7 +75,7 @@ def preview(cell: LiveCell, text: str) -> Preview:
     index = [description.joint_index[name] for name in trajectory.joint_names]
     rows[:, index] = trajectory.positions[drawn]
     positions = np.array([description.with_mimics(row) for row in rows])
-    path = cell.prepared.kinematics.link_poses(positions, [description.tcp_link])[:, 0, :3]
+    path = cell.prepared.ports.kinematics.link_poses(positions, [description.tcp_link])[:, 0, :3]
     length = path_length(path)
     statistics = plan.statistics.find(PlanStatistics)
     planner = "" if statistics is None else statistics.planner_id
