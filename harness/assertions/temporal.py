@@ -139,6 +139,26 @@ def _best(values: FloatArray, progress: FloatArray | None) -> int:
     return int(largest[np.argmax(np.nan_to_num(progress[largest], nan=-np.inf))])
 
 
+def _spans(
+    times: FloatArray, hold: float | None, within: float | None
+) -> tuple[IntArray, IntArray]:
+    """First and last sample of each span of `hold` seconds that begins within the time for it.
+
+    Raises:
+        TooShort: There is none.
+    """
+    starts = np.arange(len(times))
+    if within is not None:
+        starts = starts[times <= times[0] + within + TIME_RESOLUTION]
+    if hold is None:
+        return starts, starts
+    ends = np.searchsorted(times, times[starts] + hold - TIME_RESOLUTION)
+    fits = ends < len(times)
+    if not fits.any():
+        raise TooShort
+    return starts[fits], ends[fits]
+
+
 def eventually(
     values: FloatArray,
     times: FloatArray,
@@ -159,17 +179,10 @@ def eventually(
     Raises:
         TooShort: No sample that may begin it is followed by `hold` seconds.
     """
-    starts = np.arange(len(times))
-    if within is not None:
-        starts = starts[times <= times[0] + within + TIME_RESOLUTION]
+    starts, ends = _spans(times, hold, within)
     if hold is None:
         index = _best(values[starts], None if progress is None else progress[starts])
         return Decision(float(values[index]), index, bool(values[index] >= 0))
-    ends = np.searchsorted(times, times[starts] + hold - TIME_RESOLUTION)
-    fits = ends < len(times)
-    starts, ends = starts[fits], ends[fits]
-    if len(starts) == 0:
-        raise TooShort
     minima = range_min(values, starts, ends)
     holding = np.concatenate([[0], np.cumsum(values >= 0)])
     best = _best(minima, (holding[ends + 1] - holding[starts]).astype(float))
@@ -189,11 +202,8 @@ def always(
     if within is not None:
         begin = _last_before(times, float(times[0]) + within)
     if hold is not None:
-        if times[-1] - times[0] < hold - TIME_RESOLUTION:
-            raise TooShort
         begin = min(begin, _first_of_last(times, hold))
-    index = begin + int(np.argmin(values[begin:]))
-    return Decision(float(values[index]), index, bool(values[index] >= 0))
+    return _worst_from(begin, values)
 
 
 def never(
@@ -220,13 +230,8 @@ def at_end(
     Raises:
         TooShort: The window is shorter than `hold`.
     """
-    begin = len(times) - 1
-    if hold is not None:
-        if times[-1] - times[0] < hold - TIME_RESOLUTION:
-            raise TooShort
-        begin = _first_of_last(times, hold)
-    index = begin + int(np.argmin(values[begin:]))
-    decision = Decision(float(values[index]), index, bool(values[index] >= 0))
+    begin = len(times) - 1 if hold is None else _first_of_last(times, hold)
+    decision = _worst_from(begin, values)
     if within is None:
         return decision
     came_true = eventually(values, times, hold, within, progress)
@@ -257,15 +262,7 @@ def until(
     Raises:
         TooShort: No sample at which the second may begin is followed by `hold` seconds.
     """
-    starts = np.arange(len(times))
-    if within is not None:
-        starts = starts[times <= times[0] + within + TIME_RESOLUTION]
-    ends = starts
-    if hold is not None:
-        ends = np.searchsorted(times, times[starts] + hold - TIME_RESOLUTION)
-        starts, ends = starts[ends < len(times)], ends[ends < len(times)]
-    if len(starts) == 0:
-        raise TooShort
+    starts, ends = _spans(times, hold, within)
     coming = range_min(second, starts, ends)
     before = np.concatenate([[np.inf], np.minimum.accumulate(first)])[starts]
     values = np.minimum(coming, before)
@@ -283,8 +280,20 @@ def until(
 
 
 def _first_of_last(times: FloatArray, span: float) -> int:
-    """The last sample that is `span` seconds or more before the end."""
+    """The last sample that is `span` seconds or more before the end.
+
+    Raises:
+        TooShort: The samples cover less.
+    """
+    if times[-1] - times[0] < span - TIME_RESOLUTION:
+        raise TooShort
     return _last_before(times, float(times[-1]) - span)
+
+
+def _worst_from(begin: int, values: FloatArray) -> Decision:
+    """The smallest margin from a sample on decides."""
+    index = begin + int(np.argmin(values[begin:]))
+    return Decision(float(values[index]), index, bool(values[index] >= 0))
 
 
 def _last_before(times: FloatArray, time: float) -> int:

@@ -96,6 +96,53 @@ def one_step(during: tuple[str | None, ...], step: str) -> str:
     return next(iter(named), step)
 
 
+@dataclass(frozen=True, eq=False)
+class _Series:
+    """Margins over time.
+
+    Attributes:
+        values: The margin at each sample; NaN where it is not known, shape (n,).
+        times: The times of the samples [s], shape (n,).
+        applies: Whether there is something to judge, shape (n,).
+        progress: Chooses among equal margins, shape (n,).
+    """
+
+    values: FloatArray
+    times: FloatArray
+    applies: BoolArray
+    progress: FloatArray | None
+
+    def reduce(self, terms: Terms) -> Decision:
+        """The unknown counts against the expectation; where it does not apply, nothing holds.
+
+        Raises:
+            TooShort: No sample leaves room for the required time.
+        """
+        times, hold, within, progress = self.times, terms.hold, terms.within, self.progress
+        unknown = np.isnan(self.values)
+        low = np.where(unknown | ~self.applies, -np.inf, self.values)
+        match terms.word:
+            case "always":
+                return temporal.always(low, times, hold, within)
+            case "never":
+                high = np.where(unknown & self.applies, np.inf, low)
+                return temporal.never(high, times, hold, within, progress)
+            case "eventually":
+                return temporal.eventually(low, times, hold, within, progress)
+            case _:
+                return temporal.at_end(low, times, hold, within, progress)
+
+    def holds_after(self, terms: Terms, future: float) -> bool:
+        """Whether the expectation holds if the margin stays at `future` after the window."""
+        continued = _Series(
+            with_future(self.values, future),
+            later(self.times),
+            np.append(self.applies, [True, True]),
+            None if self.progress is None else with_future(self.progress, 0.0),
+        )
+        return continued.reduce(terms).holds
+
+
 def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     """The verdict of a temporal word, without its place in the file.
 
@@ -103,87 +150,112 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
         NotReached: There was nothing to judge.
         NotObservable: Samples that are not known decide it.
     """
-    values, times = margins.values, window.times
+    values, times, unknown = margins.values, window.times, margins.unknown()
     applies = np.ones(len(values), dtype=bool) if margins.applies is None else margins.applies
-    unknown = margins.unknown()
-    if not (applies & ~np.isnan(values)).any():
+    known = applies & ~np.isnan(values)
+    if not known.any():
         if unknown.any():
             raise NotObservable("its value is not known at any time it is judged over")
         raise NotReached("what it is about was not there in the time it is judged over")
-    chosen = np.arange(len(values))
-    if terms.word == "always":
-        chosen = np.flatnonzero(applies)
-    arguments = values[chosen], times[chosen], applies[chosen], margins.progress
-    is_open = bool(window.cut_short) and _could_hold(terms, *arguments)
+    chosen = np.flatnonzero(applies) if terms.word == "always" else np.arange(len(values))
+    series = _Series(values[chosen], times[chosen], applies[chosen], margins.progress)
     try:
-        decision = _reduce(terms, *arguments)
+        decision = _decision(terms, window, series)
+    except TooShort:
+        return _too_short(terms, series.times)
+    if not decision.holds and unknown.any():
+        _refuse_unknown(terms, window, unknown, series, chosen)
+    observed = Observed(int(known.sum()), int(unknown.sum()), margins.pairs)
+    decided = replace(decision, index=int(chosen[decision.index]))
+    return _verdict(terms, window, margins, decided, observed)
+
+
+def _decision(terms: Terms, window: Window, series: _Series) -> Decision:
+    """What the samples decide.
+
+    Raises:
+        NotReached: What comes after the window could reverse it.
+        TooShort: No sample leaves room for the required time.
+    """
+    is_open = bool(window.cut_short) and series.holds_after(terms, _most_favourable(terms))
+    try:
+        decision = series.reduce(terms)
     except TooShort:
         if is_open:
             raise NotReached(window.cut_short) from None
-        return _too_short(terms, times[chosen])
+        raise
     if is_open and (terms.word == "at_end" or not decision.holds):
         raise NotReached(window.cut_short)
-    if decision.holds and _is_undecided(terms, *arguments):
-        raise NotReached(window.cut_short or _ended_before(terms, times))
-    if not decision.holds and unknown.any():
-        _refuse_unknown(terms, window, unknown, chosen, arguments)
-    index = int(chosen[decision.index])
-    time = window.time(index)
+    if decision.holds and _is_undecided(terms, series):
+        raise NotReached(window.cut_short or _ended_before(terms, window.times))
+    return decision
+
+
+def _verdict(
+    terms: Terms, window: Window, margins: MarginSignal, decision: Decision, observed: Observed
+) -> Verdict:
+    """The verdict on a decision, with the evidence of the sample that decided it.
+
+    Raises:
+        NotReached: It holds where nothing was there.
+    """
+    values, times, index = margins.values, window.times, decision.index
     status: VerdictStatus = "passed" if decision.holds else "failed"
     if not math.isfinite(decision.value):
         if decision.holds:
             raise NotReached("what it is about was not there for that long")
+        time = window.time(index)
         return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
     if terms.word == "eventually" and terms.hold is not None and not (values >= 0).any():
         index = _nearest(values, times, margins.progress)
-        time = window.time(index)
-    evidence = margins.evidence(index)
+    time, evidence = window.time(index), margins.evidence(index)
     margin, unit = decision.value, margins.unit
     if evidence.margin is not None:
         margin = -evidence.margin if terms.word == "never" else evidence.margin
         unit = evidence.unit
     reason = evidence.text + (f" at t={time:.3f} s" if evidence.is_moment else "")
-    reason += _held(terms, values, times, decision)
     measures = tuple(evidence.measures)
     if terms.word == "never" or terms.is_opposed:
         measures = against(measures, is_passed=decision.holds)
-    observed = Observed(int((applies & ~np.isnan(values)).sum()), int(unknown.sum()), margins.pairs)
-    warnings: tuple[VerdictWarning, ...] = ()
-    if decision.holds:
-        warnings = (
-            *(margins.warnings if terms.word in ("always", "never") else ()),
-            *_already_true(terms, values, window),
-            *_hardly_observed(terms, observed.samples, window),
-        )
     return Verdict(
         "",
         status,
         margin + 0.0,
         unit,
         time,
-        reason=reason,
+        reason=reason + _held(terms, values, times, decision),
         measures=measures,
         observed=observed,
-        warnings=warnings,
+        warnings=_warnings(terms, window, margins, observed) if decision.holds else (),
     )
 
 
+def _warnings(
+    terms: Terms, window: Window, margins: MarginSignal, observed: Observed
+) -> tuple[VerdictWarning, ...]:
+    """The warnings of a verdict that passed."""
+    return (
+        *(margins.warnings if terms.word in ("always", "never") else ()),
+        *_already_true(terms, margins.values, window),
+        *_hardly_observed(terms, observed.samples, window),
+    )
+
+
+def _most_favourable(terms: Terms) -> float:
+    """The margin with which the expectation holds best."""
+    return -np.inf if terms.word == "never" else np.inf
+
+
 def _refuse_unknown(
-    terms: Terms,
-    window: Window,
-    unknown: BoolArray,
-    chosen: IntArray,
-    arguments: tuple[FloatArray, FloatArray, BoolArray, FloatArray | None],
+    terms: Terms, window: Window, unknown: BoolArray, series: _Series, chosen: IntArray
 ) -> None:
     """Refuse a verdict that favourable values of the unknown samples would reverse.
 
     Raises:
         NotObservable: They would.
     """
-    values, times, applies, progress = arguments
-    best = -np.inf if terms.word == "never" else np.inf
-    favourable = np.where(unknown[chosen], best, values)
-    if _reduce(terms, favourable, times, applies, progress).holds:
+    favourable = np.where(unknown[chosen], _most_favourable(terms), series.values)
+    if replace(series, values=favourable).reduce(terms).holds:
         first, last = np.flatnonzero(unknown)[[0, -1]]
         raise NotObservable(
             f"{int(unknown.sum())} samples from t={window.time(int(first)):.3f} s to"
@@ -224,68 +296,14 @@ def _hardly_observed(terms: Terms, samples: int, window: Window) -> tuple[Verdic
     return (VerdictWarning(HARDLY_OBSERVED, message),)
 
 
-def _reduce(
-    terms: Terms,
-    values: FloatArray,
-    times: FloatArray,
-    applies: np.ndarray,
-    progress: FloatArray | None,
-) -> Decision:
-    """The unknown counts against the expectation; where it does not apply, nothing holds."""
-    hold, within = terms.hold, terms.within
-    unknown = np.isnan(values)
-    low = np.where(unknown | ~applies, -np.inf, values)
-    match terms.word:
-        case "always":
-            return temporal.always(low, times, hold, within)
-        case "never":
-            against = np.where(unknown & applies, np.inf, low)
-            return temporal.never(against, times, hold, within, progress)
-        case "eventually":
-            return temporal.eventually(low, times, hold, within, progress)
-        case _:
-            return temporal.at_end(low, times, hold, within, progress)
-
-
-def _could_hold(
-    terms: Terms,
-    values: FloatArray,
-    times: FloatArray,
-    applies: np.ndarray,
-    progress: FloatArray | None,
-) -> bool:
-    """Whether the expectation holds if a window that was cut short continues in the best way."""
-    best = -np.inf if terms.word == "never" else np.inf
-    return _holds_after(terms, best, values, times, applies, progress)
-
-
-def _holds_after(
-    terms: Terms,
-    future: float,
-    values: FloatArray,
-    times: FloatArray,
-    applies: np.ndarray,
-    progress: FloatArray | None,
-) -> bool:
-    """Whether the expectation holds if the margin stays at `future` after the window."""
-    more = None if progress is None else with_future(progress, 0.0)
-    applies = np.append(applies, [True, True])
-    return _reduce(terms, with_future(values, future), later(times), applies, more).holds
-
-
-def _is_undecided(
-    terms: Terms,
-    values: FloatArray,
-    times: FloatArray,
-    applies: np.ndarray,
-    progress: FloatArray | None,
-) -> bool:
+def _is_undecided(terms: Terms, series: _Series) -> bool:
     """Whether what must never hold could still hold, within its time, after the window's end."""
     if terms.word != "never" or (terms.hold is None and terms.within is None):
         return False
-    within = float(times[-1] - times[0]) if terms.within is None else terms.within
-    bounded = replace(terms, within=within)
-    return not _holds_after(bounded, np.inf, values, times, applies, progress)
+    within = terms.within
+    if within is None:
+        within = float(series.times[-1] - series.times[0])
+    return not series.holds_after(replace(terms, within=within), np.inf)
 
 
 def _ended_before(terms: Terms, times: FloatArray) -> str:

@@ -6,13 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import Literal
 
 from harness.bench.trial import Trial, try_plan
 from harness.cell.program import ProgramStep, step_seed
 from harness.core.errors import HarnessError
 from harness.engine.dry_run import DryPlanner, DrySimulator
-from harness.engine.execute import execute_program
+from harness.engine.execute import StepEvent, execute_program
 from harness.planning.collision.scene import CoalScene
 from harness.planning.search.find_pipeline import with_planner
 from harness.ports.motion_planning import MotionPlan, MotionRequest
@@ -73,22 +72,11 @@ def collect(
     bench = _BenchPlanner(prepared, str(path), planners, seeds, on_motion)
     simulator = DrySimulator(prepared.program)
 
-    def watch(
-        kind: Literal["step_started", "step_finished"],
-        step: ProgramStep,
-        record: StepRecord | None,
-    ) -> None:
+    def watch(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
         simulator.watch(kind, step, record)
         bench.on_step(kind, step)
 
-    execute_program(
-        prepared.program,
-        prepared.scene,
-        prepared.kinematics,
-        bench,
-        simulator,
-        watch,
-    )
+    execute_program(prepared.program, prepared.ports._replace(planner=bench), simulator, watch)
     return bench.motions
 
 
@@ -103,12 +91,12 @@ class _BenchPlanner(DryPlanner):
         seeds: Sequence[int],
         on_motion: OnMotion,
     ) -> None:
-        super().__init__(prepared.planner, prepared.program.description)
-        if not isinstance(prepared.scene, CoalScene):
+        super().__init__(prepared.ports.planner, prepared.program.description)
+        if not isinstance(prepared.ports.scene, CoalScene):
             raise HarnessError("clearances can be measured only in Coal's planning scene")
         self.motions: list[MotionTrials] = []
-        self._real = prepared.planner
-        self._scene = prepared.scene
+        self._real = prepared.ports.planner
+        self._scene = prepared.ports.scene
         self._file, self._planners, self._seeds, self._on_motion = file, planners, seeds, on_motion
         self._step: ProgramStep | None = None
 

@@ -12,7 +12,7 @@ from harness.cameras.camera_scene import floor_height, scene_poses
 from harness.cameras.caption import DARK, RED, captioned_jpeg
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.renderer import make_renderer
-from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
+from harness.cameras.viewpoint import OVERVIEW_STATES, Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
 from harness.core.world import WorldObject
@@ -21,9 +21,6 @@ from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import robot_poses
 
 WIDTH, HEIGHT = 640, 480
-STATES = 40
-"""Recorded states that the viewpoint is fitted to."""
-
 SHADOW_SIZE = 1024
 """Resolution of shadows [pixels]."""
 
@@ -125,7 +122,7 @@ def overview(
         link.name: max((bounding_radius(shape) for shape in link.collisions), default=0.03)
         for link in description.links
     }
-    for sample in np.unique(np.linspace(0, last, STATES).astype(int)):
+    for sample in np.unique(np.linspace(0, last, OVERVIEW_STATES).astype(int)):
         poses = robot_poses(description, run.signals.joint_positions[sample])
         for name, size in link_sizes.items():
             if name != "world":

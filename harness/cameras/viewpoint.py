@@ -19,6 +19,9 @@ FIELD_OF_VIEW = 38.0
 FILLED = 0.86
 """Share of the picture that the fitted spheres may fill."""
 
+OVERVIEW_STATES = 40
+"""States of a run that its overview is fitted to, in addition to the ends of its steps."""
+
 
 @dataclass(frozen=True, eq=False)
 class View:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,7 +56,10 @@ def sql_of(query: Query, connection: sqlite3.Connection) -> tuple[str, list[Any]
         clauses.append("instr(lower(cause || ' ' || reason), lower(?)) > 0")
         values.append(query.cause)
     for condition in query.conditions:
-        clause, more = _condition(condition, connection)
+        try:
+            clause, more = _condition(condition, connection)
+        except ValueError as error:
+            raise UsageError(f"--where '{condition}': {error}") from None
         clauses.append(clause)
         values += more
     return " AND ".join(clauses), values
@@ -69,57 +72,82 @@ def parameter_paths(connection: sqlite3.Connection) -> list[str]:
     ]
 
 
-def _condition(text: str, connection: sqlite3.Connection) -> tuple[str, list[Any]]:
+Clause = tuple[str, list[Any]]
+"""A part of a WHERE clause, and its values."""
+
+
+def _condition(text: str, connection: sqlite3.Connection) -> Clause:
+    """The clause of a condition.
+
+    Raises:
+        ValueError: It cannot be read, or names nothing that varies.
+    """
     match = CONDITION.fullmatch(text)
     if match is None:
-        raise UsageError(f"--where '{text}': write NAME<VALUE, such as friction<0.4 or margin<0")
+        raise ValueError("write NAME<VALUE, such as friction<0.4 or margin<0")
     name, operator, written = match.groups()
+    if name not in COLUMNS:
+        return _parameter_clause(name, operator, written, connection)
+    number, unit = _number(written)
+    if name == MARGIN and unit:
+        return _margin_clause(operator, number, unit, connection)
+    return f"{COLUMNS[name]} {operator} ?", [number]
+
+
+def _number(written: str) -> tuple[float, str]:
     try:
-        number, unit = split_quantity(written)
+        return split_quantity(written)
     except ValueError:
-        number, unit = None, ""
-    if name in COLUMNS:
-        if number is None:
-            raise UsageError(f"--where '{text}': '{written}' is not a number")
-        if name == MARGIN and unit:
-            return _margin_condition(text, operator, number, unit, connection)
-        return f"{COLUMNS[name]} {operator} ?", [number]
+        raise ValueError(f"'{written}' is not a number") from None
+
+
+def _parameter_clause(
+    name: str, operator: str, written: str, connection: sqlite3.Connection
+) -> Clause:
+    """A condition on a parameter: a text that is equal or not, or a number in every unit of it."""
     paths = parameter_paths(connection)
     if name not in paths:
         hint = did_you_mean(name, [*paths, *COLUMNS], "names")
-        raise UsageError(f"--where '{text}': nothing called '{name}' varies; {hint}")
+        raise ValueError(f"nothing called '{name}' varies; {hint}")
     inside = "key IN (SELECT key FROM parameters WHERE path = ? AND"
-    if number is None:
+    try:
+        number, unit = _number(written)
+    except ValueError:
         if operator not in ("=", "!="):
-            raise UsageError(f"--where '{text}': '{written}' is not a number")
+            raise
         return f"{inside} text {operator} ?)", [name, written]
-    clauses, values = list[str](), list[Any]()
     found = connection.execute(
         "SELECT DISTINCT unit FROM parameters WHERE path = ? AND unit IS NOT NULL", (name,)
     )
     units = [row[0] for row in found]
     if not unit and len(units) > 1 and "" not in units:
-        raise UsageError(f"--where '{text}': '{name}' has the units {', '.join(units)}; name one")
+        raise ValueError(f"'{name}' has the units {', '.join(units)}; name one")
+    if not unit and len(units) == 1:
+        unit = units[0]
+    numbers: dict[str, float] = {}
     for stored in units:
-        is_own_unit = not unit and len(units) == 1
-        factor = 1.0 if is_own_unit else conversion_factor(unit, stored)
-        if factor is None:
-            raise UsageError(f"--where '{text}': '{name}' has the unit '{stored}'")
-        clauses.append(f"(unit = ? AND number {operator} ?)")
-        values += [stored, float(f"{number * factor:.15g}")]
-    return f"{inside} ({' OR '.join(clauses or ['0'])}))", [name, *values]
-
-
-def _margin_condition(
-    text: str, operator: str, number: float, unit: str, connection: sqlite3.Connection
-) -> tuple[str, list[Any]]:
-    """A condition on margins of the same kind of unit; other margins do not fulfil it."""
-    clauses, values = list[str](), list[Any]()
-    for (stored,) in connection.execute("SELECT DISTINCT unit FROM runs WHERE unit IS NOT NULL"):
         factor = conversion_factor(unit, stored)
-        if factor is not None:
-            clauses.append(f"(unit = ? AND margin {operator} ?)")
-            values += [stored, number * factor]
-    if not clauses:
-        raise UsageError(f"--where '{text}': no margin has a unit like '{unit}'")
-    return f"({' OR '.join(clauses)})", values
+        if factor is None:
+            raise ValueError(f"'{name}' has the unit '{stored}'")
+        numbers[stored] = float(f"{number * factor:.15g}")
+    clause, values = _in_units("number", operator, numbers)
+    return f"{inside} {clause})", [name, *values]
+
+
+def _margin_clause(
+    operator: str, number: float, unit: str, connection: sqlite3.Connection
+) -> Clause:
+    """A condition on margins of the same kind of unit; other margins do not fulfil it."""
+    found = connection.execute("SELECT DISTINCT unit FROM runs WHERE unit IS NOT NULL")
+    factors = {stored: conversion_factor(unit, stored) for (stored,) in found}
+    numbers = {unit: number * factor for unit, factor in factors.items() if factor is not None}
+    if not numbers:
+        raise ValueError(f"no margin has a unit like '{unit}'")
+    return _in_units("margin", operator, numbers)
+
+
+def _in_units(column: str, operator: str, numbers: Mapping[str, float]) -> Clause:
+    """A comparison with a number for each unit; it holds for none where there is no unit."""
+    clauses = [f"(unit = ? AND {column} {operator} ?)"] * len(numbers)
+    values = [value for pair in numbers.items() for value in pair]
+    return f"({' OR '.join(clauses or ['0'])})", values

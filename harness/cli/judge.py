@@ -11,7 +11,8 @@ from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import STRICT, add_json, add_plugin
 from harness.recording.signals import ContactRecord
-from harness.reporting.terminal import PLAIN, Style
+from harness.recording.verdict import Verdict
+from harness.reporting.terminal import Style, measure_text, verdict_line
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
 
@@ -32,11 +33,9 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Judge a run's folder and print every verdict."""
     folder = run_folder(arguments.folder)
-    from harness.cli.judge import contact_lines
     from harness.observation.contacts import contact_records
     from harness.recording.read_run import read_run
     from harness.recording.stored_run import blames_changes
-    from harness.reporting.terminal import Style, measure_text, verdict_line
     from harness.session.rejudge import judge_stored
 
     with_file = Path(arguments.with_file) if arguments.with_file else None
@@ -59,17 +58,9 @@ def run(arguments: argparse.Namespace) -> int:
         return code
     style = Style.of(sys.stdout)
     for verdict in verdicts:
-        place = f"line {verdict.line}: " if verdict.line else ""
-        mark = style.mark(verdict.status == "passed")
-        say(f"{mark} {place}{verdict.expectation}: {verdict_line(verdict)}")
-        for warning in verdict.warnings:
-            say(f"    warning: {warning}")
-        if verdict.status != "passed":
-            for measure in verdict.measures:
-                say(f"    {measure_text(measure)}")
+        say(*_verdict_lines(verdict, style))
     if arguments.contacts:
-        for line in contact_lines(contacts, style):
-            say(line)
+        say(*contact_lines(contacts, style))
     held = sum(verdict.status == "passed" for verdict in verdicts)
     say(f"{held} of {len(verdicts)} expectations hold" if verdicts else "nothing is expected")
     for change in changes:
@@ -79,7 +70,17 @@ def run(arguments: argparse.Namespace) -> int:
     return code
 
 
-def contact_lines(contacts: Sequence[ContactRecord], style: Style = PLAIN) -> Iterator[str]:
+def _verdict_lines(verdict: Verdict, style: Style) -> Iterator[str]:
+    """A verdict with its warnings, and the measures of one that did not pass."""
+    place = f"line {verdict.line}: " if verdict.line else ""
+    mark = style.mark(verdict.status == "passed")
+    yield f"{mark} {place}{verdict.expectation}: {verdict_line(verdict)}"
+    yield from (f"    warning: {warning}" for warning in verdict.warnings)
+    if verdict.status != "passed":
+        yield from (f"    {measure_text(measure)}" for measure in verdict.measures)
+
+
+def contact_lines(contacts: Sequence[ContactRecord], style: Style) -> Iterator[str]:
     """Lines of a table of contacts by their first time; collisions are marked."""
     if not contacts:
         yield "contacts: none"

@@ -7,6 +7,8 @@ import signal
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
+from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, USAGE_EXIT_CODE
+
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Sequence
@@ -44,9 +46,6 @@ MODULES = {"list": "listing", "import": "importing", "ik-test": "ik_test"}
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
 130 interrupted (Ctrl-C, SIGTERM)"""
-USAGE_EXIT_CODE = 2
-ERROR_EXIT_CODE = 3
-INTERRUPTED_EXIT_CODE = 130
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
 STREAMS = ("stdin", "stdout", "stderr")
 
@@ -73,7 +72,7 @@ def entry() -> NoReturn:
     except KeyboardInterrupt:
         code = INTERRUPTED_EXIT_CODE
     except SystemExit as end:  # of argparse, which has written why
-        code = end.code if isinstance(end.code, int) else ERROR_EXIT_CODE
+        code = end.code if isinstance(end.code, int) else EXIT_CODES["error"]
     except OSError as error:
         code = _unwritable(error)
     os._exit(_flushed(code))
@@ -112,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OutputError as error:
         _abandon_stdout()
         complain(f"harness: {error}")
-        return ERROR_EXIT_CODE
+        return EXIT_CODES["error"]
     return code
 
 
@@ -181,7 +180,7 @@ def _unwritable(error: OSError) -> int:
     if isinstance(error, BrokenPipeError):
         return BROKEN_PIPE_EXIT_CODE
     complain(f"harness: standard output cannot be written: {error.strerror}")
-    return ERROR_EXIT_CODE
+    return EXIT_CODES["error"]
 
 
 def _package_path(folders: Sequence[Path]) -> AbstractContextManager[None]:

@@ -11,7 +11,7 @@ from harness.cli.output import complain, say
 from harness.cli.robot_options import ROBOT
 from harness.cli.shared_options import add_plugin
 from harness.cli.view import open_browser
-from harness.suite.discovery import SUFFIX, UsageError
+from harness.suite.discovery import SUFFIX, UsageError, discover
 
 EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
 
@@ -132,7 +132,6 @@ def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     from harness.core.suggestion import did_you_mean
     from harness.language.files.yaml_file import read_text
     from harness.robot.load import robot_names
-    from harness.suite.discovery import discover
 
     if arguments.gripper or arguments.world:
         raise UsageError("--gripper and --world are for a robot; a scenario has its own")

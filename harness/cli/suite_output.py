@@ -83,22 +83,18 @@ def show_results(
     """
     from harness.reporting.sampled import missed
     from harness.reporting.suite.github import annotations_for_action
-    from harness.reporting.terminal import Style, repeats, report_link, summary
+    from harness.reporting.terminal import Style, report_link, summary
 
     style = Style.of(sys.stdout)
     _print_failures(arguments, suite, style)
     say("")
     if arguments.repeat > 1:
-        for runs in suite.repetitions():
-            name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
-            say(f"{name}: {repeats(runs, style)}")
-        for index, difference in suite.differences.items():
-            say(f"  run {index % arguments.repeat + 1} of {suite.jobs[index].file}: {difference}")
+        _print_repetitions(suite, arguments.repeat, style)
     else:
         _print_rates(suite, columns, style)
-    rates = missed(suite.rates)
-    rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
     if suite.results:
+        rates = missed(suite.rates)
+        rate_text = f"; {style.outcome('failed', rates)}" if rates else ""
         outcomes = (outcome for _, outcome in suite.results.outcomes())
         say(f"{summary(outcomes, seconds, style)}{rate_text}")
     if len(suite.files) > 1:
@@ -120,6 +116,17 @@ def show_results(
             f" ({'; '.join(sorted(suite.processors))}): compare their verdicts, not their digests"
         )
     show_interruption(arguments, suite, seconds)
+
+
+def _print_repetitions(suite: SuiteRun, repeat: int, style: Style) -> None:
+    """Print how the runs of each case compare, and where one differs from the first."""
+    from harness.reporting.terminal import repeats
+
+    for runs in suite.repetitions():
+        name = f"{runs[0].file} [{runs[0].case}]" if runs[0].case else runs[0].file
+        say(f"{name}: {repeats(runs, style)}")
+    for index, difference in suite.differences.items():
+        say(f"  run {index % repeat + 1} of {suite.jobs[index].file}: {difference}")
 
 
 def show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: float) -> None:

@@ -19,7 +19,7 @@ import os
 import pkgutil
 import sys
 import traceback
-from collections.abc import Collection, Generator, Iterator, Mapping, Set
+from collections.abc import Collection, Generator, Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ from types import ModuleType
 from typing import Any, ClassVar, Generic, TypeVar
 
 from harness.core.errors import Problem, SpecError
-from harness.core.suggestion import did_you_mean
+from harness.core.suggestion import did_you_mean, is_slip, nearest
 
 P = TypeVar("P")
 
@@ -136,9 +136,8 @@ class Registry(Mapping[str, P]):
         """
         if name in self:
             return self[name]
-        names = list(self)
-        message = f"there is no {self._what} '{name}'; {did_you_mean(name, names, 'known')}"
-        raise LookupError("; ".join([message, *broken_plugins()]))
+        hints = plugin_hints(name, list(self), self._what, "known")
+        raise LookupError("; ".join([f"there is no {self._what} '{name}'", *hints]))
 
     def __getitem__(self, name: str) -> P:
         if name not in self._built_in_modules:
@@ -329,6 +328,26 @@ def _load_entry_points() -> None:
             raise
         except Exception as error:  # noqa: BLE001 - a foreign package may raise anything
             _broken[package] = f"{type(error).__name__}: {error}"
+
+
+def plugin_hints(
+    name: str, valid: Iterable[str], what: str, listed: str = "", is_misspelt: bool = False
+) -> list[str]:
+    """Hints on a name that no loaded plug-in has: the nearest, all, and where others come from.
+
+    Args:
+        name: A name that no plug-in has.
+        valid: The names that there are.
+        what: The noun of such a plug-in.
+        listed: What stands in front of the valid names; by default the noun's plural.
+        is_misspelt: Whether more than its letters says that the name is the nearest one, misspelt.
+    """
+    near = nearest(name, valid)
+    article = "an" if what[0] in "aeiou" else "a"
+    of_plugin = f"{article} {what} of a plug-in that is not installed needs `--plugin`"
+    is_misspelt = is_misspelt or (near is not None and is_slip(name, near))
+    known = did_you_mean(name, valid, listed or f"{what}s")
+    return [known, *([] if is_misspelt else [of_plugin]), *broken_plugins()]
 
 
 def broken_plugins() -> list[str]:

@@ -20,6 +20,8 @@ SYNONYMS = {
 """Keys of this language, and what other programs call them; verbs and predicates state theirs."""
 
 LONGEST_LIST = 40
+SURELY_MISSPELT = 0.8
+"""The similarity of a word and a valid one, from 0 to 1, above which it is a slip of the pen."""
 
 
 def nearest(word: str, valid: Iterable[str]) -> str | None:
@@ -40,6 +42,12 @@ def nearest(word: str, valid: Iterable[str]) -> str | None:
         return known
     near = difflib.get_close_matches(plain, folded, 1, 0.6)
     return folded[near[0]] if near else None
+
+
+def is_slip(word: str, near: str) -> bool:
+    """Whether a word is nearly the same as the nearest valid one."""
+    plain = word.lower().replace("-", "_")
+    return difflib.SequenceMatcher(None, plain, near).ratio() > SURELY_MISSPELT
 
 
 def did_you_mean(word: str, valid: Iterable[str], what: str) -> str:

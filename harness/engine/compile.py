@@ -15,7 +15,7 @@ from harness.cell.scope import At, Prerequisite, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
-from harness.core.world import WorldObject
+from harness.core.world import MOST_OBJECTS, WorldObject
 from harness.engine.cameras import all_cameras, check_cameras, check_videos
 from harness.engine.options import CheckPlanner, check_planning, merged_options
 from harness.language.expectation import ExpectationFields
@@ -37,7 +37,6 @@ RESERVED = {
     "tcp": "the tool centre point",
 }
 """Names that no object may have, and what expectations mean by them."""
-MOST_OBJECTS = 1000  # of all kinds; 300 that move already take 2 s of wall time for each simulated
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,9 +12,7 @@ from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.engine.advice import advice
 from harness.ports.external import ExternalControl
-from harness.ports.kinematics import Kinematics
-from harness.ports.motion_planning import MotionPlanner
-from harness.ports.scene import PlanningScene
+from harness.ports.planning import PlanningPorts
 from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.explanation import Explanation
@@ -125,9 +123,7 @@ class ProgramExecution:
     def __init__(
         self,
         program: Program,
-        scene: PlanningScene,
-        kinematics: Kinematics,
-        planner: MotionPlanner,
+        ports: PlanningPorts,
         simulator: Simulator,
         on_step: OnStep,
         *,
@@ -138,9 +134,7 @@ class ProgramExecution:
 
         Args:
             program: The program that is executed.
-            scene: Empty; the world's objects are added here.
-            kinematics: The kinematics of the program's robot.
-            planner: The motion planner, which plans in `scene`.
+            ports: The planning scene is empty; the world's objects are added here.
             simulator: The simulator at the start state, with every object of the program prepared
                 and the world's objects present.
             on_step: Called before and after each step.
@@ -153,9 +147,9 @@ class ProgramExecution:
         self.ended_early = ""
         self.cell = Cell(
             description=program.description,
-            scene=scene,
-            kinematics=kinematics,
-            planner=planner,
+            scene=ports.scene,
+            kinematics=ports.kinematics,
+            planner=ports.planner,
             simulator=simulator,
             later_objects=program.later_objects,
             cameras=program.cameras,
@@ -165,7 +159,7 @@ class ProgramExecution:
             self.cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])
             self.cell.believe(obj.name, obj.pose)
             if obj.in_planning:
-                scene.add_object(obj, obj.pose)
+                ports.scene.add_object(obj, obj.pose)
         self._runner = _Runner(self.cell, on_step, keep_going)
         self.cell.run_steps = self._runner.run
 
@@ -203,17 +197,10 @@ class ProgramExecution:
 
 
 def execute_program(
-    program: Program,
-    scene: PlanningScene,
-    kinematics: Kinematics,
-    planner: MotionPlanner,
-    simulator: Simulator,
-    on_step: OnStep,
+    program: Program, ports: PlanningPorts, simulator: Simulator, on_step: OnStep
 ) -> Execution:
     """Run a whole program, whether or not steps fail; see `ProgramExecution` for the arguments."""
-    execution = ProgramExecution(
-        program, scene, kinematics, planner, simulator, on_step, keep_going=True
-    )
+    execution = ProgramExecution(program, ports, simulator, on_step, keep_going=True)
     execution.run(program.steps)
     return execution.finish()
 

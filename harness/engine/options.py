@@ -8,7 +8,7 @@ from harness.cell.program import step_seed
 from harness.cell.scope import Problems
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
-from harness.ports.motion_planning import PlanningOptions
+from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
 
 CheckPlanner = Callable[[str, str, Mapping[str, float]], str]
 """Normalises the name of a pipeline's planner; ValueError, with what there is, for it or its
@@ -16,7 +16,6 @@ parameters."""
 
 DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
 DEFAULT_PADDING = 0.002  # [m]
-DEFAULT_PIPELINE = "ompl"
 DEFAULT_STATE_CHECKS = 200_000
 
 
@@ -38,34 +37,35 @@ def merged_options(
         checks_per_second: State checks that a second of `planning_time` buys.
         planner_name: Normalises a pipeline's `planner_id`; empty is the pipeline's default.
     """
-    stated = scenario.model_dump(exclude_none=True)
-    if step is not None:
-        own = step.model_dump(exclude_none=True)
-        stated = _inherited(scenario, step).model_dump(exclude_none=True)
-        if {"planning_time", "max_state_checks"} & own.keys():
-            stated.pop("planning_time", None)
-            stated.pop("max_state_checks", None)
-        stated.update(own)
-    pipeline = stated.get("pipeline", DEFAULT_PIPELINE)
-    checks = stated.get("max_state_checks")
+    stated = scenario if step is None else _merged(scenario, step)
+    pipeline = stated.pipeline or DEFAULT_PIPELINE
+    checks = stated.max_state_checks
     if checks is None:
-        seconds = stated.get("planning_time")
+        seconds = stated.planning_time
         checks = DEFAULT_STATE_CHECKS if seconds is None else int(seconds * checks_per_second)
-    root_seed = stated.get("seed", seed)
+    root_seed = seed if stated.seed is None else stated.seed
     return PlanningOptions(
         pipeline=pipeline,
-        planner_id=planner_name(pipeline, stated.get("planner_id", "")),
+        planner_id=planner_name(pipeline, stated.planner_id or ""),
         max_state_checks=max(1, checks),
-        attempts=stated.get("planning_attempts", 1),
-        velocity_scaling=stated.get("max_velocity_scaling_factor", DEFAULT_SCALING),
-        acceleration_scaling=stated.get("max_acceleration_scaling_factor", DEFAULT_SCALING),
-        padding=stated.get("padding", DEFAULT_PADDING),
+        attempts=stated.planning_attempts or 1,
+        velocity_scaling=stated.max_velocity_scaling_factor or DEFAULT_SCALING,
+        acceleration_scaling=stated.max_acceleration_scaling_factor or DEFAULT_SCALING,
+        padding=DEFAULT_PADDING if stated.padding is None else stated.padding,
         seed=step_seed(root_seed, path),
         root_seed=root_seed,
-        pose_resolution=stated.get("pose_resolution", 0.0),
-        parameters=stated.get("parameters", {}),
-        max_jerk=stated.get("max_jerk", float("inf")),
+        pose_resolution=stated.pose_resolution or 0.0,
+        parameters=stated.parameters or {},
+        max_jerk=stated.max_jerk or float("inf"),
     )
+
+
+def _merged(scenario: Planning, step: Planning) -> Planning:
+    """A step's planning, and the scenario's for what it does not state."""
+    own = step.model_dump(exclude_none=True)
+    if "planning_time" in own or "max_state_checks" in own:
+        own = {"planning_time": None, "max_state_checks": None, **own}
+    return _inherited(scenario, step).model_copy(update=own)
 
 
 def _inherited(scenario: Planning, step: Planning) -> Planning:

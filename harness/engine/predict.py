@@ -3,54 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
 
 from harness.cell.program import Program, ProgramStep
 from harness.core.spatial import SE3
 from harness.engine.dry_run import DryPlanner, DrySimulator
-from harness.engine.execute import execute_program
-from harness.ports.kinematics import Kinematics
-from harness.ports.motion_planning import MotionPlanner
+from harness.engine.execute import StepEvent, execute_program
+from harness.ports.planning import PlanningPorts
 from harness.ports.scene import PlanningScene, Touch
 from harness.recording.step_record import StepRecord
 
 
 def predict(
-    program: Program, scene: PlanningScene, kinematics: Kinematics, planner: MotionPlanner
-) -> tuple[StepRecord, ...]:
-    """Step records of a run that follows every command exactly; a failed step does not end it."""
-    return predict_with_poses(program, scene, kinematics, planner)[0]
-
-
-def predict_with_poses(
-    program: Program, scene: PlanningScene, kinematics: Kinematics, planner: MotionPlanner
+    program: Program, ports: PlanningPorts
 ) -> tuple[tuple[StepRecord, ...], Mapping[str, tuple[SE3, SE3]]]:
-    """The records that `predict` returns, and T_world_tcp at the start and end of each step.
+    """Step records of a run that follows every command exactly; a failed step does not end it.
 
     Returns:
-        The records, and by the path of a step its two poses; a step that is not reached has none.
+        The records, and by the path of a step T_world_tcp at its start and at its end; a step that
+        is not reached has none.
     """
     simulator = DrySimulator(program)
     poses: dict[str, tuple[SE3, SE3]] = {}
 
-    def watch(
-        kind: Literal["step_started", "step_finished"],
-        step: ProgramStep,
-        record: StepRecord | None,
-    ) -> None:
+    def watch(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
         simulator.watch(kind, step, record)
-        pose = kinematics.link_pose(simulator.joint_positions(), program.description.tcp_link)
+        tcp_link = program.description.tcp_link
+        pose = ports.kinematics.link_pose(simulator.joint_positions(), tcp_link)
         poses[step.path] = (poses.get(step.path, (pose, pose))[0], pose)
 
-    execution = execute_program(
-        program,
-        scene,
-        kinematics,
-        DryPlanner(planner, program.description),
-        simulator,
-        watch,
-    )
-    return execution.steps, poses
+    dry = ports._replace(planner=DryPlanner(ports.planner, program.description))
+    return execute_program(program, dry, simulator, watch).steps, poses
 
 
 def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...]:

@@ -7,25 +7,31 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.contacts import TOUCH_FORCE, robot_contact, was_in_robot
+from harness.assertions.at_rest import (
+    ATTACHED,
+    CONTACT,
+    SPEED,
+    TURNING,
+    released_parts,
+    rest_is_known,
+)
+from harness.assertions.contacts import TOUCH_FORCE, was_in_robot
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.observations import Observations
 from harness.assertions.poses import (
     JUMP,
-    STILL,
     UP,
     body_speeds,
     calm,
     frame_poses,
     object_poses,
-    observed_for,
     present,
     start_samples,
 )
 from harness.assertions.support import required_support, standing, supports
 from harness.assertions.text import amounts
-from harness.assertions.window import NotReached, Window, object_record
+from harness.assertions.window import Window, object_record
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.pose_arrays import (
@@ -54,14 +60,6 @@ PLACE_TILT = 0.1
 SUPPORT = Quantity(
     "support", "N", "at least half of its weight from below, by what the robot does not carry"
 )
-SPEED = Quantity(
-    "speed", "m/s", "of its fastest point at most `max_velocity`, for 50 ms too", "displacement"
-)
-TURNING = Quantity(
-    "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
-)
-CONTACT = Quantity("contact with the robot", "N", "at most 0.001 N", "contact")
-ATTACHED = Quantity("attached in the planning scene", "1", "not attached")
 POSITION = Quantity(
     "position error", "m", "with `pose`: at most the tolerance's `position`", "displacement"
 )
@@ -125,7 +123,6 @@ class Placed(ObjectPredicate):
             body: force for body, force in standing(run, name).items() if self.on in (None, body)
         }
         support = np.sum([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
-        force, hold = robot_contact(run, name)
         speed, turning = (
             window.cut(calm(run, rate)) for rate in body_speeds(run, name, object_poses(run, name))
         )
@@ -135,8 +132,7 @@ class Placed(ObjectPredicate):
             Part(SPEED, speed, self.max_velocity, "<="),
             Part(TURNING, turning, self.max_angular_velocity, "<="),
             Part(SUPPORT, window.cut(support), required_support(run, name), ">=", measured_name=by),
-            Part(CONTACT, window.cut(force), TOUCH_FORCE, "<="),
-            Part(ATTACHED, window.cut(hold), 0.0, "=="),
+            *released_parts(window, name),
         ]
 
         def text(index: int, tightest: Measure) -> str:
@@ -151,11 +147,8 @@ class Placed(ObjectPredicate):
             return f"{name} {rests}; {_against(tightest)}"
 
         here = present(run, name)
-        judged = observed_for(run, here, STILL)
-        if window.cut(here).any() and not window.cut(judged).any():
-            soon = f"what stands still is known after {1000 * STILL:.0f} ms, not before"
-            raise NotReached(window.cut_short or soon)
-        return all_of(window, parts, text, present=window.cut(here), applies=window.cut(judged))
+        judged = rest_is_known(window, here)
+        return all_of(window, parts, text, present=window.cut(here), applies=judged)
 
     def unchanged(self, window: Window) -> str:
         run, name = window.run, self.object

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from harness.assertions.contacts import TOUCH_FORCE, robot_contact, was_in_robot
+from harness.assertions.at_rest import ATTACHED, CONTACT, released_parts
+from harness.assertions.contacts import was_in_robot
 from harness.assertions.expectation import ObjectPredicate
-from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.margins import MarginSignal, all_of
 from harness.assertions.poses import present
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.cell.scope import At
-from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
-
-CONTACT = Quantity("contact with the robot", "N", "at most 0.001 N", "contact")
-ATTACHED = Quantity("attached in the planning scene", "1", "not attached")
 
 
 class Released(ObjectPredicate):
@@ -28,19 +25,15 @@ class Released(ObjectPredicate):
 
     def signal(self, window: Window) -> MarginSignal:
         """No contact with any link of the robot, and not attached in the planning scene."""
-        run, name = window.run, self.object
-        force, hold = robot_contact(run, name)
-        force, hold = window.cut(force), window.cut(hold)
-        parts = [
-            Part(CONTACT, force, TOUCH_FORCE, "<="),
-            Part(ATTACHED, hold, 0.0, "=="),
-        ]
+        name = self.object
+        parts = released_parts(window, name)
+        force, hold = (part.values for part in parts)
 
         def text(index: int, _: Measure) -> str:
             belief = "attached in the planning scene" if hold[index] else "not attached"
             return f"the robot touches {name} with {amount(float(force[index]), 'N')}; {belief}"
 
-        return all_of(window, parts, text, present=window.cut(present(run, name)))
+        return all_of(window, parts, text, present=window.cut(present(window.run, name)))
 
     def unchanged(self, window: Window) -> str:
         if was_in_robot(window.run, self.object, slice(window.stop)):

@@ -7,23 +7,18 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from harness.assertions.at_rest import SPEED, TURNING, rest_is_known
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import STILL, body_speeds, calm, observed_for, physical_poses, present
+from harness.assertions.poses import body_speeds, calm, physical_poses, present
 from harness.assertions.text import amount
-from harness.assertions.window import NotReached, Window, lasting
+from harness.assertions.window import Window, lasting
 from harness.cell.scope import At
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
-SPEED = Quantity(
-    "speed", "m/s", "of its fastest point at most `max_velocity`, for 50 ms too", "displacement"
-)
-TURNING = Quantity(
-    "turning speed", "rad/s", "at most `max_angular_velocity`, and for 50 ms before", "displacement"
-)
 JOINT_SPEED = Quantity(
     "joint speed", "rad/s or m/s", "of everything: the same limits, for each joint", "displacement"
 )
@@ -71,10 +66,7 @@ class Static(Predicate):
         here = np.ones(len(run.signals.times), dtype=bool)
         if self.object is not None:
             here = present(run, self.object)
-        judged = window.cut(observed_for(run, here, STILL))
-        if window.cut(here).any() and not judged.any():
-            soon = f"what stands still is known after {1000 * STILL:.0f} ms, not before"
-            raise NotReached(window.cut_short or soon)
+        judged = rest_is_known(window, here)
         parts: list[Part] = []
         names = [self.object] if self.object is not None else _dynamic(run)
         for name in names:

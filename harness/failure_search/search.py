@@ -81,16 +81,21 @@ class SearchRequest:
         scenario = load_scenario(
             file, {**_case_overrides(file, case, variation), **overrides}
         ).scenario
-        stated = (scenario.search or Search()).model_dump()
-        stated |= {name: value for name, value in settings.items() if value is not None}
-        names = scenario.expectation_names()
-        if stated["minimise"] is not None and stated["minimise"] not in names:
-            known = f"; {did_you_mean(stated['minimise'], names, 'names')}" if names else ""
+        given = {name: value for name, value in settings.items() if value is not None}
+        stated = (scenario.search or Search()).model_copy(update=given)
+        names, minimise = scenario.expectation_names(), stated.minimise
+        if minimise is not None and minimise not in names:
+            known = f"; {did_you_mean(minimise, names, 'names')}" if names else ""
             raise UsageError(
-                f"--minimise: no expectation of '{file}' is called '{stated['minimise']}'{known}"
+                f"--minimise: no expectation of '{file}' is called '{minimise}'{known}"
             )
-        stated["start"] = min(stated["start"], stated["runs"])
-        return cls(file, overrides, case, workers=workers, hard_cap=hard_cap, **stated)
+        start = min(stated.start, stated.runs)
+        return cls(
+            *(file, overrides, case),
+            *(stated.seed, stated.runs, start, stated.batch, minimise),
+            workers=workers,
+            hard_cap=hard_cap,
+        )
 
 
 @dataclass(frozen=True)

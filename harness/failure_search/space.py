@@ -11,9 +11,10 @@ from typing import Any
 
 from harness.core.quantity import split_quantity
 from harness.language.reading.load import load_scenario
-from harness.language.reading.overrides import value_at as written_at
+from harness.language.reading.overrides import value_at
 from harness.language.units import conversion_factor
-from harness.suite.variation import Variation, value_at
+from harness.suite.distribution import Choice, Distribution, Uniform
+from harness.suite.variation import Variation
 
 TAIL = 0.001
 """Share of a normal distribution beyond each end of its range."""
@@ -33,25 +34,25 @@ class Parameter:
 
     Attributes:
         path: Where it stands in the file, as `randomize` names it.
-        distribution: The distribution as the file writes it.
+        distribution: The distribution of its values.
         nominal: The value that the file itself has; else the middle of the distribution.
     """
 
     path: str
-    distribution: Mapping[str, Any]
+    distribution: Distribution
     nominal: Any
 
     @property
     def is_number(self) -> bool:
         """Whether the value is a number, so that there are values in between."""
-        return "choice" not in self.distribution
+        return not isinstance(self.distribution, Choice)
 
     @property
     def bounds(self) -> tuple[float, float]:
         """The ends of the distribution's range, in its own unit."""
-        ends = (0.0, 1.0) if "uniform" in self.distribution else (TAIL, 1 - TAIL)
-        low, high = (split_quantity(value_at(self.distribution, end))[0] for end in ends)
-        return low, high
+        assert not isinstance(self.distribution, Choice)
+        tail = 0.0 if isinstance(self.distribution, Uniform) else TAIL
+        return self.distribution.number_at(tail), self.distribution.number_at(1 - tail)
 
     @property
     def step(self) -> float:
@@ -66,8 +67,8 @@ class Parameter:
     def value(self, number: float) -> float | str:
         """The value of a number in the unit of the distribution, rounded to the step."""
         digits = max(0, -math.floor(math.log10(self.step)))
-        unit = split_quantity(value_at(self.distribution, MIDDLE))[1]
-        return f"{round(number, digits)!r} {unit}" if unit else round(number, digits)
+        assert not isinstance(self.distribution, Choice)
+        return self.distribution.written(round(number, digits))
 
     def change(self, value: Any) -> float:
         """How far a value is from the nominal one, as a share of the range; 1 for words."""
@@ -93,7 +94,7 @@ class SearchSpace:
     def point(self, shares: Sequence[float]) -> Point:
         """The point at shares of the distributions, each in [0, 1)."""
         return tuple(
-            value_at(each.distribution, float(share))
+            each.distribution.at(float(share))
             for each, share in zip(self.parameters, shares, strict=True)
         )
 
@@ -130,24 +131,20 @@ def search_space(
     written = load_scenario(file, overrides or {}).written
     return SearchSpace(
         tuple(
-            Parameter(path, distribution, _nominal(written_at(written, path), distribution))
+            Parameter(path, distribution, _nominal(value_at(written, path), distribution))
             for path, distribution in variation.randomize.items()
         )
     )
 
 
-def _nominal(value: Any, distribution: Mapping[str, Any]) -> Any:
+def _nominal(value: Any, distribution: Distribution) -> Any:
     """The file's value in the unit of the distribution; without one, the distribution's middle."""
-    middle = value_at(distribution, MIDDLE)
-    if "choice" in distribution:
+    middle = distribution.at(MIDDLE)
+    if isinstance(distribution, Choice):
         return middle if value is None else value
     try:
         number, unit = split_quantity(value)
     except ValueError:
         return middle
-    target = split_quantity(middle)[1]
-    factor = conversion_factor(unit, target)
-    if factor is None:
-        return middle
-    number *= factor
-    return f"{number!r} {target}" if target else number
+    factor = conversion_factor(unit, distribution.unit)
+    return middle if factor is None else distribution.written(number * factor)

@@ -164,7 +164,7 @@ def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> d
         "outcome": "failed" if is_failing(found) else "passed",
         "nominal": {"outcome": found.nominal.result.outcome, "digest": found.nominal.result.digest},
         "parameters": {
-            each.path: {"nominal": each.nominal, **each.distribution}
+            each.path: {"nominal": each.nominal, **each.distribution.plain}
             for each in found.space.parameters
         },
         "runs": len(exploration.samples),

@@ -96,7 +96,7 @@ def grade_bag(
     prepared = prepare(scenario, overrides)
     program = prepared.program
     known = Recorded(
-        robot=robot_record(program.description, prepared.kinematics),
+        robot=robot_record(program.description, prepared.ports.kinematics),
         description=program.description,
         objects=program.all_objects(),
         at_start=frozenset(obj.name for obj in program.world.objects),

@@ -15,7 +15,7 @@ from harness.core.types import FloatArray
 from harness.iktest.contract import UnusableSolver, call_arguments, call_text, task_of_parameters
 from harness.iktest.offset import common_offset
 from harness.iktest.properties import BRANCHES, PROPERTIES, Property, within_reach
-from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed
+from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed, write_ik_report
 from harness.iktest.search import draw, shrink_case
 from harness.iktest.solver import InProcess, Isolated, Solver
 from harness.iktest.text import report_lines
@@ -106,8 +106,6 @@ def run_ik_test(test: IkTest) -> IkReport:
     )
     if test.report_dir is None:
         return report
-    from harness.iktest.report import write_ik_report
-
     return write_ik_report(report, chain, test.report_dir)
 
 

@@ -8,8 +8,7 @@ from typing import Any, cast
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-from harness.core.registry import broken_plugins, noun, registry
-from harness.core.suggestion import did_you_mean
+from harness.core.registry import noun, plugin_hints, registry
 from harness.language.base import SpecModel
 from harness.language.files.mistakes import MistakeError
 
@@ -88,5 +87,5 @@ class PluginName:
         if name in self.refused:
             raise MistakeError(*self.refused[name])
         what = noun(self.kind)
-        hints = [did_you_mean(name, [*self.also, *known], f"{what}s"), *broken_plugins()]
+        hints = plugin_hints(name, [*self.also, *known], what)
         raise MistakeError(f"there is no {what} `{name}`", "; ".join(hints))

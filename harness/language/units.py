@@ -118,11 +118,7 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
         raise MistakeError(_no_number(text, units), usage(units))
     number, unit = float(match["number"]), match["unit"]
     if not unit:
-        if units == SHARE:
-            hint = f"write {match['number']} without quotes, or a percentage: `90 %`"
-            raise MistakeError(f"is the text {value_text(text)}, not a number", hint)
-        hint = f"write {match['number']} without quotes for {units[0]}, or give a unit"
-        raise MistakeError(f"`{text}` is text without a unit", f"{hint}: {written(units)}")
+        raise _without_unit(text, match["number"], units)
     if unit == "%":
         if units == SHARE:
             return number / 100
@@ -132,12 +128,7 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
             return number * COMMON[target][unit]
     given = _parsed(unit.replace("^", "**").replace("·", "*"))
     if given is None:
-        near = nearest(unit, [name for name in SUGGESTED if _measures(name, units)])
-        is_guess = near is None or (len(unit) <= 2 and near.lower() != unit.lower())
-        start = "" if is_guess else f"did you mean `{match['number']} {near}`? "
-        raise MistakeError(
-            f"`{text}`: no unit is called `{unit}`", f"{start}units: {written(units)}"
-        )
+        raise _unknown_unit(text, match["number"], unit, units)
     for target in units:
         target_unit = _parsed(target)
         if target_unit is not None and given.is_compatible_with(target_unit):
@@ -145,6 +136,22 @@ def in_si(text: str, units: tuple[str, ...]) -> float:
     raise MistakeError(
         f"`{text}` is {_measured(given)}; {expected(units)} is expected", usage(units)
     )
+
+
+def _without_unit(text: str, number: str, units: tuple[str, ...]) -> MistakeError:
+    if units == SHARE:
+        hint = f"write {number} without quotes, or a percentage: `90 %`"
+        return MistakeError(f"is the text {value_text(text)}, not a number", hint)
+    hint = f"write {number} without quotes for {units[0]}, or give a unit"
+    return MistakeError(f"`{text}` is text without a unit", f"{hint}: {written(units)}")
+
+
+def _unknown_unit(text: str, number: str, unit: str, units: tuple[str, ...]) -> MistakeError:
+    near = nearest(unit, [name for name in SUGGESTED if _measures(name, units)])
+    is_guess = near is None or (len(unit) <= 2 and near.lower() != unit.lower())
+    start = "" if is_guess else f"did you mean `{number} {near}`? "
+    message = f"`{text}`: no unit is called `{unit}`"
+    return MistakeError(message, f"{start}units: {written(units)}")
 
 
 def conversion_factor(unit: str, target: str) -> float | None:

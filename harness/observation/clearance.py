@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,10 +49,7 @@ class CoalClearance:
     """Distances along a recorded run, exact wherever they are below the cutoff."""
 
     def __init__(self, description: RobotDescription) -> None:
-        self.description = description
-        self._robot = RobotModel(description)
-        self._shapes = links_with_shapes({link.name: link.collisions for link in description.links})
-        self._index = {name: index for index, name in enumerate(description.link_names)}
+        self._robot = _Robot(description)
 
     def observe(
         self,
@@ -76,10 +73,11 @@ class CoalClearance:
         count = len(signals.times)
         if not count:
             return replace(signals, clearance_cutoff=cutoff)
+        scene = _Scene(self._robot, objects, attachments, cutoff, only)
         motion = Motion.of(signals)
-        samples = knots(motion.times, objects, attachments)
+        samples = scene.knots(motion)
         parts = [
-            measured(number) or self._measured(motion.at(part), objects, attachments, cutoff, only)
+            measured(number) or scene.measured(motion.at(part))
             for number, part in reversed([*enumerate(parts_of_run(motion.times, samples))])
         ]  # the last ones first: others may still be measured by another process
         found = MeasuredClearance.joined(parts[::-1])
@@ -91,14 +89,12 @@ class CoalClearance:
         )
         if len(near):
             stretches = np.cumsum(np.diff(near, prepend=near[:1]) > 1, dtype=np.int64)
-            finer = self._measured(
-                motion.at(near), objects, attachments, cutoff, only, stretches=stretches
-            )
+            finer = scene.measured(motion.at(near), stretches)
             samples = found.refined(finer, samples, near)
         distances = {
             key: between(samples, values, count) for key, values in found.distances.items()
         }
-        self._look_between(distances, found, samples, motion, objects, attachments, cutoff)
+        _look_between(distances, found, samples, motion, scene)
         links = {
             key: nearest_measured(samples, values, distances[key], cutoff)
             for key, values in found.links.items()
@@ -116,34 +112,9 @@ class CoalClearance:
         numbers: range,
     ) -> dict[int, MeasuredClearance]:
         """Distances in complete parts of a running run, by the numbers of the parts."""
-        parts = parts_of_run(motion.times, knots(motion.times, objects, attachments))
-        return {
-            number: self._measured(motion.at(parts[number]), objects, attachments, cutoff)
-            for number in numbers
-        }
-
-    def _look_between(
-        self,
-        distances: Mapping[tuple[str, str], FloatArray],
-        found: MeasuredClearance,
-        samples: IntArray,
-        motion: Motion,
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-    ) -> None:
-        """Lower distances to the smallest before the next sample, where bodies are that fast."""
-        dips = largest_dip(found.dips())
-        fast = np.flatnonzero((dips > LARGEST_ERROR) & (np.diff(samples) == 1))
-        if not len(fast):
-            return
-        owners, shares = parts_of(samples[fast], dips[fast])
-        finer = self._measured(
-            motion.between(owners, shares), objects, attachments, cutoff, distances.keys()
-        )
-        for key, values in finer.distances.items():
-            absent = np.isnan(distances[key][owners])
-            np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))
+        scene = _Scene(self._robot, objects, attachments, cutoff)
+        parts = parts_of_run(motion.times, scene.knots(motion))
+        return {number: scene.measured(motion.at(parts[number])) for number in numbers}
 
     def distances(
         self,
@@ -154,98 +125,135 @@ class CoalClearance:
         pairs: Collection[Pair] | None = None,
     ) -> Mapping[Pair, FloatArray]:
         """Distances of all pairs, or of some, at every given sample, as in `Signals.clearances`."""
-        return self._measured(motion, objects, attachments, cutoff, pairs).distances
+        return _Scene(self._robot, objects, attachments, cutoff, pairs).measured(motion).distances
 
-    def _measured(
-        self,
-        motion: Motion,
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-        only: Collection[Pair] | None = None,
-        stretches: IntArray | None = None,
-    ) -> MeasuredClearance:
-        """Distances at every given sample; None measures all pairs."""
-        found = MeasuredClearance(len(motion.times), only=only, stretches=stretches)
-        is_of_robot = only is None or any(ROBOT in pair for pair in only)
-        if not (is_of_robot or any(_during(each, motion).any() for each in attachments)):
-            return found
-        found.may_be_known = was_seen(
-            "motion", self.description.key, motion.joint_positions, cutoff, only, stretches
+
+def _look_between(
+    distances: Mapping[Pair, FloatArray],
+    found: MeasuredClearance,
+    samples: IntArray,
+    motion: Motion,
+    scene: _Scene,
+) -> None:
+    """Lower distances to the smallest before the next sample, where bodies are that fast."""
+    dips = largest_dip(found.dips())
+    fast = np.flatnonzero((dips > LARGEST_ERROR) & (np.diff(samples) == 1))
+    if not len(fast):
+        return
+    owners, shares = parts_of(samples[fast], dips[fast])
+    finer = replace(scene, only=distances.keys()).measured(motion.between(owners, shares))
+    for key, values in finer.distances.items():
+        absent = np.isnan(distances[key][owners])
+        np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))
+
+
+class _Robot:
+    """The links of a robot that have shapes, and the pairs of them that may come near."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self.description = description
+        self.shapes = links_with_shapes({link.name: link.collisions for link in description.links})
+        self.index = {name: index for index, name in enumerate(description.link_names)}
+        self._model = RobotModel(description)
+
+    def is_self_pair(self, first: str, second: str) -> bool:
+        """Whether the distance of two links says something: both move, and neither is allowed."""
+        if self._model.parent_joint(first) == self._model.parent_joint(second):
+            return False
+        key = (first, second) if first <= second else (second, first)
+        if key in self.description.allowed_collisions:
+            return False
+        return not any(
+            {joint.parent, joint.child} == {first, second} for joint in self.description.joints
         )
-        links = LinkPoses(self.description, motion.joint_positions)
-        tracks = {
-            record.name: object_track(record, attachments, motion, links) for record in objects
-        }
-        bodies = {
-            link: MovingBody(shapes, link_track(links, link), stretches)
-            for link, shapes in self._shapes.items()
-        }
-        self._robot_to_itself(found, bodies, motion, cutoff)
-        for record in objects:
-            there = tracks[record.name].present & ~_held(record.name, attachments, motion)
-            if there.any():
-                track = tracks[record.name]
-                self._robot_to_object(found, bodies, record, track, there, motion, cutoff)
-        for attachment in attachments:
-            self._held_to_objects(found, links, attachment, objects, tracks, motion, cutoff)
+
+
+@dataclass(frozen=True, eq=False)
+class _Scene:
+    """What is measured: a robot, the objects and attachments of a run, the cutoff and the pairs."""
+
+    robot: _Robot
+    objects: Sequence[ObjectRecord]
+    attachments: Sequence[AttachmentRecord]
+    cutoff: float
+    only: Collection[Pair] | None = None
+
+    def knots(self, motion: Motion) -> IntArray:
+        """The samples of a run at which distances are measured first."""
+        return knots(motion.times, self.objects, self.attachments)
+
+    def measured(self, motion: Motion, stretches: IntArray | None = None) -> MeasuredClearance:
+        """Distances at every given sample."""
+        found = MeasuredClearance(len(motion.times), only=self.only, stretches=stretches)
+        is_of_robot = self.only is None or any(ROBOT in pair for pair in self.only)
+        if is_of_robot or any(_during(each, motion).any() for each in self.attachments):
+            _Measurement(self, motion, found).measure()
         return found
 
-    def _robot_to_itself(
-        self,
-        found: MeasuredClearance,
-        links: Mapping[str, MovingBody],
-        motion: Motion,
-        cutoff: float,
-    ) -> None:
+
+class _Measurement:
+    """The distances of a scene's bodies along one motion."""
+
+    def __init__(self, scene: _Scene, motion: Motion, found: MeasuredClearance) -> None:
+        self._scene, self._motion, self._found = scene, motion, found
+        self._description = scene.robot.description
+        self._links = LinkPoses(self._description, motion.joint_positions)
+        self._tracks = {
+            record.name: object_track(record, scene.attachments, motion, self._links)
+            for record in scene.objects
+        }
+        self._bodies = {
+            link: MovingBody(shapes, link_track(self._links, link), found.stretches)
+            for link, shapes in scene.robot.shapes.items()
+        }
+
+    def measure(self) -> None:
+        """Put the distances of all pairs in."""
+        scene, motion, found = self._scene, self._motion, self._found
+        inputs = self._description.key, motion.joint_positions
+        found.may_be_known = was_seen("motion", *inputs, scene.cutoff, scene.only, found.stretches)
+        self._robot_to_itself()
+        for record in scene.objects:
+            track = self._tracks[record.name]
+            there = track.present & ~_held(record.name, scene.attachments, motion)
+            if there.any():
+                self._robot_to_object(record, track.part(there), there)
+        for attachment in scene.attachments:
+            self._held_to_objects(attachment)
+
+    def _robot_to_itself(self) -> None:
         def bodies() -> Iterator[Bodies]:
-            names = list(links)
+            names = list(self._bodies)
             for later, second in enumerate(names):
-                firsts = [name for name in names[:later] if self._is_self_pair(name, second)]
-                yield [links[name] for name in firsts], links[second]
+                firsts = [
+                    name for name in names[:later] if self._scene.robot.is_self_pair(name, second)
+                ]
+                yield [self._bodies[name] for name in firsts], self._bodies[second]
 
-        inputs = self.description.key, motion.joint_positions
-        everywhere = np.ones(found.count, dtype=bool)
-        self._measure(found, (ROBOT, ROBOT), everywhere, inputs, bodies, cutoff)
+        inputs = self._description.key, self._motion.joint_positions
+        everywhere = np.ones(self._found.count, dtype=bool)
+        self._measure((ROBOT, ROBOT), everywhere, inputs, bodies)
 
-    def _robot_to_object(
-        self,
-        found: MeasuredClearance,
-        links: Mapping[str, MovingBody],
-        record: ObjectRecord,
-        track: BodyTrack,
-        there: BoolArray,
-        motion: Motion,
-        cutoff: float,
-    ) -> None:
-        track = track.part(there)
-
+    def _robot_to_object(self, record: ObjectRecord, track: BodyTrack, there: BoolArray) -> None:
         def bodies() -> Iterator[Bodies]:
-            standing = self.description.static_links if record.is_static else frozenset()
+            standing = self._description.static_links if record.is_static else frozenset()
             shapes = tracked_shapes(record.name, record.shapes)
-            other = MovingBody(shapes, track, found.stretches_of(there))
-            yield [body.part(there) for link, body in links.items() if link not in standing], other
+            other = MovingBody(shapes, track, self._found.stretches_of(there))
+            links = self._bodies.items()
+            yield [body.part(there) for link, body in links if link not in standing], other
 
         inputs = (
-            *(self.description.key, motion.joint_positions[there]),
+            *(self._description.key, self._motion.joint_positions[there]),
             *(record.shapes, record.is_static, track.rotations, track.translations),
         )
-        self._measure(found, (ROBOT, record.name), there, inputs, bodies, cutoff)
+        self._measure((ROBOT, record.name), there, inputs, bodies)
 
-    def _held_to_objects(
-        self,
-        found: MeasuredClearance,
-        links: LinkPoses,
-        attachment: AttachmentRecord,
-        objects: Sequence[ObjectRecord],
-        tracks: Mapping[str, BodyTrack],
-        motion: Motion,
-        cutoff: float,
-    ) -> None:
+    def _held_to_objects(self, attachment: AttachmentRecord) -> None:
         """Distances of an attached object: in the physics, and as assumed by the planning scene."""
+        motion, tracks, objects = self._motion, self._tracks, self._scene.objects
         during = _during(attachment, motion)
-        believed = carried_track(link_track(links, attachment.link), attachment.pose_in_link)
-        held: dict[str, BodyTrack] = {attachment.object: believed}
+        carrier = link_track(self._links, attachment.link)
+        held = {attachment.object: carried_track(carrier, attachment.pose_in_link)}
         for name in (attachment.object, attachment.represents):
             if name in motion.object_poses and name in tracks:
                 held[name] = tracks[name]
@@ -259,40 +267,36 @@ class CoalClearance:
                 if record.name in same or not there.any():
                     continue
                 both = (name, shapes.get(name, ())), (record.name, record.shapes)
-                tracked = track.part(there), other.part(there)
-                self._object_to_object(found, there, both, tracked, cutoff)
+                self._object_to_object(there, both, (track.part(there), other.part(there)))
 
     def _object_to_object(
         self,
-        found: MeasuredClearance,
         there: BoolArray,
         shapes: tuple[tuple[str, Sequence[Shape]], tuple[str, Sequence[Shape]]],
         tracks: tuple[BodyTrack, BodyTrack],
-        cutoff: float,
     ) -> None:
         """Distances of two objects, where both are there."""
 
         def bodies() -> Iterator[Bodies]:
             first, second = (
-                MovingBody(tracked_shapes(*each), track, found.stretches_of(there))
+                MovingBody(tracked_shapes(*each), track, self._found.stretches_of(there))
                 for each, track in zip(shapes, tracks, strict=True)
             )
             yield [first] if first.shapes else [], second
 
         inputs = shapes, [(track.rotations, track.translations) for track in tracks]
         (first, _), (second, _) = shapes
-        self._measure(found, (first, second), there, inputs, bodies, cutoff)
+        self._measure((first, second), there, inputs, bodies)
 
     def _measure(
         self,
-        found: MeasuredClearance,
         key: Pair,
         there: BoolArray,
         inputs: tuple[object, ...],
         bodies: Callable[[], Iterable[Bodies]],
-        cutoff: float,
     ) -> None:
         """Distances of two bodies, measured here or by a case in which they moved alike."""
+        found, cutoff = self._found, self._scene.cutoff
         if found.only is not None and key not in found.only:
             return
 
@@ -303,7 +307,8 @@ class CoalClearance:
             every = [pair for each in some for pair in pairs_between(*each, cutoff)]
             count = int(np.count_nonzero(there))
             distances, which = smallest_distances(every, cutoff, count)
-            of_pair = np.array([self._index.get(pair.first.body, -1) for pair in every] + [-1])
+            index = self._scene.robot.index
+            of_pair = np.array([index.get(pair.first.body, -1) for pair in every] + [-1])
             return distances, of_pair[which], largest_travel(every, cutoff, count)
 
         def facts() -> tuple[object, ...]:
@@ -313,17 +318,6 @@ class CoalClearance:
         if result:
             distances, links, moved = result
             found.put(key, there, distances, links if key[0] == ROBOT else None, moved)
-
-    def _is_self_pair(self, first: str, second: str) -> bool:
-        robot = self._robot
-        if robot.parent_joint(first) == robot.parent_joint(second):
-            return False
-        key = (first, second) if first <= second else (second, first)
-        if key in self.description.allowed_collisions:
-            return False
-        return not any(
-            {joint.parent, joint.child} == {first, second} for joint in self.description.joints
-        )
 
 
 def _held(name: str, attachments: Sequence[AttachmentRecord], motion: Motion) -> BoolArray:

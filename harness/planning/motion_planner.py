@@ -1,13 +1,17 @@
-"""The planner's front door: free motions, joint motions, straight lines, each verified."""
+"""The planner's front door: free motions, joint motions, straight lines, verified and shared."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import wraps
+from typing import TypeVar
 
 import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
+from harness.core.sharing import shared
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.cartesian_path import plan_waypoints
@@ -20,7 +24,6 @@ from harness.planning.free_motion import find_motion
 from harness.planning.goals.goal_choice import choose_goals
 from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.shared_plans import sharing_plans
 from harness.planning.task import PlanningTask, make_task
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import cubic_curve, on_grid, quintic_curve, sample
@@ -45,6 +48,34 @@ STATE_CHECKS_PER_SECOND = 20_000
 One check of a UR with its gripper in the lesson's world takes 20 to 25 microseconds on the
 project's machines, so that a second there buys twice as much.
 """
+R = TypeVar("R")
+Method = Callable[["VerifiedPlanner", MotionRequest], R]
+
+
+def sharing_plans(kind: str) -> Callable[[Method[R]], Method[R]]:
+    """Let cases share the results of a planner's method, of which a failure is one.
+
+    Args:
+        kind: What the results are called in the record of a case.
+    """
+
+    def decorated(method: Method[R]) -> Method[R]:
+        @wraps(method)
+        def planning(self: VerifiedPlanner, request: MotionRequest) -> R:
+            def result() -> R | PlanningFailed:
+                try:
+                    return method(self, request)
+                except PlanningFailed as failure:
+                    return failure
+
+            found = shared(kind, lambda: (method.__qualname__, self.scene.key, request), result)
+            if isinstance(found, PlanningFailed):
+                raise found
+            return found
+
+        return planning
+
+    return decorated
 
 
 class VerifiedPlanner:

@@ -12,6 +12,8 @@ from harness.core.types import FloatArray
 from harness.ports.goals import AnyGoal, Goal
 from harness.ports.motions import PILZ_LIMITS, CartesianLimits, PlannedMotion
 
+DEFAULT_PIPELINE = "ompl"
+
 
 @dataclass(frozen=True)
 class PlanningOptions:
@@ -36,7 +38,7 @@ class PlanningOptions:
         is_explained: Explain a failure, which takes longer than many plans.
     """
 
-    pipeline: str = "ompl"
+    pipeline: str = DEFAULT_PIPELINE
     planner_id: str = "auto"
     max_state_checks: int = 200_000
     attempts: int = 1

@@ -18,7 +18,6 @@ from harness.robot.gripper.find_hand import hand_candidates, named_hand
 from harness.robot.gripper.inferred_gripper import IntegratedGripper, NoGripperError, recognise
 from harness.robot.gripper.inferred_tcp import tcp_without_gripper, with_integrated_gripper
 from harness.robot.groups import planning_groups
-from harness.robot.mimic_friction import with_reflected_friction
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
@@ -29,6 +28,28 @@ DAMPED_SHARE = 0.5
 
 START_STATES = ("home", "ready", "start", "default", "init", "rest")
 """Names of start states of an imported arm, in order of preference."""
+
+
+def with_reflected_friction(joints: Sequence[Joint]) -> tuple[Joint, ...]:
+    """The joints with the damping and friction of mimic joints moved to the joint they follow.
+
+    A rigid coupling transmits both, so the motion is the same. The physics couples joints by a
+    force that it chooses from their inertia, and then integrates damping implicitly: a follower
+    whose damping times the time step is much larger than its inertia would hardly obey.
+    """
+    damping = {joint.name: joint.damping for joint in joints}
+    friction = {joint.name: joint.friction for joint in joints}
+    for joint in joints:
+        if joint.mimic is None:
+            continue
+        ratio = abs(joint.mimic.multiplier)
+        damping[joint.mimic.joint] += ratio**2 * joint.damping
+        friction[joint.mimic.joint] += ratio * joint.friction
+        damping[joint.name] = friction[joint.name] = 0.0
+    return tuple(
+        replace(joint, damping=damping[joint.name], friction=friction[joint.name])
+        for joint in joints
+    )
 
 
 def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: str) -> RobotPart:

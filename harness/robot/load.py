@@ -123,12 +123,39 @@ def _loaded_once(bundled: _Bundled, collision: CollisionMode | None) -> RobotDes
 
 
 def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotDescription:
+    main, tool = _parts(spec, base_dir)
+    description = compose_robot(main, tool, spec.base.se3())
+    if spec.kinematics is not None:
+        note = f"the joints' poses are those of the calibration {spec.kinematics}"
+        description = replace(description, notes=(*description.notes, note))
+    description, known = with_moveit_files(description, spec.moveit, base_dir)
+    is_imported = spec.model is None and main is not None
+    if is_imported:
+        known |= {name for name, limits in spec.joint_limits.items() if limits.max_acceleration}
+        description = with_possible_accelerations(description, known)
+    description = with_options(description, spec)
+    if is_imported:
+        description = with_assumed_limits_listed(description, known)
+    links = spec.collision
+    if not isinstance(links, str):
+        own: dict[str, CollisionMode] = {}
+        for part in filter(None, (main, tool)):
+            own |= part.facts.collision
+        links = own | (links or {})
+    return with_collision_shapes(description, links, collision)
+
+
+def _parts(spec: RobotSpec, base_dir: Path) -> tuple[RobotPart | None, RobotPart | None]:
+    """The arm, without the gripper that another one replaces, and the gripper.
+
+    Raises:
+        RobotError: One of them is unknown, or they do not fit each other.
+    """
     if spec.base.frame != "world":
         raise RobotOptionError(
             "base", f"it is a pose in the frame 'world', not in '{spec.base.frame}'"
         )
-    main = _main(spec, base_dir)
-    tool = None
+    main, tool = _main(spec, base_dir), None
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
         tool = _part(spec.gripper, "gripper", {}, base_dir)
     if tool is not None and tool.facts.kind != "gripper":
@@ -143,25 +170,7 @@ def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) ->
         main = without_gripper(main)
     if spec.kinematics is not None:
         main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
-    description = compose_robot(main, tool, spec.base.se3())
-    if spec.kinematics is not None:
-        note = f"the joints' poses are those of the calibration {spec.kinematics}"
-        description = replace(description, notes=(*description.notes, note))
-    description, known = with_moveit_files(description, spec.moveit, base_dir)
-    if spec.model is None and main is not None:
-        known |= {name for name, limits in spec.joint_limits.items() if limits.max_acceleration}
-        description = with_possible_accelerations(description, known)
-    description = with_options(description, spec)
-    if spec.model is None and main is not None:
-        description = with_assumed_limits_listed(description, known)
-    links = spec.collision
-    if not isinstance(links, str):
-        parts = [part for part in (main, tool) if part is not None]
-        own: dict[str, CollisionMode] = {}
-        for part in parts:
-            own |= part.facts.collision
-        links = own | (links or {})
-    return with_collision_shapes(description, links, collision)
+    return main, tool
 
 
 def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:

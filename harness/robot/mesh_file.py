@@ -23,8 +23,7 @@ from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape
 from harness.core.solids import solid_of
 from harness.core.types import FloatArray, IntArray
-from harness.robot.decomposition.convex_parts import Decomposition
-from harness.robot.decomposition.parts_cache import stored_decomposition
+from harness.robot.decomposition.convex_parts import Decomposition, stored_decomposition
 
 SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".glb")
 KINDS = "STL, OBJ, DAE, PLY or GLB"

@@ -40,7 +40,7 @@ class HandOver(ABC):
     def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
         self.prepared, self.simulator = prepared, simulator
         self.cell = ExternalCell(simulator, prepared.program.controllers)
-        self.robot = robot_record(prepared.program.description, prepared.kinematics)
+        self.robot = robot_record(prepared.program.description, prepared.ports.kinematics)
 
     @property
     def commands(self) -> tuple[CommandRecord, ...]:

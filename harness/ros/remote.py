@@ -102,7 +102,7 @@ class RemoteArm:
             StepFailed: COMMUNICATION_FAILURE; a server or a joint is missing.
         """
         self._graph, self._share, self._confirm = graph, velocity_scaling, confirm
-        self._kinematics, self._program = prepared.kinematics, prepared.program
+        self._kinematics, self._program = prepared.ports.kinematics, prepared.program
         self.description = self._program.description
         self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
         self._states = JointStates(graph, self.description)

@@ -10,7 +10,7 @@ from harness.assertions.expectation_text import describe
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
 from harness.engine.explain import explain
-from harness.engine.predict import predict, predict_with_poses, touches_at_start, unexpected
+from harness.engine.predict import predict, touches_at_start, unexpected
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
@@ -59,8 +59,8 @@ def check_file(
         return CheckResult(path.name, problems=tuple(error.problems))
     problems = _problems_of_choices(prepared.loaded, path, overrides, seed)
     program = prepared.program
-    touches = touches_at_start(program, prepared.scene)
-    records = predict(program, prepared.scene, prepared.kinematics, prepared.planner)
+    touches = touches_at_start(program, prepared.ports.scene)
+    records, _ = predict(program, prepared.ports)
     predicted: dict[Problem, tuple[str, ...]] = {}
     specs = {step.path: step.spec for step in program.all_steps()}
     not_taken: set[str] = set()
@@ -130,7 +130,5 @@ def explain_file(
     """
     prepared = prepare(path, overrides, seed)
     program = prepared.program
-    records, poses = predict_with_poses(
-        program, prepared.scene, prepared.kinematics, prepared.planner
-    )
+    records, poses = predict(program, prepared.ports)
     return explain(program, records, poses, describe)

@@ -83,7 +83,7 @@ class DistancesAhead:
 
         prepared, done = self._prepared, execution.finish()
         motion = simulator.motion()
-        believed = believed_poses(done.beliefs, motion.joint_positions, prepared.kinematics)
+        believed = believed_poses(done.beliefs, motion.joint_positions, prepared.ports.kinematics)
         poses = {**motion.object_poses, **believed}
         return CoalClearance(prepared.program.description).measured_parts(
             Motion(motion.times, motion.joint_positions, poses),

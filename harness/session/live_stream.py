@@ -130,7 +130,7 @@ class LiveStream:
 
 
 def _frame(start: Start) -> LiveFrame:
-    simulator, scene = start.simulator, start.prepared.scene
+    simulator, scene = start.simulator, start.prepared.ports.scene
     positions = simulator.joint_positions()
     objects = dict(simulator.objects_now())
     for name in scene.object_names():

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Signals) -> Signals:
     """The recording with the poses of objects that only the planner knows."""
-    believed = believed_poses(execution.beliefs, recorded.joint_positions, prepared.kinematics)
+    kinematics = prepared.ports.kinematics
+    believed = believed_poses(execution.beliefs, recorded.joint_positions, kinematics)
     return replace(recorded, object_poses={**recorded.object_poses, **believed})
 
 
@@ -50,7 +51,7 @@ def observed_run(
     run = replace(run, signals=with_held_distances(run, observer))
     if not needed.planned_clearances:
         return run
-    planned = observer.observe(as_commanded(run, prepared.kinematics), *bodies, cutoff)
+    planned = observer.observe(as_commanded(run, prepared.ports.kinematics), *bodies, cutoff)
     return replace(run, signals=replace(run.signals, planned_clearances=planned.clearances))
 
 
@@ -63,7 +64,7 @@ def explained_run(prepared: Prepared, run: Run) -> Run:
 
     description, cutoff = prepared.program.description, run.signals.clearance_cutoff
     observer = CoalClearance(description)
-    planned = as_commanded(run, prepared.kinematics)
+    planned = as_commanded(run, prepared.ports.kinematics)
     differences = plan_against_physics(
         run,
         planned,

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from harness.assertions.looks import looks_of_expectations
+from harness.cameras.viewpoint import OVERVIEW_STATES
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
@@ -24,9 +25,6 @@ from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 FOLDER = "images"
-STATES = 40
-"""States of a run that its pictures show in addition to the ends of its steps."""
-
 Files = Mapping[str, bytes]
 """Content of files by path in the run's folder."""
 
@@ -158,12 +156,12 @@ def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Act
 def _shown(run: Run) -> Run:
     """The run with the samples and the signals that pictures of its steps show.
 
-    These are the ends of the steps, the samples after them, and `STATES` others.
+    These are the ends of the steps, the samples after them, and `OVERVIEW_STATES` others.
     """
     signals, none = run.signals, np.empty(0)
     last = len(signals.times) - 1
     ends = np.clip([step.end_index - 1 for step in run.steps], 0, last).astype(np.int64)
-    spread = np.linspace(0, last, STATES).astype(np.int64)
+    spread = np.linspace(0, last, OVERVIEW_STATES).astype(np.int64)
     rows = np.unique(np.concatenate([ends, np.minimum(ends + 1, last), spread]))[: last + 1]
     new_ends = np.searchsorted(rows, ends) + 1
     moved = signals.times[rows], signals.joint_positions[rows], none, none, none, none, none

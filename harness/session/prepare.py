@@ -29,9 +29,7 @@ from harness.observation.findings import about_file
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.search.find_pipeline import check_planner
-from harness.ports.kinematics import Kinematics
-from harness.ports.motion_planning import MotionPlanner
-from harness.ports.scene import PlanningScene
+from harness.ports.planning import PlanningPorts
 from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
@@ -55,9 +53,7 @@ class Prepared:
 
     loaded: LoadedScenario
     program: Program
-    scene: PlanningScene
-    kinematics: Kinematics
-    planner: MotionPlanner
+    ports: PlanningPorts
     expectations: tuple[PlacedExpectation, ...] = ()
     notes: tuple[str, ...] = ()
     about_file: tuple[Finding, ...] = ()
@@ -140,7 +136,7 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
         missing |= WORLD
         empty = load_world("empty", loaded.path.parent)
         world = ImportedWorld(empty.model, empty.path)
-    scene, kinematics, planner = make_planning(description)
+    ports = make_planning(description)
     sources = Sources(
         scenario=loaded.scenario,
         lines=loaded.lines,
@@ -148,7 +144,7 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
         world=world.world,
         world_dir=world.path.parent,
         description=description,
-        kinematics=kinematics,
+        kinematics=ports.kinematics,
         check_planner=check_planner,
         checks_per_second=STATE_CHECKS_PER_SECOND,
         check_mesh=_check_mesh,
@@ -168,7 +164,7 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
         PlacedExpectation.of(item.spec, item.step, item.line) for item in program.expectations
     )
     about = about_file(program, loaded.notes)
-    return Prepared(loaded, program, scene, kinematics, planner, placed, notes, about)
+    return Prepared(loaded, program, ports, placed, notes, about)
 
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:

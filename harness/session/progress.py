@@ -44,7 +44,7 @@ class Progress:
         step: ProgramStep,
         record: StepRecord | None,
     ) -> None:
-        """Report that a step begins, or what became of it."""
+        """Report that a step begins, or its result."""
         places = {each.path: index for index, each in enumerate(self.program.steps)}
         event = ProgressEvent(
             kind,

@@ -121,7 +121,7 @@ def executed_run(
         overlaps: Bodies that overlap at the start.
     """
     program = prepared.program
-    robot = robot_record(program.description, prepared.kinematics)
+    robot = robot_record(program.description, prepared.ports.kinematics)
     steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
     return Run(
         scenario=program.title,

@@ -11,29 +11,19 @@ from harness.assertions.judge import judge
 from harness.assertions.placed import PlacedExpectation
 from harness.language.reading.load import LoadedScenario, load_scenario
 from harness.language.step import Block
-from harness.recording.read_run import read_run
 from harness.recording.stored_run import RESOLVED, StoredRun
 from harness.recording.verdict import Verdict
-
-
-def judge_run(run_dir: Path, with_file: Path | None = None) -> tuple[Verdict, ...]:
-    """Verdicts of a saved run.
-
-    Args:
-        run_dir: The folder of the run.
-        with_file: A scenario whose expectations are judged instead of the run's own.
-
-    Raises:
-        HarnessError: The folder holds no run.
-        SpecError: The scenario cannot be read.
-    """
-    return judge_stored(read_run(run_dir), run_dir, with_file)
 
 
 def judge_stored(
     stored: StoredRun, run_dir: Path, with_file: Path | None = None
 ) -> tuple[Verdict, ...]:
-    """As `judge_run`, of a run that has been read; its own expectations keep their lines.
+    """Verdicts of a saved run; its own expectations keep their lines.
+
+    Args:
+        stored: The run as it was read.
+        run_dir: The folder of the run.
+        with_file: A scenario whose expectations are judged instead of the run's own.
 
     Raises:
         SpecError: The scenario cannot be read.

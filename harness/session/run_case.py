@@ -104,9 +104,7 @@ def _executed(
     with clock.part("execute"):
         program_execution = ProgramExecution(
             prepared.program,
-            prepared.scene,
-            prepared.kinematics,
-            prepared.planner,
+            prepared.ports,
             simulator,
             on_step,
             external=session,

@@ -15,7 +15,19 @@ from harness.recording.execution_failures import GraspFailure, GripperOutcome
 from harness.recording.step_results import GraspMode
 from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
 
-GripperAction = Literal["friction", "weld"]
+GripperAction = Annotated[
+    Literal["friction", "weld"],
+    Field(
+        description="`friction` holds the object by contact; `weld` also fixes it in the physics."
+    ),
+]
+HoldingEffort = Annotated[
+    Annotated[JointEffort, Field(gt=0)] | None,
+    Field(
+        description="The effort limit of the gripper's joint while it holds; the default is the "
+        "robot's."
+    ),
+]
 
 
 class Grasp(Step):
@@ -33,15 +45,8 @@ class Grasp(Step):
     results = (GripperOutcome, GraspMode)
 
     object: Name = Field(description="The name of the object.")
-    mode: GripperAction = Field(
-        default="friction",
-        description="`friction` holds the object by contact; `weld` also fixes it in the physics.",
-    )
-    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
-        default=None,
-        description="The effort limit of the gripper's joint while it holds; the default is the "
-        "robot's.",
-    )
+    mode: GripperAction = "friction"
+    max_effort: HoldingEffort = None
     position: JointValue | None = Field(
         default=None,
         description="The gripper's joint closes to this position at most; the default is closed.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -28,12 +28,12 @@ from harness.core.details import Detail, Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.base import Angle, JointEffort, Name, PositiveLength, SpecModel
+from harness.language.base import Angle, Name, PositiveLength, SpecModel
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
 from harness.ports.goals import PoseGoal
 from harness.recording.explanation import ApproachFailure, Explanation, NearestState
-from harness.steps.grasp import Grasp, GripperAction, check_graspable
+from harness.steps.grasp import Grasp, GripperAction, HoldingEffort, check_graspable
 from harness.steps.gripper import Gripper
 from harness.steps.lin import Lin
 from harness.steps.move_relative import MoveRelative
@@ -120,15 +120,8 @@ class Pick(Step):
     lift: Travel | None = Field(
         default=None, description="The lift after the grasp; the default is 10 cm up."
     )
-    mode: GripperAction = Field(
-        default="friction",
-        description="`friction` holds the object by contact; `weld` also fixes it in the physics.",
-    )
-    max_effort: Annotated[JointEffort, Field(gt=0)] | None = Field(
-        default=None,
-        description="The effort limit of the gripper's joint while it holds; the default is the "
-        "robot's.",
-    )
+    mode: GripperAction = "friction"
+    max_effort: HoldingEffort = None
 
     @model_validator(mode="after")
     def _one_rotation(self) -> Pick:

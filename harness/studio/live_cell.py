@@ -86,12 +86,7 @@ class LiveCell:
         self.document, self._keys = document, keys
         observed = self.prepared.observed_links
         # the planner, the scene and the kinematics go on; they know nothing of the steps
-        self.prepared = replace(
-            prepared,
-            scene=self.prepared.scene,
-            kinematics=self.prepared.kinematics,
-            planner=self.prepared.planner,
-        )
+        self.prepared = replace(prepared, ports=self.prepared.ports)
         self._has_same_links = prepared.observed_links == observed
         self.execution.program = prepared.program
         self.cell.later_objects = prepared.program.later_objects
@@ -112,7 +107,7 @@ class LiveCell:
     @property
     def scene(self) -> CoalScene:
         """The planning scene."""
-        scene = self.prepared.scene
+        scene = self.prepared.ports.scene
         assert isinstance(scene, CoalScene)
         return scene
 
@@ -316,7 +311,8 @@ class LiveCell:
 
     def tcp_pose(self) -> SE3:
         """T_world_tcp of the measured positions."""
-        return self.prepared.kinematics.link_pose(self.joint_positions(), self.description.tcp_link)
+        kinematics = self.prepared.ports.kinematics
+        return kinematics.link_pose(self.joint_positions(), self.description.tcp_link)
 
     def object_poses(self) -> dict[str, SE3]:
         """T_world_object of every object that is there."""
@@ -351,9 +347,7 @@ class LiveCell:
         self._has_same_links = True
         self.execution = ProgramExecution(
             prepared.program,
-            prepared.scene,
-            prepared.kinematics,
-            prepared.planner,
+            prepared.ports,
             simulator,
             lambda *event: self.on_step(*event),
         )

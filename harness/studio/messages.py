@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from harness.reporting.explanation import explanation_lines
 from harness.studio.language_help import GRIPPER_TARGET, Names
 from harness.studio.live_cell import LiveCell
 from harness.studio.session import Message
-from harness.studio.texts import MOTIONS, gripper_steps, object_form
+from harness.studio.texts import MOTIONS, ObjectForm, gripper_steps
 
 MOST_CONTACTS = 8
 """Contacts that are listed, strongest first."""
@@ -53,7 +54,7 @@ def robot_message(cell: LiveCell) -> Message:
                 ["world", description.base_link, *cell.cell.presence, *description.link_names]
             )
         ),
-        "objects": [object_form(spec) for spec in cell.document.object_specs()],
+        "objects": [asdict(ObjectForm.of(spec)) for spec in cell.document.object_specs()],
         "bodies": list(cell.cell.presence),
         "overlaps": [
             f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"

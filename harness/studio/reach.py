@@ -65,7 +65,7 @@ class ReachStudy:
     def __init__(self, cell: LiveCell, group: str) -> None:
         """Look at the scene and at where the arm stands now."""
         cell.cell.sync_scene()
-        kinematics = cell.prepared.kinematics
+        kinematics = cell.prepared.ports.kinematics
         assert isinstance(kinematics, PinocchioKinematics)
         self._kinematics = kinematics
         self._tcp = cell.description.tcp_link

@@ -21,12 +21,9 @@ from harness.studio.proposals import proposals
 from harness.studio.scene_view import Handle, SceneView
 from harness.studio.session import Message, RefusedError, guarded
 from harness.studio.texts import (
-    AXES,
-    corner_of,
-    object_form,
+    ObjectForm,
     object_spec,
     pose_keys_of,
-    resized,
     step_text,
 )
 
@@ -163,16 +160,16 @@ class Studio(GoalActions):
         self.view.put_handle("object", pose)
         self.view.put_handle("size", None)
         if pose is not None and form is not None:
-            corner = SE3(pose.rotation, pose.apply(corner_of(form)))
-            self.view.put_handle("size", corner, AXES[form["kind"]])
+            corner = SE3(pose.rotation, pose.apply(form.corner()))
+            self.view.put_handle("size", corner, form.axes)
 
-    def _form(self, name: str) -> Message | None:
+    def _form(self, name: str) -> ObjectForm | None:
         """The fields of an object that can be resized; None where it cannot."""
         document = self.cell.document
         if self.cell.steps_done or self.problems or name not in document.object_names():
             return None
-        form = object_form(document.object_spec(name))
-        return form if form["kind"] else None
+        form = ObjectForm.of(document.object_spec(name))
+        return form if form.kind else None
 
     def put_object(self, name: str, pose: SE3) -> None:
         """Move an object: at the start in the scenario's `objects`, later with a step."""
@@ -191,7 +188,7 @@ class Studio(GoalActions):
         form, pose = self._form(name), self.cell.object_poses().get(name)
         if form is not None and pose is not None:
             spec = self.cell.document.object_spec(name)
-            self._replace_object(resized(spec, form, pose, corner))
+            self._replace_object(form.resized(spec, pose, corner))
 
     def _replace_object(self, spec: Message) -> None:
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -104,27 +105,67 @@ def object_spec(name: str, kind: str, size: list[float], xyz: list[float]) -> di
     return {"name": name, kind: shape_keys(kind, size), "pose": {"xyz": xyz}, "mass": mass}
 
 
-def object_form(spec: Mapping[str, Any]) -> dict[str, Any]:
-    """An object of a scenario as the page's fields have it; without a kind where they cannot."""
-    size: list[Any] = []
-    match spec:
-        case {"box": {"size": [*size]}}:
-            kind = "box"
-        case {"cylinder": {"radius": float() | int() as radius, "length": length}}:
-            kind, size = "cylinder", [2 * radius, length]
-        case {"sphere": {"radius": float() | int() as radius}}:
-            kind, size = "sphere", [2 * radius]
-        case _:
-            kind = ""
-    place = spec.get("pose")
-    xyz = list(place.get("xyz") or ()) if isinstance(place, Mapping) else []
-    are_numbers = all(isinstance(value, (int, float)) for value in [*size, *xyz])
-    return {
-        "name": str(spec.get("name", "")),
-        "kind": kind if are_numbers and len(xyz) == 3 else "",
-        "size": size,
-        "xyz": xyz,
-    }
+@dataclass(frozen=True)
+class ObjectForm:
+    """An object of a scenario as the page's fields have it.
+
+    Attributes:
+        name: The name of the object.
+        kind: A shape of `shape_keys`; empty where the fields cannot show the object.
+        size: The full size, in the order of `shape_keys` [m].
+        xyz: The position of its centre [m].
+    """
+
+    name: str
+    kind: str
+    size: list[Any]
+    xyz: list[Any]
+
+    @classmethod
+    def of(cls, spec: Mapping[str, Any]) -> ObjectForm:
+        """The fields of an object as the scenario has it."""
+        size: list[Any] = []
+        match spec:
+            case {"box": {"size": [*size]}}:
+                kind = "box"
+            case {"cylinder": {"radius": float() | int() as radius, "length": length}}:
+                kind, size = "cylinder", [2 * radius, length]
+            case {"sphere": {"radius": float() | int() as radius}}:
+                kind, size = "sphere", [2 * radius]
+            case _:
+                kind = ""
+        place = spec.get("pose")
+        xyz = list(place.get("xyz") or ()) if isinstance(place, Mapping) else []
+        are_numbers = all(isinstance(value, (int, float)) for value in [*size, *xyz])
+        is_shown = are_numbers and len(xyz) == 3
+        return cls(str(spec.get("name", "")), kind if is_shown else "", size, xyz)
+
+    @property
+    def axes(self) -> list[int]:
+        """The axes of the object along which its sizes are measured."""
+        return list(AXES[self.kind])
+
+    def corner(self) -> FloatArray:
+        """The corner at which the object's size is dragged, in its frame, shape (3,)."""
+        corner = np.zeros(3)
+        corner[self.axes] = 0.5 * np.array(self.size)
+        return corner
+
+    def resized(self, spec: Mapping[str, Any], pose: SE3, corner: FloatArray) -> dict[str, Any]:
+        """The object after its corner was dragged; the opposite corner stays where it is.
+
+        Args:
+            spec: The object as the scenario has it.
+            pose: The pose T_world_object of the object.
+            corner: The new place of the corner in the world, shape (3,).
+        """
+        before = np.array(self.size, dtype=float)
+        size = np.maximum(0.5 * before + pose.inverse().apply(corner)[self.axes], SMALLEST)
+        shift = np.zeros(3)
+        shift[self.axes] = 0.5 * (size - before)
+        moved = SE3(pose.rotation, pose.apply(shift))
+        keys = shape_keys(self.kind, [round(float(value), 4) for value in size])
+        return {**spec, self.kind: keys, "pose": pose_keys_of(moved)}
 
 
 def pose_keys_of(pose: SE3) -> dict[str, Any]:
@@ -134,32 +175,3 @@ def pose_keys_of(pose: SE3) -> dict[str, Any]:
     if abs(vector[3]) < 1 - 1e-6:
         keys["quat_wxyz"] = [round(float(value), 5) for value in vector[3:]]
     return keys
-
-
-def corner_of(form: Mapping[str, Any]) -> FloatArray:
-    """The corner of an object at which its size is dragged, in its frame, shape (3,)."""
-    corner = np.zeros(3)
-    axes = list(AXES[form["kind"]])
-    corner[axes] = 0.5 * np.array(form["size"])
-    return corner
-
-
-def resized(
-    spec: Mapping[str, Any], form: Mapping[str, Any], pose: SE3, corner: FloatArray
-) -> dict[str, Any]:
-    """An object whose corner was dragged; the opposite corner stays where it is.
-
-    Args:
-        spec: The object as the scenario has it.
-        form: The fields of the object on the page.
-        pose: The pose T_world_object of the object.
-        corner: The new place of the corner in the world, shape (3,).
-    """
-    kind, axes = form["kind"], list(AXES[form["kind"]])
-    before = np.array(form["size"], dtype=float)
-    size = np.maximum(0.5 * before + pose.inverse().apply(corner)[axes], SMALLEST)
-    shift = np.zeros(3)
-    shift[axes] = 0.5 * (size - before)
-    moved = SE3(pose.rotation, pose.apply(shift))
-    keys = shape_keys(kind, [round(float(value), 4) for value in size])
-    return {**spec, kind: keys, "pose": pose_keys_of(moved)}

@@ -20,7 +20,7 @@ from harness.reporting.terminal import causes
 from harness.session.run_request import RunRequest
 from harness.suite.cases import ignore_progress, run_here
 from harness.suite.discovery import UsageError
-from harness.suite.header import source_lines
+from harness.suite.header import read_header, source_lines
 from harness.suite.variation import Case, Variation
 
 if TYPE_CHECKING:
@@ -151,8 +151,6 @@ def _job(
     scenario: str | Path | Scenario, overrides: dict[str, str], seed: int | None, case: str
 ) -> RunRequest:
     if isinstance(scenario, str | Path):
-        from harness.suite.header import read_header
-
         file, text, variation = Path(scenario), None, read_header(Path(scenario)).variation
     else:
         from harness.language.reading.written import as_written, scenario_text

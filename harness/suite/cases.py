@@ -151,24 +151,15 @@ def run_isolated(
         ServerStartError: The modules of a run cannot be imported.
     """
     cap = hard_cap_seconds() if hard_cap is None else hard_cap
-    waiting, upcoming = True, iter(range(len(jobs)))
+    upcoming = iter(range(len(jobs)))
     running: dict[int, _Running] = {}
     if function is run_job:
-        some = jobs[:1] if len(jobs) > 1 else []
-        server.prepare(read_ahead, _words(jobs), some)
-        if len(jobs) > 1:
-            server.prepare(preload, REPORT_MODULES)
-        if len({job.file for job in jobs}) < len(jobs):
-            server.prepare(share_results)
-        if min(workers, len(jobs)) >= len(os.sched_getaffinity(0)):
-            server.prepare(compute_here)
+        _prepare(server, jobs, workers)
     try:
-        while waiting or running:
-            while waiting and len(running) < workers:
-                index = next((i for i in upcoming if not is_needless(i)), None)
-                if index is None:
-                    waiting = False
-                    break
+        while True:
+            while len(running) < workers and (index := next(upcoming, None)) is not None:
+                if is_needless(index):
+                    continue
                 job = jobs[index]
                 _clean(job)
                 number = server.start(function, job)
@@ -194,6 +185,17 @@ def run_isolated(
         for case in running.values():
             _clean(case.job)
         raise
+
+
+def _prepare(server: WarmServer, jobs: Sequence[RunRequest], workers: int) -> None:
+    """Let the server import, read and share what the cases have in common."""
+    server.prepare(read_ahead, _words(jobs), jobs[:1] if len(jobs) > 1 else [])
+    if len(jobs) > 1:
+        server.prepare(preload, REPORT_MODULES)
+    if len({job.file for job in jobs}) < len(jobs):
+        server.prepare(share_results)
+    if min(workers, len(jobs)) >= len(os.sched_getaffinity(0)):
+        server.prepare(compute_here)
 
 
 def _words(jobs: Sequence[RunRequest]) -> frozenset[str]:

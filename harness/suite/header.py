@@ -61,7 +61,8 @@ def read_header(file: Path) -> ScenarioHeader:
     if "tags" in entries:
         tags = _texts(entries["tags"].value)
     verifies = _texts(entries["verifies"].value) if "verifies" in entries else ()
-    varied = {key: entries[key].value.plain() for key in VARIED if key in entries}
+    keys = (*VARIED, "planning") if "randomize" in entries else VARIED
+    varied = {key: entries[key].value.plain() for key in keys if key in entries}
     variation = Variation.of(varied)
     if "scenario" not in entries:
         return ScenarioHeader(nameless.title, tags, 1, variation, verifies, varied)

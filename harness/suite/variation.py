@@ -13,20 +13,18 @@ import random
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from statistics import NormalDist
 from typing import Any, cast
 
 from harness.core.lazy import LazySequence
-from harness.core.quantity import common_unit, share_of, split_quantity
+from harness.core.quantity import share_of
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, Parametrize, count_of
+from harness.suite.distribution import Distribution, read_distribution
 
 DEFAULT_SAMPLES = 20
 POSE_RESOLUTION = "1.0e-04"
 """Resolution [m] of measured poses in samples: with other friction objects differ less, at rest and
 in a hand. It is a twentieth of the default padding."""
 LONGEST_NAME = 60
-SMALLEST_SHARE = 1e-12
-"""Smallest tail share of a normal distribution whose quantile is still finite."""
 
 
 @dataclass(frozen=True)
@@ -68,32 +66,31 @@ class Variation:
         stop_early: Whether a sequential test may end the sampling.
         seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
-        planning: What the file says of its planning parameters.
+        planning: The planning parameters that the file states.
     """
 
     parametrize: Parametrize | None = None
-    randomize: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Any])
+    randomize: Mapping[str, Distribution] = field(default_factory=dict[str, Distribution])
     samples: int = 0
     at_least: float | None = None
     confidence: float = 0.95
     stop_early: bool = True
     seed: int = 0
     redraw_overlaps: bool = False
-    planning: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    planning: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Variation:
         """What the plain values of a file say; nothing where they make no sense."""
         try:
             return cls._of(values)
-        except (TypeError, ValueError, KeyError, AttributeError):
+        except (TypeError, ValueError, LookupError, AttributeError):
             return cls()
 
     @classmethod
     def _of(cls, values: Mapping[str, Any]) -> Variation:
-        randomize = dict(values.get("randomize") or {})
-        for distribution in randomize.values():
-            _drawn(distribution, random.Random(0))
+        stated = values.get("randomize") or {}
+        randomize = {path: read_distribution(each) for path, each in stated.items()}
         stated = values.get("expect_rate")
         rate = cast("dict[str, Any]", stated) if isinstance(stated, dict) else {"at_least": stated}
         at_least = rate.get("at_least")
@@ -107,7 +104,7 @@ class Variation:
             stop_early=bool(rate.get("stop_early", True)),
             seed=int(values.get("seed") or 0),
             redraw_overlaps=values.get("redraw_overlaps") is True,
-            planning=dict(values.get("planning") or {}),
+            planning=frozenset(values.get("planning") or ()),
         )
         if not count_of(variation.parametrize):
             raise ValueError("no case")
@@ -156,7 +153,7 @@ class Variation:
         """A case with random values, and a seed of its own that everything random follows from."""
         seed = _seed(f"{base}:{case.name}:{index}{f':{draw}' if draw else ''}")
         rng = random.Random(seed)
-        drawn = {path: _drawn(each, rng) for path, each in self.randomize.items()}
+        drawn = {path: each.draw(rng) for path, each in self.randomize.items()}
         return Case(
             name=_sample_name(case, index),
             overrides={
@@ -278,41 +275,6 @@ def as_yaml(values: Mapping[str, Any]) -> dict[str, str]:
 def _seed(text: str) -> int:
     digest = hashlib.sha256(text.encode()).digest()
     return int.from_bytes(digest[:4], "big") & 0x7FFFFFFF
-
-
-def _drawn(distribution: Mapping[str, Any], rng: random.Random) -> Any:
-    """A random value of a distribution, in the unit it is said in."""
-    if "choice" in distribution:
-        return rng.choice(list(distribution["choice"]))
-    return value_at(distribution, rng.random())
-
-
-def value_at(distribution: Mapping[str, Any], share: float) -> Any:
-    """The value that a share of a distribution is below, in the unit it is said in.
-
-    Args:
-        distribution: A distribution of `randomize`.
-        share: The share, in [0, 1); of a choice, each value has an equal part.
-    """
-    if "choice" in distribution:
-        values = list(distribution["choice"])
-        return values[min(int(share * len(values)), len(values) - 1)]
-    if "uniform" in distribution:
-        low, high = (split_quantity(each)[0] for each in distribution["uniform"])
-        return _with_unit(low + (high - low) * share, common_unit(*distribution["uniform"]))
-    normal = distribution["normal"]
-    mean, std = split_quantity(normal["mean"])[0], split_quantity(normal["std"])[0]
-    unit = common_unit(normal["mean"], normal["std"])
-    curve = NormalDist(mean, std)
-    low, high = (normal.get(end) for end in ("low", "high"))
-    least = 0.0 if low is None else curve.cdf(split_quantity(low)[0])
-    most = 1.0 if high is None else curve.cdf(split_quantity(high)[0])
-    below = least + (most - least) * share
-    return _with_unit(curve.inv_cdf(min(max(below, SMALLEST_SHARE), 1 - SMALLEST_SHARE)), unit)
-
-
-def _with_unit(value: float, unit: str) -> float | str:
-    return f"{value!r} {unit}" if unit else value
 
 
 def _labels(values: Sequence[Any]) -> list[str]:

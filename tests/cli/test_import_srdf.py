@@ -12,8 +12,8 @@ from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from tests.robot.arm_files import load_arm
+from tests.robot.hands import HAND, LEFT, PALM, RIGHT, write
 from tests.robot.test_mesh_file import STL
-from tests.robot.test_own_gripper import HAND, LEFT, PALM, RIGHT, write
 
 EYE = """link: palm
 pose: {xyz: [0, 0, 0.1]}

@@ -10,7 +10,7 @@ from harness.language.reading.load import load_scenario
 from harness.robot_tools import first_scenario
 from harness.robot_tools.first_scenario import _trouble
 from tests.robot.arm_files import SRDF, URDF, write_arm
-from tests.robot.test_own_gripper import (
+from tests.robot.hands import (
     FIVE_WITH_TURNING_JAW,
     JAW,
     SIX,

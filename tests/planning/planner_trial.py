@@ -2,7 +2,7 @@
 
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
-from harness.planning.search.search import Search, search
+from harness.planning.search.path_search import Search, search
 from harness.ports.motion_planning import PlanningOptions
 from harness.ports.path_planning import PathRequest
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3, wxyz_from_xyzw
-from harness.planning.goals.branches import branch_name
+from harness.planning.goals.goal_study import branch_name
 from harness.planning.ik.nearest_pose import (
     EVEN,
     KEEP_TURN,
@@ -112,6 +113,19 @@ def test_a_goal_that_is_advised_is_reached_as_it_is_written(xyz):
     position, quat = (np.array([float(v) for v in group.split(",")]) for group in found.groups())
     pose = SE3.from_xyz_quat(position, wxyz_from_xyzw(quat))
     assert cell.kinematics.solve(ARM, PoseGoal(TCP, pose), cell.state, 0)
+
+
+@pytest.mark.parametrize("method", ["plan", "check_goal"])
+@pytest.mark.parametrize("xyz", [(0.9, 0, 0.3), (0.2, 0.6, 0.9)])
+def test_a_request_that_is_passed_by_its_name_is_explained(method, xyz):
+    cell = Cell(ur("ur3e"))
+    motion = FreeMotion(goal=grasp_goal(*xyz))
+    request = MotionRequest(options=OPTIONS, motion=motion, start=cell.state, group=ARM)
+    call = getattr(cell.planner, method)
+    errors = [explained(partial(call, request=request)), explained(call, request)]
+    assert [error.code for error in errors] == ["NO_IK_SOLUTION", "NO_IK_SOLUTION"]
+    stages = [recorded_explanation(error.details).stages for error in errors]
+    assert stages[0] == stages[1] != ()
 
 
 def test_a_goal_in_collision_is_free_where_the_explanation_moves_it():

@@ -3,7 +3,7 @@
 import ompl.geometric
 import pytest
 
-from harness.planning.search.ompl_problem import make_problem
+from harness.planning.search.ompl_planner import make_problem
 from harness.planning.search.planner_parameters import parameter_names, set_parameters
 from tests.planning.planner_trial import Trial, signature
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
-from harness.planning.search.search import search
+from harness.planning.search.path_search import search
 from harness.planning.search.shortening import shorten
 from harness.ports.motion_planning import PlanningOptions
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.planning.timing.blended_path import BlendedPath
 from harness.planning.timing.profiles import (
     GRID,
     Trapezoid,
@@ -14,7 +13,13 @@ from harness.planning.timing.profiles import (
     smoothed,
     straight_curve,
 )
-from harness.planning.timing.timing import Limits, time_blended, time_stopping, time_straight
+from harness.planning.timing.timing import (
+    BlendedPath,
+    Limits,
+    time_blended,
+    time_stopping,
+    time_straight,
+)
 from harness.simulation.set_points import sample_trajectory
 
 NAMES = tuple("abcdef")

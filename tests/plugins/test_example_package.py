@@ -92,10 +92,14 @@ def test_without_the_package_every_name_is_a_located_error(tmp_path):
         "9:5: no predicate is called `tcp_height`",
     ):
         assert f"all.scenario.yaml:{problem}" in out
+    words = " ".join(out.replace("|", "").split())
+    for kind in ("an inverse kinematics solver", "a world format", "a planning pipeline",
+                 "a verb", "a predicate"):  # fmt: skip
+        assert f"{kind} of a plug-in that is not installed needs `--plugin`" in words
     out = harness(tmp_path, "run", "all.scenario.yaml", "--reporter", "verdict_table", code=2)
-    assert "--reporter: there is no reporter 'verdict_table'; known: html, rosbag" in " ".join(
-        out.split()
-    )
+    words = " ".join(out.split())
+    assert "--reporter: there is no reporter 'verdict_table'; known: html, rosbag" in words
+    assert "a reporter of a plug-in that is not installed needs `--plugin`" in words
 
 
 def test_a_world_format_and_a_reporter_that_go_wrong_are_named(site, tmp_path):

@@ -91,6 +91,12 @@ def test_without_the_plug_in_the_pipeline_is_a_located_error(wall):
     out = harness(wall, "run", "post.scenario.yaml", code=2)
     assert "post.scenario.yaml:5:22: there is no planning pipeline `via_point`" in out
     assert "planning pipelines: ompl" in out
+    words = " ".join(out.replace("|", "").split())
+    assert "a planning pipeline of a plug-in that is not installed needs `--plugin`" in words
+    use(wall, "via_point", "ompll")
+    out = harness(wall, "check", "post.scenario.yaml", code=2)
+    assert "did you mean `ompl`?" in out
+    assert "--plugin" not in out
     use(wall, "via_point", "pilz_industrial_motion_planner")
     out = harness(wall, "check", "post.scenario.yaml", code=2)
     assert "5:22: Pilz's planners are steps here" in out

@@ -2,7 +2,6 @@
 
 import math
 import shutil
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,60 +9,29 @@ import pytest
 from docs import ROOT
 from harness.cell.approach import approach_axis
 from harness.core.errors import RobotError, SpecError
-from harness.core.spatial import rotation_from_quat_wxyz
 from harness.language.scenario import RobotSpec
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_check import check_robot
-from harness.robot_tools.robot_findings import states
-from tests.engine.front_door import check, run
-from tests.planning.seven_joints import SRDF as SEVEN_SRDF
-from tests.planning.seven_joints import seven_joint_urdf
-from tests.robot.arm_files import INERTIAL, SRDF, URDF, load_arm, write_arm
-
-PALM = f"""  <link name="palm">{INERTIAL}</link>
-  <joint name="palm_joint" type="fixed"><parent link="tool"/><child link="palm"/></joint>
-"""
-FINGER = """  <link name="{name}"><inertial><mass value="0.05"/>
-    <inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/></inertial>
-    <collision><origin xyz="0 {y} 0.05"/><geometry><box size="0.02 0.01 0.06"/></geometry>
-    </collision></link>
-  <joint name="{name}_joint" type="prismatic"><parent link="palm"/><child link="{name}"/>
-    <axis xyz="0 {side} 0"/><limit lower="0" upper="0.03" velocity="0.1" effort="40"/>{mimic}
-  </joint>
-"""
-LEFT = FINGER.format(name="left", y=0.01, side=1, mimic="")
-RIGHT = FINGER.format(name="right", y=-0.01, side=-1, mimic='<mimic joint="left_joint"/>')
-HAND = PALM + LEFT + RIGHT
-GROUP = """  <group name="hand"><joint name="left_joint"/></group>
-  <end_effector name="grip" parent_link="tool" group="hand" parent_group="manipulator"/>
-"""
-
-
-LINKS = ("base_link", "a", "b", "c", "d", "e", "tool")
-AXES = ("0 0 1", "0 1 0", "0 1 0", "0 0 1", "0 1 0", "0 0 1")
-SIX = (
-    '<robot name="six">'
-    + "".join(f'<link name="{name}">{INERTIAL}</link>' for name in LINKS)
-    + "".join(
-        f'<joint name="{after}_joint" type="revolute"><parent link="{before}"/>'
-        f'<child link="{after}"/><origin xyz="0 0 0.15"/><axis xyz="{axis}"/>'
-        '<limit lower="-3" upper="3" velocity="2" effort="100"/></joint>'
-        for (before, after), axis in zip(pairwise(LINKS), AXES, strict=True)
-    )
-    + HAND
-    + "</robot>"
+from tests.robot.arm_files import SRDF, URDF, load_arm, write_arm
+from tests.robot.hands import (
+    FINGER,
+    FRAME,
+    GROUP,
+    HAND,
+    JAW,
+    LEFT,
+    LIGHT,
+    PALM,
+    SHAPE,
+    SIX,
+    TIP,
+    TIPS,
+    TURNING_JAW,
+    UNCOUPLED,
+    write,
 )
-SIX_SRDF = f"""<robot name="six">
-  <group name="manipulator"><chain base_link="base_link" tip_link="tool"/></group>
-{GROUP}</robot>
-"""
-
-
-def write(folder, hand=HAND, group=GROUP):
-    end = "</robot>"
-    write_arm(folder, URDF.replace(end, hand + end), SRDF.replace(end, group + end))
 
 
 def test_the_end_effector_of_the_srdf_is_the_gripper(tmp_path):
@@ -85,11 +53,6 @@ def test_the_tcp_is_halfway_between_the_pads(tmp_path):
     assert arm.tcp_link == "hand_tcp"
     assert arm.groups["manipulator"].tip_link == "hand_tcp"
     assert arm.joint_by_name["hand_tcp_joint"].pose.translation == pytest.approx([0, 0, 0.05])
-
-
-FRAME = """<link name="{0}">{2}</link><joint name="g" type="fixed"><parent link="palm"/>
-    <child link="{0}"/><origin xyz="{1}" rpy="0 0 1"/></joint>"""
-LIGHT = """<inertial><mass value="0.001"/><inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial>"""
 
 
 @pytest.mark.parametrize(
@@ -120,15 +83,6 @@ def test_the_parent_of_the_end_effector_is_the_tcp_if_it_is_at_the_pads(tmp_path
     assert load_arm(tmp_path).tcp_link == "point"
     write(tmp_path, HAND + frames)
     assert load_arm(tmp_path).tcp_link == "between"
-
-
-PALM_AT_THE_TIPS = f"""  <link name="palm">{INERTIAL}<collision><origin xyz="0 0 -0.09"/>
-    <geometry><box size="0.06 0.08 0.08"/></geometry></collision></link>
-  <joint name="palm_joint" type="fixed"><parent link="tool"/><child link="palm"/>
-    <origin xyz="0 0 0.14"/></joint>
-"""
-TIPS = PALM_AT_THE_TIPS + (LEFT + RIGHT).replace(' 0.05"/>', ' -0.03"/>')
-"""The palm, and with it the fingers, have their origins where the fingers end."""
 
 
 def approach(arm):
@@ -205,24 +159,6 @@ def test_two_alike_fingers_without_a_mimic_are_coupled(tmp_path):
     assert "gripper 'hand': right_joint is made to follow left_joint" in arm.notes
 
 
-TIP = (
-    f'<link name="{{0}}_tip">{LIGHT}</link><joint name="{{0}}_bend" type="revolute">'
-    '<parent link="{0}"/><child link="{0}_tip"/><origin xyz="0 0 0.08"/><axis xyz="1 0 0"/>'
-    '<limit lower="0" upper="1" velocity="1" effort="1"/></joint>'
-)
-"""A link of a finger that bends by itself."""
-
-UNCOUPLED = HAND.replace('<mimic joint="left_joint"/>', "")
-JAW = PALM.replace(
-    "</link>",
-    """<collision><origin xyz="0 -0.025 0.05"/><geometry><box size="0.03 0.01 0.1"/></geometry>
-    </collision></link>""",
-    1,
-) + FINGER.format(name="jaw", y=0.0, side=1, mimic="").replace(
-    'upper="0.03"', 'upper="0.05"'
-).replace('lower="0"', 'lower="-0.015"')
-
-
 @pytest.mark.parametrize(
     ("hand", "joint", "opening"),
     [
@@ -277,20 +213,6 @@ def test_the_last_joint_of_a_robot_that_is_a_finger_is_no_jaw(tmp_path):
     assert arm.gripper is None
 
 
-FLAT = (
-    '<link name="{0}"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
-    '</inertial><collision><origin xyz="0 {1} 0.05"/><geometry><box size="0.04 0.02 0.1"/>'
-    "</geometry></collision></link>"
-)
-TURNING_JAW = (
-    PALM.replace(f'<link name="palm">{INERTIAL}</link>', FLAT.format("palm", -0.01))
-    + FLAT.format("jaw", 0.01)
-    + '<joint name="jaw_joint" type="revolute"><parent link="palm"/><child link="jaw"/>'
-    '<axis xyz="-1 0 0"/><limit lower="0" upper="1.2" velocity="1" effort="2"/></joint>'
-)
-"""As on the SO-101: the jaw lies on the palm when closed, and turns about its lower edge."""
-
-
 def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_outer_half(tmp_path):
     write(tmp_path, TURNING_JAW, group="")
     gripper = load_arm(tmp_path, srdf=None).gripper
@@ -329,10 +251,6 @@ def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):
     write_arm(tmp_path)
     assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names == ("turn", "bend", "reach")
     assert load_arm(tmp_path, srdf=None).gripper is None
-
-
-SHAPE = """<collision><origin xyz="0.03 0 0.05"/><geometry><box size="0.08 0.06 0.1"/></geometry>
-    </collision>"""
 
 
 def test_a_whole_tool_that_a_wrist_turns_is_no_jaw_whatever_its_name(tmp_path):
@@ -382,155 +300,3 @@ def test_a_hand_that_does_not_grasp_is_reported(tmp_path, hand, words):
     assert any(words in note for note in load_arm(tmp_path).notes)
     with pytest.raises(RobotError, match="'hand' is not a gripper"):
         load_arm(tmp_path, gripper="hand")
-
-
-def test_an_imported_arm_with_its_own_gripper_holds_what_it_grasps(tmp_path):
-    write(tmp_path)
-    robot = "{urdf: arm.urdf, srdf: arm.srdf, base: {xyz: [0, 0, 1], rpy: [180 deg, 0, 0]}}"
-    rest = """
-        objects:
-          - name: block
-            pose: {xyz: [0, 0, 0.13]}
-            box: {size: [0.03, 0.03, 0.06]}
-            mass: 0.05
-          - {name: stand, static: true, pose: {xyz: [0, 0, 0.05]}, box: {size: [0.1, 0.1, 0.1]}}
-        expect:
-          - grasped: {object: block, during: lift}
-          - always: within_limits
-    """
-    steps = """
-        - gripper: open
-        - move_to: {joints: {turn: 0, bend: 0, reach: 0.11}}
-        - grasp: {object: block}
-        - {move_to: {joints: {reach: 0.02}}, id: lift}
-    """
-    group = GROUP + (
-        '<group_state name="open" group="hand"><joint name="left_joint" value="0.03"/>'
-        "</group_state>"
-    )
-    write(tmp_path, group=group)
-    result, saved = run(tmp_path, steps, robot=robot, rest=rest)
-    assert result.outcome == "passed", [step.message for step in result.steps]
-    assert np.ptp(saved.signals.joint_positions[-1][-2:]) < 1e-3, "the fingers stay coupled"
-
-
-def test_a_hand_that_starts_closed_takes_a_box_from_above(tmp_path):
-    write_arm(tmp_path, SIX, SIX_SRDF)
-    rest = """
-        objects:
-          - {name: block, pose: {xyz: [0.3, 0, 0.03]}, box: {size: [0.03, 0.05, 0.06]}}
-    """
-    found = check(
-        tmp_path, "- pick: {object: block}", robot="{urdf: arm.urdf, srdf: arm.srdf}", rest=rest
-    )
-    assert (found.problems, found.predicted) == ((), ())
-
-
-SIX_WITH_JAW = SIX.replace(HAND, JAW)
-SIX_WITH_TURNING_JAW = SIX.replace(HAND, TURNING_JAW)
-FIVE_WITH_TURNING_JAW = (
-    SIX_WITH_TURNING_JAW.replace('name="d_joint" type="revolute"', 'name="d_joint" type="fixed"')
-    .replace("</robot>", FRAME.format("jaw_tip_tcp", "0.002 0 0.09", "") + "</robot>")
-    .replace('rpy="0 0 1"', 'rpy="0 0 1.2"')
-)
-"""The TCP's z axis points out of the hand, its x axis across it."""
-BLOCK = """
-    objects:
-      - name: block
-        pose: {xyz: [0.3, 0.1, 0.03]}
-        box: {size: [0.03, 0.04, 0.06]}
-        mass: 0.05
-    expect:
-      - grasped: {object: block, during: pick}
-"""
-PICK = "- {pick: {object: block, approach: {distance: 0.05}, lift: {distance: 0.05}}, id: pick}"
-
-
-def test_a_single_jaw_closes_an_object_on_the_palm(tmp_path):
-    assert SIX_WITH_JAW != SIX
-    write_arm(tmp_path, SIX_WITH_JAW)
-    result, saved = run(tmp_path, PICK, robot="{urdf: arm.urdf}", rest=BLOCK)
-    assert result.outcome == "passed", [step.message for step in result.steps]
-    height = saved.signals.object_poses["block"][:, 2]
-    assert height[-1] - height[0] > 0.045
-
-
-def test_a_palm_near_the_pads_does_not_touch_what_is_grasped(tmp_path):
-    """The TCP stays above the depth of other grasps where the fingers are short."""
-    palm = PALM.replace(
-        "</link>",
-        """<collision><origin xyz="0 0 0.02"/><geometry><box size="0.1 0.1 0.04"/></geometry>
-    </collision></link>""",
-        1,
-    )
-    short = SIX.replace(PALM, palm)
-    assert short != SIX
-    write_arm(tmp_path, short, SIX_SRDF)
-    robot = "{urdf: arm.urdf, srdf: arm.srdf}"
-    result, _ = run(tmp_path, PICK, robot=robot, rest=BLOCK)
-    assert result.outcome == "passed", [step.message for step in result.steps]
-
-
-def test_an_arm_of_five_joints_puts_down_what_its_jaw_took(tmp_path):
-    """Its TCP's z axis points out of the hand, so that a pitch of the x axis says nothing."""
-    write_arm(tmp_path, FIVE_WITH_TURNING_JAW)
-    rest = """
-        objects:
-          - {name: block, pose: {xyz: [0.25, 0, 0.217]}, box: {size: [0.015, 0.015, 0.034]},
-             mass: 0.05, friction: 0.3}
-          - {name: stand, static: true, pose: {xyz: [0.25, 0, 0.1]}, box: {size: [0.2, 0.2, 0.2]}}
-          - {name: shelf, static: true, pose: {xyz: [0, 0.3, 0.1]}, box: {size: [0.2, 0.2, 0.2]}}
-        expect:
-          - placed: {object: block, on: shelf}
-    """
-    steps = PICK + "\n- place: {object: block, pose: {xyz: [0, 0.3, 0.217]}}"
-    result, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}", rest=rest)
-    assert result.outcome == "passed", [step.message for step in result.steps]
-    assert saved.signals.object_poses["block"][-1, :2] == pytest.approx([0, 0.3], abs=0.01)
-
-
-def test_the_posture_before_a_grasp_is_one_from_which_the_arm_can_approach(tmp_path):
-    """The nearest posture that reaches the pose ends at a joint limit half way down."""
-    srdf = SEVEN_SRDF.replace('"arm"', '"manipulator"').replace("</robot>", GROUP + "</robot>")
-    write_arm(tmp_path, seven_joint_urdf().replace("</robot>", HAND + "</robot>"), srdf)
-    rest = """
-        seed: 3
-        objects:
-          - name: cube
-            pose: {xyz: [0.3, -0.25, 0.03]}
-            box: {size: [0.03, 0.03, 0.06]}
-            mass: 0.05
-    """
-    pick = "- pick: {object: cube, lift: {distance: 5 cm}}"
-    result, _ = run(tmp_path, pick, robot="{urdf: arm.urdf, srdf: arm.srdf}", rest=rest)
-    assert result.outcome == "passed", [step.message for step in result.steps]
-
-
-def test_a_line_of_five_joints_keeps_the_gripper_upright(tmp_path):
-    write_arm(tmp_path, FIVE_WITH_TURNING_JAW)
-    steps = """
-        - move_to: {joints: {b_joint: 0.6, c_joint: 1.5, e_joint: 0.5}}
-        - move_relative: {direction: {xyz: [0.3, 1, 0]}, distance: 0.15}
-    """
-    _, saved = run(tmp_path, steps, robot="{urdf: arm.urdf}")
-    poses = saved.signals.tcp_pose[saved.signals.times > saved.steps[1].start_time]
-    up = np.array([rotation_from_quat_wxyz(pose[3:])[2] for pose in poses])
-    assert np.ptp(poses[:, 1]) > 0.1
-    assert np.abs(up - up[0]).max() < 0.01
-
-
-BLOCK_AT = """<collision><origin xyz="{}"/><geometry><box size="0.02 0.06 0.06"/></geometry>
-    </collision>"""
-
-
-def test_a_state_of_the_gripper_is_good_wherever_the_arm_stands(tmp_path):
-    """At zero, an open finger touches the arm, as on a folded Panda."""
-    urdf = SIX
-    for link, place in (("c", "0 0.07 0.5"), ("d", "0.3 0 0")):
-        start = f'<link name="{link}">'
-        urdf = urdf.replace(start, start + BLOCK_AT.format(place))
-    write_arm(tmp_path, urdf)
-    arm = load_arm(tmp_path, srdf=None)
-    opened = arm.start_positions(arm.states_of("gripper")["open"].positions)
-    assert CoalScene(arm).touches(opened)
-    assert states(arm).is_good

@@ -5,7 +5,7 @@ import numpy as np
 from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.planning.collision.scene import CoalScene
 from tests.robot.arm_files import SRDF, load_arm, write_arm
-from tests.robot.test_own_gripper import SIX
+from tests.robot.hands import SIX
 
 ROLLER = (
     '<collision><origin rpy="1.2 0 0"/><geometry><cylinder radius="0.05" length="0.3"/></geometry>'

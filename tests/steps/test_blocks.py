@@ -6,7 +6,7 @@ import pytest
 
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
-from harness.session.rejudge import judge_run
+from harness.session.rejudge import judge_stored
 from tests.engine.front_door import file_of, problems, run
 from tests.running import run_case
 
@@ -48,7 +48,7 @@ def test_the_resolved_file_holds_the_included_steps_and_runs_to_the_same_digest(
     resolved = folder / "run/scenario.resolved.yaml"
     assert "include" not in resolved.read_text(encoding="utf-8").partition("steps:")[2]
     assert run_case(resolved).digest == result.digest
-    judged = judge_run(folder / "run")
+    judged = judge_stored(read_run(folder / "run"), folder / "run")
     assert [(v.step, v.status, v.margin) for v in judged] == [
         (v.step, v.status, v.margin) for v in result.verdicts
     ]

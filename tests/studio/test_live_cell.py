@@ -142,7 +142,7 @@ def test_a_step_that_fails_is_not_recorded_and_changes_nothing(cell):
 
 
 def test_planning_moves_nothing(cell):
-    from harness.studio.previews import preview
+    from harness.studio.goal_actions import preview
 
     cell.run_steps(1)
     before, _ = full_state(cell)

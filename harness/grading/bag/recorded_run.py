@@ -21,8 +21,6 @@ from harness.grading.bag.doubts import (
     velocity_doubts,
 )
 from harness.grading.bag.events import (
-    StepInterval,
-    Timed,
     attachments_of,
     is_present,
     presence_of,
@@ -46,7 +44,6 @@ from harness.recording.link_poses import replayed_link_poses
 from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Finding, ObjectRecord, Run
 from harness.recording.signals import UNPUBLISHED, Signals
-from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
 JOINT_SIGNALS = (
@@ -89,115 +86,177 @@ def run_of_bag(path: Path, topics: BagTopics, known: Recorded) -> Run:
     Raises:
         SpecError: It cannot be read, or has no joints of this robot.
     """
-    content = read_bag(path, topics)
-    reference = reference_track(content, known.description, known.robot.arm_joints)
-    if reference is None:
-        raise no_joints(path, topics, content, known.robot.arm_joints)
-    timeline = Timeline(reference)
-    placements = {placement.link: placement for placement in known.robot.placements}
-    in_frames = messages_of_frames(content, placements, known.description, timeline)
-    states = joint_messages(content.joints, known.description, timeline, topics.joint_states)
-    messages = states or in_frames
-    if not states:
-        content.notes.append("there are no joint states; the joints are read from /tf")
-    commands = joint_messages(content.commands, known.description, timeline, "/joint_commands")
-    joints, commanded_joints = traces_of(messages), traces_of(commands)
-    frames = Frames(content, known.robot.link_names, timeline)
-    seen = [obj for obj in known.objects if frames.knows(obj.name)]
-    moving = frames.moving(obj.name for obj in seen)
-    traces = [
-        *(each for some in (joints, commanded_joints) for kinds in some.values() for each in kinds),
-        *map(frames.trace, moving),
-    ]
-    others = (*content.joints.values(), *content.commands.values(), *moving)
-    times = _judged_times(path, traces, [reference, *others], content, timeline)
-    numbers = len(times) * (5 * len(known.robot.joints) + 7 * (len(seen) + len(known.frames) + 1))
-    if numbers > MOST_NUMBERS:
-        hint = "cut out what is to be graded, with `ros2 bag convert` for example"
-        raise bag_error(path, f"has messages at {len(times)} different times", hint)
-    measured = joint_rows(joints, known.description, times)
-    commanded = joint_rows(commanded_joints, known.description, times)
-    links = replayed_link_poses(known.robot, measured.positions, _links_needed(known, content))
-    events = timed_events(content, timeline, float(times[0]))
-    present = {obj.name: presence_of(events, obj.name, times) for obj in known.objects}
-    poses = {
-        obj.name: np.where(
-            is_present(present[obj.name], times)[:, None],
-            frames.pose(obj.name, links, times),
-            np.nan,
-        )
-        for obj in seen
-    }
-    signals = Signals(
-        times=times,
-        joint_positions=measured.positions,
-        joint_velocities=measured.velocities,
-        joint_efforts=measured.efforts,
-        joint_commands=commanded.positions,
-        joint_command_velocities=commanded.velocities,
-        tcp_pose=_whole(links[known.robot.tcp_link], times),
-        frames={name: _whole(links[name], times) for name in known.frames if name in links},
-        object_poses=poses,
-    )
-    steps, attachments = steps_of(events, times, known.steps), attachments_of(events)
-    is_own = _is_of_this_program(events)
-    shapes = {obj.name: obj.shapes for obj in seen}
-    movable = [obj.name for obj in known.objects if not obj.is_static]
-    doubts = [
-        *joint_doubts(messages, is_own=is_own),
-        *object_doubts(content.edges, timeline, shapes, is_own=is_own),
-        *object_doubts(content.objects, timeline, shapes, is_own=is_own),
-        *_once_doubts(frames, [name for name in movable if name in shapes], is_own=is_own),
-        *_unknown_roots(frames, list(shapes)),
-        *_step_doubts(events, steps),
-    ]
-    for name in shapes:
-        for others in frames.other_poses(name, links, times):
-            doubts += source_doubts(name, shapes[name], times, poses[name], others)
-    if states:
-        shown = joint_rows(traces_of(in_frames), known.description, times)
-        doubts += tf_doubts(known.description, times, measured, shown)
-        if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
-            arm = known.robot.arm_joints
-            doubts += velocity_doubts({n: each for n, each in messages.items() if n in arm})
-    notes = [
-        *content.notes,
-        *timeline.notes,
-        *frames.notes,
-        *foreign_links(content, placements),
-        *gaps([joint.name for joint in known.robot.joints], movable, signals, present),
-    ]
-    return Run(
-        scenario=known.title,
-        file=str(path),
-        case="",
-        seed=0,
-        robot=known.robot,
-        objects=tuple(
-            _object_record(obj, known, poses, present[obj.name]) for obj in known.objects
-        ),
-        attachments=attachments,
-        steps=steps,
-        signals=signals,
-        gravity=known.gravity,
-        timestep=float(np.median(np.diff(times))),
-        findings=(
-            *(Finding(FINDING, note) for note in notes),
-            *(
-                Finding(DOUBT, doubt.message, values={"doubt": doubt.kind, "names": doubt.names})
-                for doubt in doubts
+    return _Recording(path, topics, known).run()
+
+
+class _Recording:
+    """What is known of a recording's joints, objects and steps at the times that are judged."""
+
+    def __init__(self, path: Path, topics: BagTopics, known: Recorded) -> None:
+        self._path, self._known = path, known
+        robot, description = known.robot, known.description
+        self._content = content = read_bag(path, topics)
+        reference = reference_track(content, description, robot.arm_joints)
+        if reference is None:
+            raise no_joints(path, topics, content, robot.arm_joints)
+        self._timeline = timeline = Timeline(reference)
+        self._placements = {placement.link: placement for placement in robot.placements}
+        self._in_frames = messages_of_frames(content, self._placements, description, timeline)
+        self._states = joint_messages(content.joints, description, timeline, topics.joint_states)
+        if not self._states:
+            content.notes.append("there are no joint states; the joints are read from /tf")
+        self._messages = self._states or self._in_frames
+        commands = joint_messages(content.commands, description, timeline, "/joint_commands")
+        joints, commanded_joints = traces_of(self._messages), traces_of(commands)
+        self._frames = frames = Frames(content, robot.link_names, timeline)
+        self._shapes = {obj.name: obj.shapes for obj in known.objects if frames.knows(obj.name)}
+        self._movable = [obj.name for obj in known.objects if not obj.is_static]
+        moving = frames.moving(self._shapes)
+        kinds = [*joints.values(), *commanded_joints.values()]
+        traces = [*(trace for each in kinds for trace in each), *map(frames.trace, moving)]
+        others = (*content.joints.values(), *content.commands.values(), *moving)
+        self._times = times = _judged_times(path, traces, [reference, *others], content, timeline)
+        self._refuse_too_many()
+        self._measured = joint_rows(joints, description, times)
+        self._commanded = joint_rows(commanded_joints, description, times)
+        self._links = replayed_link_poses(robot, self._measured.positions, self._links_needed())
+        self._events = timed_events(content, timeline, float(times[0]))
+        self._steps = steps_of(self._events, times, known.steps)
+        self._is_own = any(event.get("event") == "run_started" for _, event in self._events)
+        self._present = {
+            obj.name: presence_of(self._events, obj.name, times) for obj in known.objects
+        }
+        self._poses = {name: self._object_poses(name) for name in self._shapes}
+
+    def _refuse_too_many(self) -> None:
+        known = self._known
+        bodies = len(self._shapes) + len(known.frames) + 1
+        if len(self._times) * (5 * len(known.robot.joints) + 7 * bodies) > MOST_NUMBERS:
+            hint = "cut out what is to be graded, with `ros2 bag convert` for example"
+            message = f"has messages at {len(self._times)} different times"
+            raise bag_error(self._path, message, hint)
+
+    def _links_needed(self) -> set[str]:
+        """Links that expectations use, or that other frames are attached to."""
+        content, robot = self._content, set(self._known.robot.link_names)
+        edges = [*content.edges, *content.static_edges, *content.objects]
+        carriers = {parent for parent, child in edges if child not in robot}
+        return {self._known.robot.tcp_link, *self._known.frames, *(carriers & robot)}
+
+    def _object_poses(self, name: str) -> FloatArray:
+        here = is_present(self._present[name], self._times)[:, None]
+        return np.where(here, self._frames.pose(name, self._links, self._times), np.nan)
+
+    def run(self) -> Run:
+        """The recording as a run."""
+        known, signals = self._known, self._signals()
+        doubts = self._doubts()  # before the notes on what they look at
+        return Run(
+            scenario=known.title,
+            file=str(self._path),
+            case="",
+            seed=0,
+            robot=known.robot,
+            objects=tuple(map(self._object_record, known.objects)),
+            attachments=attachments_of(self._events),
+            steps=self._steps,
+            signals=signals,
+            gravity=known.gravity,
+            timestep=float(np.median(np.diff(self._times))),
+            findings=(
+                *(Finding(FINDING, note) for note in self._notes(signals)),
+                *(
+                    Finding(DOUBT, each.message, values={"doubt": each.kind, "names": each.names})
+                    for each in doubts
+                ),
             ),
-        ),
-        unrecorded=_unrecorded(signals, events, has_steps=bool(steps)),
-    )
+            unrecorded=self._unrecorded(signals),
+        )
 
+    def _signals(self) -> Signals:
+        known, links = self._known, self._links
+        measured, commanded = self._measured, self._commanded
+        return Signals(
+            times=self._times,
+            joint_positions=measured.positions,
+            joint_velocities=measured.velocities,
+            joint_efforts=measured.efforts,
+            joint_commands=commanded.positions,
+            joint_command_velocities=commanded.velocities,
+            tcp_pose=self._whole(links[known.robot.tcp_link]),
+            frames={name: self._whole(links[name]) for name in known.frames if name in links},
+            object_poses=self._poses,
+        )
 
-def _links_needed(known: Recorded, content: BagContent) -> set[str]:
-    """Links that expectations use, or that other frames are attached to."""
-    robot = set(known.robot.link_names)
-    edges = [*content.edges, *content.static_edges, *content.objects]
-    carriers = {parent for parent, child in edges if child not in robot}
-    return {known.robot.tcp_link, *known.frames, *(carriers & robot)}
+    def _whole(self, poses: FloatArray) -> FloatArray:
+        return np.array(np.broadcast_to(poses, (len(self._times), 7)))
+
+    def _notes(self, signals: Signals) -> list[str]:
+        names = [joint.name for joint in self._known.robot.joints]
+        return [
+            *self._content.notes,
+            *self._timeline.notes,
+            *self._frames.notes,
+            *foreign_links(self._content, self._placements),
+            *gaps(names, self._movable, signals, self._present),
+        ]
+
+    def _doubts(self) -> list[Doubt]:
+        content, timeline = self._content, self._timeline
+        times, shapes = self._times, self._shapes
+        doubts = [
+            *joint_doubts(self._messages, is_own=self._is_own),
+            *object_doubts(content.edges, timeline, shapes, is_own=self._is_own),
+            *object_doubts(content.objects, timeline, shapes, is_own=self._is_own),
+            *self._once_doubts(),
+            *self._unknown_roots(),
+            *self._step_doubts(),
+        ]
+        for name, poses in self._poses.items():
+            for others in self._frames.other_poses(name, self._links, times):
+                doubts += source_doubts(name, shapes[name], times, poses, others)
+        if self._states:
+            description = self._known.description
+            shown = joint_rows(traces_of(self._in_frames), description, times)
+            doubts += tf_doubts(description, times, self._measured, shown)
+            if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
+                arm = self._messages.keys() & set(self._known.robot.arm_joints)
+                doubts += velocity_doubts(
+                    {name: each for name, each in self._messages.items() if name in arm}
+                )
+        return doubts
+
+    def _once_doubts(self) -> Iterator[Doubt]:
+        """Movable objects of which a single pose counts at all times."""
+        for name in self._movable:
+            if name in self._shapes and self._frames.is_published_once(name) and not self._is_own:
+                reason = f"{name} has one pose in all, or one in /tf_static; it counts all along"
+                yield Doubt("once", reason, (name,))
+
+    def _unknown_roots(self) -> Iterator[Doubt]:
+        for frame in self._frames.assumed:
+            names = (name for name in self._shapes if self._frames.assumed_below(name) == frame)
+            reason = f"frame '{frame}' has no parent; it counts as the world"
+            yield Doubt("frames", reason, tuple(names))
+
+    def _step_doubts(self) -> Iterator[Doubt]:
+        """Steps that the recorded program itself said had begun and ended."""
+        if self._steps and not self._is_own:
+            names = ", ".join(step.id for step in self._steps[:5])
+            yield Doubt("steps", f"the recorded program chose when these steps began: {names}")
+
+    def _unrecorded(self, signals: Signals) -> tuple[str, ...]:
+        """Signals that are missing; events of other programs than this one may have steps alone."""
+        names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
+        if not self._is_own:
+            names += ["attachments"] if self._steps else ["attachments", "steps"]
+        return (*names, *UNPUBLISHED, "clearances")
+
+    def _object_record(self, obj: WorldObject) -> ObjectRecord:
+        """An object's record, with the scenario's pose if the object is static and not recorded."""
+        is_known = obj.name not in self._poses and obj.is_static
+        pose = obj.pose if is_known and obj.name in self._known.at_start else None
+        return ObjectRecord.of(obj, self._present[obj.name], pose)
 
 
 def _judged_times(
@@ -236,57 +295,3 @@ def _judged_times(
         seconds, is_judged = timeline.rows(track)
         ends.append(float(seconds[is_judged].max(initial=-np.inf)))
     return np.append(found, max(ends)) if max(ends) - found[-1] > limit else found
-
-
-def _once_doubts(frames: Frames, names: Sequence[str], *, is_own: bool) -> Iterator[Doubt]:
-    """Movable objects of which a single pose counts at all times."""
-    for name in names:
-        if frames.is_published_once(name) and not is_own:
-            reason = f"{name} has one pose in all, or one in /tf_static; it counts all along"
-            yield Doubt("once", reason, (name,))
-
-
-def _unknown_roots(frames: Frames, names: Sequence[str]) -> list[Doubt]:
-    return [
-        Doubt(
-            "frames",
-            f"frame '{frame}' has no parent; it counts as the world",
-            tuple(name for name in names if frames.assumed_below(name) == frame),
-        )
-        for frame in frames.assumed
-    ]
-
-
-def _step_doubts(events: list[Timed], steps: Sequence[StepRecord]) -> list[Doubt]:
-    """Steps that the recorded program itself said had begun and ended."""
-    if not steps or _is_of_this_program(events):
-        return []
-    names = ", ".join(step.id for step in steps[:5])
-    return [Doubt("steps", f"the recorded program chose when these steps began: {names}")]
-
-
-def _is_of_this_program(events: list[Timed]) -> bool:
-    return any(event.get("event") == "run_started" for _, event in events)
-
-
-def _unrecorded(signals: Signals, events: list[Timed], *, has_steps: bool) -> tuple[str, ...]:
-    """Signals that are missing; events of other programs than this one may have steps alone."""
-    names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
-    if not _is_of_this_program(events):
-        names += ["attachments"] if has_steps else ["attachments", "steps"]
-    return (*names, *UNPUBLISHED, "clearances")
-
-
-def _object_record(
-    obj: WorldObject,
-    known: Recorded,
-    poses: Mapping[str, FloatArray],
-    present: tuple[StepInterval, ...],
-) -> ObjectRecord:
-    """An object's record, with the scenario's pose if the object is static and not recorded."""
-    is_known = obj.name not in poses and obj.is_static and obj.name in known.at_start
-    return ObjectRecord.of(obj, present, obj.pose if is_known else None)
-
-
-def _whole(poses: FloatArray, times: FloatArray) -> FloatArray:
-    return np.array(np.broadcast_to(poses, (len(times), 7)))

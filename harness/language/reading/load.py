@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
-from harness.core.registry import broken_plugins, registry
+from harness.core.registry import plugin_hints, registry
 from harness.core.resources import data_folder
 from harness.core.suggestion import did_you_mean
 from harness.language.base import SpecModel
@@ -235,12 +235,9 @@ def world_path(name_or_path: str, base_dir: Path) -> Path:
     names = bundled_worlds()
     if name_or_path in names:
         return data_folder("worlds") / f"{name_or_path}.yaml"
-    hint = did_you_mean(name_or_path, names, "worlds")
-    raise _no_world(
-        name_or_path,
-        f"no world is called `{name_or_path}`",
-        "; ".join([hint, "or the path of a .yaml or .sdf file", *broken_plugins()]),
-    )
+    known, *of_plugin = plugin_hints(name_or_path, names, "world format", "worlds")
+    hints = [known, "or the path of a .yaml or .sdf file", *(of_plugin if suffix else ())]
+    raise _no_world(name_or_path, f"no world is called `{name_or_path}`", "; ".join(hints))
 
 
 def is_foreign_world(name_or_path: str) -> bool:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import SequenceMatcher
 from typing import NamedTuple
 
 from harness.core.errors import Problem
-from harness.core.registry import broken_plugins
-from harness.core.suggestion import did_you_mean, nearest
+from harness.core.registry import plugin_hints
+from harness.core.suggestion import did_you_mean, is_slip, nearest
 from harness.language.annotations import is_model, keys_of
 from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, Place
@@ -23,9 +22,6 @@ TEMPORAL_WORDS = {
 
 ALONE = ("never", "no", "not", "none", "always", "eventually")
 """Those that name no object and no state when they stand in the place of one."""
-
-SURELY_MISSPELT = 0.8
-"""The similarity of a word and a valid one, from 0 to 1, above which it is a slip of the pen."""
 
 UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 
@@ -107,16 +103,14 @@ def _unknown(
         message = f"no {kind} is called `{word}`"
     near = nearest(word, words)
     is_misspelt = near is not None and _is_misspelt(word, near, content, words[near])
-    of_plugin = f"a {kind} of a plug-in that is not installed needs `--plugin`"
-    hints = [did_you_mean(word, words, f"{kind}s"), *([] if is_misspelt else [of_plugin])]
-    problems.append(place.problem(message, "; ".join([*hints, *broken_plugins()])))
+    hints = plugin_hints(word, words, kind, is_misspelt=is_misspelt)
+    problems.append(place.problem(message, "; ".join(hints)))
     return near if is_misspelt else None
 
 
 def _is_misspelt(word: str, near: str, content: Located, model: object) -> bool:
     """Whether a word is nearly the same as the nearest one, or has keys of that one alone."""
-    plain = word.lower().replace("-", "_")
-    if SequenceMatcher(None, plain, near).ratio() > SURELY_MISSPELT:
+    if is_slip(word, near):
         return True
     keys = content.value.keys() if isinstance(content.value, dict) else ()
     return is_model(model) and all(key in keys_of(model) for key in keys)

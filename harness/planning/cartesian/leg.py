@@ -15,7 +15,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.splines import uniform_spline
-from harness.planning.cartesian.tracing import LinkPath, link_goal
+from harness.planning.cartesian.tracing import SOLVED, LinkPath, link_goal
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
@@ -31,7 +31,6 @@ BLEND_STEP = 0.002
 _FEWEST = 8
 _SEARCHED = 400  # points of a leg looked at for where it enters a sphere
 _SAME = 1e-5  # [rad] a transition that ends farther from the next leg is on another branch
-_SOLVED = 1e-8  # [m, rad]
 
 
 class Leg:
@@ -190,7 +189,7 @@ def _follow(leg: Leg, pose: SE3, guess: FloatArray, checker: MotionChecker) -> F
     task = LinkTask(checker.space, link_goal(leg.link, pose, checker.space.dof))
     found, error = task.polish(guess, iterations=20)
     space = checker.space
-    if error > _SOLVED or np.any(found < space.lower) or np.any(found > space.upper):
+    if error > SOLVED or np.any(found < space.lower) or np.any(found > space.upper):
         raise PlanningFailed(
             "NO_IK_SOLUTION", f"{leg.link} cannot follow the blend after {leg.name}"
         )

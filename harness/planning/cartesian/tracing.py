@@ -48,7 +48,8 @@ OFF_BETWEEN = 3e-5
 """How far the curve may leave it in the middle between two poses [m]."""
 
 _FEWEST_STEPS = 8
-_SOLVED = 1e-8  # [m, rad]
+SOLVED = 1e-8
+"""Error of a solved state at most [m, rad]."""
 
 
 class LinkPath(Protocol):
@@ -222,7 +223,7 @@ def _stopped(
     largest: FloatArray,
 ) -> tuple[str, TraceFailure] | None:
     space = checker.space
-    if error > _SOLVED:
+    if error > SOLVED:
         message = f"the arm reaches no farther on this {path.name}"
         return message, TraceFailure("unreachable", residual=error)
     outside = np.maximum(space.lower - found, found - space.upper)

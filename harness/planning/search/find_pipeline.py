@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from harness.core.registry import OWN_PACKAGE, registry
-from harness.ports.motion_planning import PlanningOptions
+from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
 from harness.ports.path_planning import PathPlanner
-
-DEFAULT_PIPELINE = "ompl"
 
 
 def find_pipeline(name: str) -> type[PathPlanner]:

@@ -1,10 +1,22 @@
-"""The result of a convex decomposition."""
+"""Convex parts of meshes, kept in the user's cache directory by the content of the mesh."""
 
 from __future__ import annotations
 
+import hashlib
+import io
+import platform
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+
+import numpy as np
 
 from harness.core.types import FloatArray
+from harness.core.user_cache import cached, store
+
+METHOD = 4
+"""Version of the decomposition; parts of another version are computed again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,3 +36,54 @@ class Decomposition:
     excess: float
     hull_excess: float
     is_closed: bool
+
+
+def stored_decomposition(
+    content: bytes, factors: FloatArray, triangles: Callable[[], FloatArray]
+) -> Decomposition:
+    """The convex parts of a mesh; computed where the cache does not have them.
+
+    The key holds everything that the parts depend on, the versions of the numerical libraries
+    included, so that it makes no difference whether they were stored.
+
+    Args:
+        content: The bytes of the mesh file.
+        factors: The factors from its coordinates to metres, shape (3,).
+        triangles: Reads the corners [m], shape (M, 3, 3).
+    """
+    key = hashlib.sha256(content)
+    key.update(repr((factors.tolist(), METHOD, *_versions())).encode())
+    name = f"convex_parts/{key.hexdigest()}.npz"
+    stored = cached(name)
+    if stored is not None:
+        return _read(stored)
+    from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
+
+    found = decompose(triangles())
+    store(name, _content(found))
+    return found
+
+
+@cache
+def _versions() -> tuple[str, ...]:
+    return np.__version__, version("scipy"), platform.machine()
+
+
+def _read(content: bytes) -> Decomposition:
+    with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+        hull, points, ends = arrays["hull"], arrays["points"], arrays["ends"]
+        excess, hull_excess, is_closed = arrays["measures"].tolist()
+    parts = tuple(np.split(points, ends[:-1]))
+    return Decomposition(hull, parts, excess, hull_excess, bool(is_closed))
+
+
+def _content(found: Decomposition) -> bytes:
+    content = io.BytesIO()
+    np.savez(
+        content,
+        hull=found.hull,
+        points=np.concatenate(found.parts),
+        ends=np.cumsum([len(part) for part in found.parts]),
+        measures=np.array([found.excess, found.hull_excess, float(found.is_closed)]),
+    )
+    return content.getvalue()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 from harness.core.suggestion import did_you_mean
+from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, NamedState, PlanningGroup
 from harness.robot.groups import planning_groups
 from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
@@ -25,40 +26,15 @@ def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
         return srdf
     joints = {joint.name: joint for joint in urdf.joints}
     links = {link.name for link in urdf.links} | {"world"}
-    groups = {group.name for group in srdf.groups}
     notes: list[str] = []
-    virtual = {joint.name for joint in srdf.virtual_joints}
-    for item in root.findall("group_state"):
-        what = f"state '{item.get('name')}'"
-        if "group" in item.attributes and item.get("group") not in groups:
-            item.refuse(*_unknown(what, "group", item.get("group"), groups), at="group")
-        for each in item.findall("joint"):
-            name = each.get("name")
-            if name in virtual:
-                continue
-            if name not in joints:
-                each.refuse(*_unknown(what, "joint", name, joints), at="name")
-            if has_several_values(each):
-                if joints[name].is_movable:
-                    each.refuse(f"{what}: joint '{name}' has one position", at="value")
-                notes.append(f"SRDF: {what} places '{name}', which is fixed: ignored")
-    for item in root.findall("end_effector"):
-        what = f"end effector '{item.get('name')}'"
-        for key, known in (("parent_link", links), ("group", groups), ("parent_group", groups)):
-            value = item.get(key)
-            if value and value not in known:
-                item.refuse(*_unknown(what, key.rpartition("_")[2], value, known), at=key)
+    _check_states(root, srdf, joints, notes)
+    _check_end_effectors(root, srdf, links)
     for item in root.findall("passive_joint"):
-        if item.get("name") not in joints:
-            item.refuse(*_unknown("passive_joint", "joint", item.get("name"), joints), at="name")
+        _check_name(item, "name", "passive_joint", "joint", joints)
     for joint in srdf.virtual_joints:
         if joint.kind != "fixed":
             notes.append(f"SRDF: the {joint.kind} virtual joint '{joint.name}' counts as fixed")
-    known = {
-        pair: reason
-        for pair, reason in srdf.disabled.items()
-        if pair[0] in links and pair[1] in links
-    }
+    known = {pair: reason for pair, reason in srdf.disabled.items() if links.issuperset(pair)}
     if len(known) < len(srdf.disabled):
         lost = sorted({name for pair in srdf.disabled for name in pair} - links)
         notes.append(f"SRDF: disable_collisions of unknown links ignored: {', '.join(lost)}")
@@ -71,6 +47,48 @@ def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
     default = default_srdf(urdf)
     note = f"SRDF: no groups; '{DEFAULT_GROUP}' is the longest chain"
     return replace(srdf, groups=default.groups, notes=(*srdf.notes, note))
+
+
+def _check_states(
+    root: XmlElement, srdf: Srdf, joints: Mapping[str, Joint], notes: list[str]
+) -> None:
+    """Refuse states of unknown groups and joints; adds a note on positions of fixed joints."""
+    groups = {group.name for group in srdf.groups}
+    virtual = {joint.name for joint in srdf.virtual_joints}
+    for item in root.findall("group_state"):
+        what = f"state '{item.get('name')}'"
+        if "group" in item.attributes:
+            _check_name(item, "group", what, "group", groups)
+        for each in item.findall("joint"):
+            name = each.get("name")
+            if name in virtual:
+                continue
+            _check_name(each, "name", what, "joint", joints)
+            if has_several_values(each):
+                if joints[name].is_movable:
+                    each.refuse(f"{what}: joint '{name}' has one position", at="value")
+                notes.append(f"SRDF: {what} places '{name}', which is fixed: ignored")
+
+
+def _check_end_effectors(root: XmlElement, srdf: Srdf, links: Collection[str]) -> None:
+    groups = {group.name for group in srdf.groups}
+    for item in root.findall("end_effector"):
+        what = f"end effector '{item.get('name')}'"
+        for key, known in (("parent_link", links), ("group", groups), ("parent_group", groups)):
+            if item.get(key):
+                _check_name(item, key, what, key.rpartition("_")[2], known)
+
+
+def _check_name(item: XmlElement, key: str, what: str, kind: str, known: Collection[str]) -> None:
+    """Refuse an attribute that does not name one of the known things of a kind.
+
+    Raises:
+        SpecError: It names none of them; with the nearest name.
+    """
+    name = item.get(key)
+    if name not in known:
+        hint = did_you_mean(name, sorted(known), f"{kind}s")
+        item.refuse(f"{what} names the unknown {kind} '{name}'", hint, at=key)
 
 
 def _with_groups(
@@ -101,8 +119,3 @@ def _within(state: NamedState, joints: Mapping[str, Joint], notes: list[str]) ->
                 f"[{joint.lower:g}, {joint.upper:g}]"
             )
     return replace(state, positions=positions)
-
-
-def _unknown(what: str, kind: str, name: str, known: Iterable[str]) -> tuple[str, str]:
-    hint = did_you_mean(name, sorted(known), f"{kind}s")
-    return f"{what} names the unknown {kind} '{name}'", hint

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from harness.core.errors import Problem, SpecError
 from harness.core.geometry import Rgba
 from harness.core.spatial import SE3, wxyz_from_xyzw
+from harness.core.world import MOST_OBJECTS
 from harness.language.files.source import Place, Source
 from harness.language.files.yaml_file import read_text
 from harness.language.world import MeshSpec, ObjectSpec, ShapeSpec, WorldSpec
@@ -30,7 +31,6 @@ from harness.world.stl import Triangles, add_mesh, cone
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 LARGEST_FILE = 8_000_000  # [bytes]
-MOST_OBJECTS = 1000
 MOST_SHAPES = 10_000
 MOST_CORNERS = 200_000
 """Most vertices of one mesh, and most triangles: the limit of the physics."""
