@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Shape, Sphere
+from harness.language.scenario import RobotSpec
 from harness.planning.collision.motion_rates import motion_rates
 from harness.planning.collision.sampled_motion import COUNTED_RESOLUTION, SampledMotion
 from harness.planning.model.robot_model import GroupSpace
+from harness.robot.load import load_robot
 from tests.planning.lesson import Cell, at, gantry_cell, open_manipulator, thing, ur
 
 METRIC = np.array([1.0, 3.0])
@@ -88,3 +90,32 @@ def test_no_pair_approaches_faster_than_its_bound(name, kind, tmp_path):
         largest = np.maximum(largest, changes / np.maximum(allowed, 1e-9) * (rates > 0))
     assert largest.max() > 0.1
     assert rates.max() < 5.0
+
+
+CONTINUOUS = """<robot name="turner">
+  <link name="base"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="plate"/>
+    <axis xyz="0 0 1"/><limit effort="50" velocity="1"/></joint>
+  <link name="plate"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="slide" type="prismatic"><parent link="plate"/><child link="tip"/>
+    <axis xyz="1 0 0"/><limit lower="-0.2" upper="0.5" effort="50" velocity="1"/></joint>
+  <link name="tip"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><sphere radius="0.03"/></geometry></collision></link>
+</robot>"""
+
+
+def test_a_joint_without_limits_does_not_make_the_bounds_of_others_infinite(tmp_path):
+    (tmp_path / "turner.urdf").write_text(CONTINUOUS)
+    cell = Cell(
+        load_robot(RobotSpec.model_validate({"urdf": str(tmp_path / "turner.urdf")})),
+        with_tables=False,
+    )
+    cell.add(thing("ball", at(1.0, 0, 0), Shape(Sphere(0.05))))
+    space = GroupSpace(cell.kinematics.robot, cell.description.arm_group, cell.state)
+    model = cell.scene.collision_model()
+    names = [model.names(pair) for pair in range(len(model.pairs))]
+    rates = dict(zip(names, motion_rates(model, space), strict=True))
+    reach = 0.03 * np.sqrt(3) + 0.5  # the corner of the sphere's box, and the travel
+    assert rates["tip", "ball"] == pytest.approx(np.linalg.norm([reach, 1.0] / space.metric))

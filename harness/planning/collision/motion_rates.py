@@ -28,7 +28,8 @@ def motion_rates(model: CollisionModel, space: GroupSpace) -> FloatArray:
         number, row = robot.getJointId(joint.name), np.abs(space.matrix[index])
         drive[number] = row
         if joint.kind == "prismatic":
-            travel[number] = abs(space.offset[index]) + (row * farthest)[row > 0].sum()
+            driven = row > 0
+            travel[number] = abs(space.offset[index]) + row[driven] @ farthest[driven]
     offsets = [float(np.linalg.norm(pose.translation)) for pose in robot.jointPlacements]
 
     def levers(body: Body) -> FloatArray:
