@@ -106,6 +106,13 @@ CONTINUOUS = """<robot name="turner">
 </robot>"""
 
 
+def arm_rates(cell):
+    space = GroupSpace(cell.kinematics.robot, cell.description.arm_group, cell.state)
+    model = cell.scene.collision_model()
+    names = [model.names(pair) for pair in range(len(model.pairs))]
+    return space, dict(zip(names, motion_rates(model, space), strict=True))
+
+
 def test_a_joint_without_limits_does_not_make_the_bounds_of_others_infinite(tmp_path):
     (tmp_path / "turner.urdf").write_text(CONTINUOUS)
     cell = Cell(
@@ -113,9 +120,6 @@ def test_a_joint_without_limits_does_not_make_the_bounds_of_others_infinite(tmp_
         with_tables=False,
     )
     cell.add(thing("ball", at(1.0, 0, 0), Shape(Sphere(0.05))))
-    space = GroupSpace(cell.kinematics.robot, cell.description.arm_group, cell.state)
-    model = cell.scene.collision_model()
-    names = [model.names(pair) for pair in range(len(model.pairs))]
-    rates = dict(zip(names, motion_rates(model, space), strict=True))
+    space, rates = arm_rates(cell)
     reach = 0.03 * np.sqrt(3) + 0.5  # the corner of the sphere's box, and the travel
     assert rates["tip", "ball"] == pytest.approx(np.linalg.norm([reach, 1.0] / space.metric))
