@@ -199,14 +199,15 @@ class Recording:
         self._contacts.keep(self.count - 1)
 
     def _refuse_divergence(self, first: int) -> None:
-        warned = any(self._data.warning[kind].number for kind in _DIVERGED)
         rows = self._qpos[first : self.count], self._qvel[first : self.count]
+        warned = any(self._data.warning[kind].number for kind in _DIVERGED)
+        if not warned and all((np.abs(part[-1]) <= mujoco.mjMAXVAL).all() for part in rows):
+            return
         usable = np.logical_and(*((np.abs(part) <= mujoco.mjMAXVAL).all(axis=1) for part in rows))
-        if warned or not usable.all():
-            row = first + (int(np.argmin(usable)) if not usable.all() else 0)
-            raise SimulationDiverged(
-                f"the physics left the finite numbers near t={row * self.timestep:.3f} s"
-            )
+        row = first + (0 if usable.all() else int(np.argmin(usable)))
+        raise SimulationDiverged(
+            f"the physics left the finite numbers near t={row * self.timestep:.3f} s"
+        )
 
     def _reserve(self, rows: int) -> None:
         self._contacts.reserve(rows)
