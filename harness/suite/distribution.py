@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from statistics import NormalDist
@@ -36,7 +37,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class NumberDistribution:
+class NumberDistribution(ABC):
     """A distribution of numbers.
 
     Attributes:
@@ -47,9 +48,9 @@ class NumberDistribution:
     plain: Mapping[str, Any]
     unit: str
 
+    @abstractmethod
     def number_at(self, share: float) -> float:
         """The number that a share of the distribution is below."""
-        raise NotImplementedError
 
     def at(self, share: float) -> float | str:
         """The value that a share of the distribution is below, as a file writes it."""
