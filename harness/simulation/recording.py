@@ -15,14 +15,8 @@ from harness.core.types import FloatArray, IntArray
 from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.signals import Signals
-from harness.simulation.contact_record import (
-    BYTES,
-    ROWS,
-    BodyPair,
-    ContactRecord,
-    RecordedContacts,
-    doubled,
-)
+from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
+from harness.simulation.copied_contacts import RecordedContacts
 from harness.simulation.model import PhysicsModel
 from harness.simulation.step_state import refresh
 
