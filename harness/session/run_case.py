@@ -67,8 +67,8 @@ def run_case(
             executed = _executed(request, begun, clock, progress, session, ahead)
             refusal = session.refusal()
             del begun, session  # the simulator is the largest object; the run holds its recording
-            free_memory()
             pictures.executed(executed)
+            free_memory()
             judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
