@@ -22,6 +22,9 @@ _TASKS = Path("/proc/self/task")
 
 _is_forking = True
 
+_ending: list[int] = []
+"""Processes that have sent their value and end by themselves."""
+
 
 def compute_here() -> None:
     """From now on, fork no process unless that is requested: every core has work already."""
@@ -45,6 +48,7 @@ class Background(Generic[T]):
             despite_threads: Whether such a process is forked too. A lock that another thread holds
                 then stays locked in the fork, so the value may never come.
         """
+        _reap()
         self._function: Callable[[Activity], T] | None = function
         self._pid = 0
         can_fork = _is_forking and len(list(_TASKS.iterdir())) == 1
@@ -79,13 +83,12 @@ class Background(Generic[T]):
         if self._function is not None:
             return self._function(activity)
         try:
-            while True:
-                kind, payload = pickle.loads(self._reading.recv_bytes())
-                if kind == "value":
-                    return payload
-                if kind == "raised":
-                    raise payload
+            kind, payload = pickle.loads(self._reading.recv_bytes())
+            while kind == "progress":
                 activity(*payload)
+                kind, payload = pickle.loads(self._reading.recv_bytes())
+            _ending.append(self._pid)  # its memory is still given back, which is not waited for
+            self._pid = 0
         except EOFError:
             _, status = os.waitpid(self._pid, 0)
             self._pid = 0
@@ -93,6 +96,10 @@ class Background(Generic[T]):
             raise HarnessError(f"the process in the background ended with code {code}") from None
         finally:
             self.close()
+            self._reading.close()
+        if kind == "raised":
+            raise payload
+        return payload
 
     def close(self) -> None:
         """End the process, if it is still at work."""
@@ -101,7 +108,11 @@ class Background(Generic[T]):
                 os.kill(self._pid, signal.SIGKILL)
             os.waitpid(self._pid, 0)
             self._pid = 0
-            self._reading.close()
+
+
+def _reap() -> None:
+    """Let the system forget the processes that have ended."""
+    _ending[:] = [pid for pid in _ending if not os.waitpid(pid, os.WNOHANG)[0]]
 
 
 class Later(Generic[T]):
@@ -138,6 +149,7 @@ class Later(Generic[T]):
 
 def _compute(function: Callable[[Activity], T], writing: Connection) -> NoReturn:
     """Send the function's value, and do nothing else that this process is to do."""
+    _ending.clear()  # they are not this process's to wait for
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C is reported by the parent
 
     def report(what: str, done: int = 0, total: int = 0) -> None:

@@ -59,6 +59,16 @@ def test_a_process_that_crashes_is_an_error_of_the_case():
     ) == ["the", "process", "in", "the", "background", "ended", "with", "code", "-11"]
 
 
+def test_a_process_that_has_sent_its_value_is_forgotten_when_it_has_ended():
+    assert in_a_process_without_threads(
+        "first = Background(lambda _: 1); pid = first._pid\n"
+        "print(first.result(unobserved))\n"
+        "while open(f'/proc/{pid}/stat').read().rpartition(')')[2].split()[0] != 'Z':\n"
+        "    time.sleep(0.001)\n"
+        "print(Background(lambda _: 2).result(unobserved), os.path.exists(f'/proc/{pid}'))"
+    ) == ["1", "2", "False"]
+
+
 LATER = (
     "from harness.session.background import Later\n"
     "later = Later()\n"
