@@ -15,6 +15,7 @@ from harness.cameras.renderer import make_renderer
 from harness.cameras.viewpoint import OVERVIEW_STATES, Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
+from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run
 from harness.robot.description import RobotDescription
@@ -26,6 +27,9 @@ SHADOW_SIZE = 1024
 
 FARTHEST_IN_VIEW = 1.3
 """Objects farther from the base than this [m] may be outside the view."""
+
+UNSEEN = 1e-4
+"""Motion that a picture does not show [m], and the same of directions."""
 
 INK = {"passed": (60, 130, 40), "expected error": (60, 130, 40), "failed": RED}
 """Colour of a caption's status, BGR."""
@@ -93,12 +97,17 @@ class StepRenderer:
             return Stills()
         view = overview(self._description, self._objects, run).view
         files: dict[str, bytes] = {}
+        shown: dict[str, SE3] = {}
+        picture = np.empty(0)
         for number, step in enumerate(steps, start=1):
             activity("drawing a picture of each step", number - 1, len(steps))
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
-            self._picture.pose(scene_poses(self._description, self._objects, run, sample, step))
+            poses = scene_poses(self._description, self._objects, run, sample, step)
+            if not looks_alike(poses, shown):
+                self._picture.pose(poses)
+                picture, shown = self._renderer.render(view), poses
             files[f"{number:02d}-{step_slug(step.id)}.jpg"] = captioned_jpeg(
-                self._renderer.render(view),
+                picture,
                 f"{number}/{len(steps)}  {step.summary or step.verb}",
                 ink=DARK,
                 status=f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}",
@@ -109,6 +118,14 @@ class StepRenderer:
     def close(self) -> None:
         """Free the resources of the graphics library."""
         self._renderer.close()
+
+
+def looks_alike(poses: Mapping[str, SE3], others: Mapping[str, SE3]) -> bool:
+    """Whether the same bodies are shown, none of them moved so far that a picture shows it."""
+    return poses.keys() == others.keys() and all(
+        np.allclose(pose.matrix(), others[name].matrix(), rtol=0.0, atol=UNSEEN)
+        for name, pose in poses.items()
+    )
 
 
 def overview(

@@ -11,13 +11,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from harness.cameras import stills
 from harness.cameras.camera_scene import scene_poses
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
-from harness.cameras.stills import StepRenderer, overview
+from harness.cameras.stills import UNSEEN, StepRenderer, looks_alike, overview
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.details import Details
 from harness.core.geometry import Mesh, Shape
+from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.recording.step_results import SceneChange
 from harness.robot.forward_kinematics import robot_poses
@@ -101,6 +103,43 @@ def test_one_picture_is_drawn_for_each_executed_step(ur3e):
         picture = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
         assert picture.shape == (480, 640, 3)
     assert (stills.note == "") is (stills.backend != "rays")
+
+
+@pytest.mark.parametrize(
+    ("moved", "drawn"), [(0.0, 1), (0.2 * UNSEEN, 1), (2 * UNSEEN, 3), (0.01, 3), (np.nan, 2)]
+)
+def test_a_state_that_looks_like_the_one_before_is_drawn_once(ur3e, monkeypatch, moved, drawn):
+    """The red box is moved on by as much until the third step; NaN takes it away."""
+    views = []
+
+    class Counted:
+        def __init__(self, *arguments):
+            self._renderer = make_renderer(*arguments)
+            self.backend, self.close = self._renderer.backend, self._renderer.close
+
+        def render(self, view):
+            views.append(view)
+            return self._renderer.render(view)
+
+    monkeypatch.setattr(stills, "make_renderer", Counted)
+    run = a_run(ur3e)
+    still = np.tile(run.signals.object_poses["imagined"][0], (4, 1))
+    red = np.tile(RED_BOX.pose.as_vector(), (4, 1))
+    red[1:, 0] += np.arange(1, 4) * moved
+    poses = {**run.signals.object_poses, "red_box": red, "imagined": still}
+    run = replace(run, signals=replace(run.signals, object_poses=poses))
+    with closing(StepRenderer(ur3e, OBJECTS)) as renderer:
+        views.clear()
+        assert len(renderer.draw(run).files) == 4
+    assert len(views) == drawn
+
+
+def test_states_that_turn_or_lose_a_body_do_not_look_alike():
+    here, turned = SE3.identity(), SE3.from_xyz_rpy((0, 0, 0), (0, 0, 2 * UNSEEN))
+    assert looks_alike({"cup": here}, {"cup": here})
+    assert not looks_alike({"cup": here}, {"cup": turned})
+    assert not looks_alike({"cup": here}, {})
+    assert not looks_alike({"cup": here}, {"lid": here})
 
 
 def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so():
