@@ -26,8 +26,9 @@ Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
 _MOST_ITERATIONS = 100
 _WINDOW = 6  # iterations over which progress is measured
-_CONVERGES = 0.8
-"""Share of the squared error that remains after a window, above which a restart is cheaper."""
+_CONVERGES, _CONVERGES_FAST = 0.8, 0.5
+"""Shares of the squared error that remain after a window, above which a restart is cheaper: while
+no solution is known, and once there is one."""
 _MINIMUM = 1 - 1e-9
 """The same share at a minimum, of a goal that cannot be reached."""
 _FOUND = 1e-8  # [m, rad] largest error of a solution
@@ -243,7 +244,8 @@ def solve_numeric(
     task = LinkTask(space, goal)
     found: list[FloatArray] = []
     for number, start in enumerate(starts(space, goal, seed_positions, most_restarts)):
-        positions, error = task.least_squares(start, remaining=_CONVERGES)
+        remaining = _CONVERGES_FAST if found else _CONVERGES
+        positions, error = task.least_squares(start, remaining=remaining)
         if part is not None:
             positions, error = LinkTask(space, part).polish(positions)
         if error < _FOUND and all(space.distance(positions, other) > 1e-4 for other in found):
