@@ -22,9 +22,6 @@ _TASKS = Path("/proc/self/task")
 
 _is_forking = True
 
-_ending: list[int] = []
-"""Processes that have sent their value and end by themselves."""
-
 
 def compute_here() -> None:
     """From now on, fork no process unless that is requested: every core has work already."""
@@ -48,7 +45,6 @@ class Background(Generic[T]):
             despite_threads: Whether such a process is forked too. A lock that another thread holds
                 then stays locked in the fork, so the value may never come.
         """
-        _reap()
         self._function: Callable[[Activity], T] | None = function
         self._pid = 0
         can_fork = _is_forking and len(list(_TASKS.iterdir())) == 1
@@ -76,6 +72,9 @@ class Background(Generic[T]):
     def result(self, activity: Activity) -> T:
         """The value, as soon as it is known; its progress is reported until then.
 
+        The process then ends by itself, which is waited for by `close` alone: giving a large
+        memory back takes longer than many a value.
+
         Raises:
             HarnessError: The process ended without a value.
             Exception: What the function raised.
@@ -87,16 +86,14 @@ class Background(Generic[T]):
             while kind == "progress":
                 activity(*payload)
                 kind, payload = pickle.loads(self._reading.recv_bytes())
-            _ending.append(self._pid)  # its memory is still given back, which is not waited for
-            self._pid = 0
         except EOFError:
             _, status = os.waitpid(self._pid, 0)
             self._pid = 0
             code = os.waitstatus_to_exitcode(status)
             raise HarnessError(f"the process in the background ended with code {code}") from None
-        finally:
+        except BaseException:  # Ctrl-C
             self.close()
-            self._reading.close()
+            raise
         if kind == "raised":
             raise payload
         return payload
@@ -108,11 +105,7 @@ class Background(Generic[T]):
                 os.kill(self._pid, signal.SIGKILL)
             os.waitpid(self._pid, 0)
             self._pid = 0
-
-
-def _reap() -> None:
-    """Let the system forget the processes that have ended."""
-    _ending[:] = [pid for pid in _ending if not os.waitpid(pid, os.WNOHANG)[0]]
+            self._reading.close()
 
 
 class Later(Generic[T]):
@@ -149,7 +142,6 @@ class Later(Generic[T]):
 
 def _compute(function: Callable[[Activity], T], writing: Connection) -> NoReturn:
     """Send the function's value, and do nothing else that this process is to do."""
-    _ending.clear()  # they are not this process's to wait for
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C is reported by the parent
 
     def report(what: str, done: int = 0, total: int = 0) -> None:

@@ -33,11 +33,13 @@ class DistancesAhead:
         self._measured: Parts = {}
         self._begun = 0
         self._background: Background[Parts] | None = None
+        self._earlier: list[Background[Parts]] = []
 
     def close(self) -> None:
-        """End the process that is at work."""
-        if self._background is not None:
-            self._background.close()
+        """End the processes, the one that is at work among them."""
+        for background in (self._background, *self._earlier):
+            if background is not None:
+                background.close()
 
     def look(self, execution: ProgramExecution, simulator: Simulator) -> None:
         """Begin to measure the parts that are complete by now, unless others are being measured.
@@ -69,6 +71,7 @@ class DistancesAhead:
     def _take(self) -> None:
         if self._background is not None:
             self._measured |= self._background.result(unobserved)
+            self._earlier.append(self._background)
             self._background = None
 
     def _parts(

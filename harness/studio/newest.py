@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
+from contextlib import closing
 from typing import Generic, TypeVar
 
 from harness.core.activity import Activity, unobserved
@@ -57,7 +58,8 @@ class Newest(Generic[T]):
         if work is None or not work.has_message():
             return None
         self._work = None
-        return work.result(unobserved)
+        with closing(work):
+            return work.result(unobserved)
 
     def cancel(self) -> None:
         """Give up the value that is being computed."""

@@ -59,14 +59,13 @@ def test_a_process_that_crashes_is_an_error_of_the_case():
     ) == ["the", "process", "in", "the", "background", "ended", "with", "code", "-11"]
 
 
-def test_a_process_that_has_sent_its_value_is_forgotten_when_it_has_ended():
+def test_a_process_that_has_sent_its_value_is_waited_for_when_it_is_closed():
     assert in_a_process_without_threads(
-        "first = Background(lambda _: 1); pid = first._pid\n"
-        "print(first.result(unobserved))\n"
-        "while open(f'/proc/{pid}/stat').read().rpartition(')')[2].split()[0] != 'Z':\n"
-        "    time.sleep(0.001)\n"
-        "print(Background(lambda _: 2).result(unobserved), os.path.exists(f'/proc/{pid}'))"
-    ) == ["1", "2", "False"]
+        "background = Background(lambda _: 1); pid = background._pid\n"
+        "print(background.result(unobserved), os.path.exists(f'/proc/{pid}'))\n"
+        "background.close(); background.close()\n"
+        "print(os.path.exists(f'/proc/{pid}'))"
+    ) == ["1", "True", "False"]
 
 
 LATER = (
