@@ -28,8 +28,8 @@ SHADOW_SIZE = 1024
 FARTHEST_IN_VIEW = 1.3
 """Objects farther from the base than this [m] may be outside the view."""
 
-UNSEEN = 1e-4
-"""Motion that a picture does not show [m], and the same of directions."""
+UNSEEN = 5e-4
+"""Motion that a picture does not show [m], less than half a pixel; and the same of directions."""
 
 INK = {"passed": (60, 130, 40), "expected error": (60, 130, 40), "failed": RED}
 """Colour of a caption's status, BGR."""
