@@ -235,6 +235,13 @@ SRDF_ROWS = (
           lambda arm: len(joints(arm, "all")) == 3),
     refused("joints, links, groups that are not there", "", GROUP, GROUP.replace("tool", "tol"),
              "no chain leads from"),
+    read("of what is not there, in a group that is no arm's", "the rest of it, reported", GROUP,
+          '<group name="hand"><joint name="reach"/><joint name="thumb"/></group>' + GROUP,
+          lambda arm: joints(arm, "hand") == ("reach",)
+          and any(note.endswith("does not have, ignored: thumb") for note in arm.notes)),
+    ignored("a group of which nothing is there", "reported; its states and end effectors too",
+             GROUP, '<group name="leg"><joint name="knee"/></group>' + GROUP,
+             "the URDF has nothing of it"),
     refused("groups in a circle", "", GROUP, '<group name="a"><group name="a"/></group>' + GROUP,
              "contain each other in a circle"),
     read("`<group_state>`",

@@ -9,28 +9,31 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, NamedState, PlanningGroup
 from harness.robot.groups import planning_groups
+from harness.robot.srdf.absent import Absent, without_absent
 from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.srdf.srdf import Srdf, has_several_values
 from harness.robot.urdf.urdf import Urdf
 
 
 def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
-    """The SRDF without pairs of unknown links.
+    """The SRDF without pairs of unknown links, and without groups of another variant's joints.
 
     Raises:
-        SpecError: It names unknown joints, links or groups; located.
+        SpecError: It names other unknown joints, links or groups; located.
     """
+    srdf, absent = without_absent(srdf, urdf, source)
     resolved = planning_groups(srdf, urdf.joints, source)
     root = srdf.root_element
     if root is None:
         return srdf
     joints = {joint.name: joint for joint in urdf.joints}
+    lost = {name for kind, name in absent if kind == "joint"}
     links = {link.name for link in urdf.links} | {"world"}
     notes: list[str] = []
-    _check_states(root, srdf, joints, notes)
-    _check_end_effectors(root, srdf, links)
+    _check_states(root, srdf, joints, absent, notes)
+    _check_end_effectors(root, srdf, links, absent)
     for item in root.findall("passive_joint"):
-        _check_name(item, "name", "passive_joint", "joint", joints)
+        _check_name(item, "name", "passive_joint", "joint", {*joints, *lost})
     for joint in srdf.virtual_joints:
         if joint.kind != "fixed":
             notes.append(f"SRDF: the {joint.kind} virtual joint '{joint.name}' counts as fixed")
@@ -50,18 +53,20 @@ def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
 
 
 def _check_states(
-    root: XmlElement, srdf: Srdf, joints: Mapping[str, Joint], notes: list[str]
+    root: XmlElement, srdf: Srdf, joints: Mapping[str, Joint], absent: Absent, notes: list[str]
 ) -> None:
     """Refuse states of unknown groups and joints; adds a note on positions of fixed joints."""
     groups = {group.name for group in srdf.groups}
     virtual = {joint.name for joint in srdf.virtual_joints}
     for item in root.findall("group_state"):
         what = f"state '{item.get('name')}'"
+        if ("group", item.get("group")) in absent:
+            continue
         if "group" in item.attributes:
             _check_name(item, "group", what, "group", groups)
         for each in item.findall("joint"):
             name = each.get("name")
-            if name in virtual:
+            if name in virtual or ("joint", name) in absent:
                 continue
             _check_name(each, "name", what, "joint", joints)
             if has_several_values(each):
@@ -70,9 +75,13 @@ def _check_states(
                 notes.append(f"SRDF: {what} places '{name}', which is fixed: ignored")
 
 
-def _check_end_effectors(root: XmlElement, srdf: Srdf, links: Collection[str]) -> None:
+def _check_end_effectors(
+    root: XmlElement, srdf: Srdf, links: Collection[str], absent: Absent
+) -> None:
     groups = {group.name for group in srdf.groups}
     for item in root.findall("end_effector"):
+        if absent & {("group", item.get("group")), ("group", item.get("parent_group"))}:
+            continue
         what = f"end effector '{item.get('name')}'"
         for key, known in (("parent_link", links), ("group", groups), ("parent_group", groups)):
             if item.get(key):
