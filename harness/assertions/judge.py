@@ -12,7 +12,7 @@ from harness.assertions.expectation_text import describe
 from harness.assertions.facts import remembered_facts
 from harness.assertions.placed import PlacedExpectation
 from harness.assertions.recorded import guard_unrecorded
-from harness.assertions.window import NotObservable, NotReached
+from harness.assertions.window import NotObservable, NotReached, refuse_changed_later
 from harness.recording.run import Run
 from harness.recording.verdict import Verdict
 
@@ -27,6 +27,7 @@ def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict,
 def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
     text = describe(placed.spec)
     try:
+        refuse_changed_later(run, placed.step, placed.spec)
         with np.errstate(invalid="ignore"):
             verdict = placed.spec.verdict(placed.spec.readable(run), placed.step)
     except NotReached as answer:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
+from pydantic import BaseModel
 
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import ObjectRecord, Run
@@ -120,6 +122,39 @@ def _samples(run: Run, step: StepRecord) -> tuple[int, int]:
         if index == place or is_nested(other.path, step.path):
             stop = max(stop, other.end_index + 1)
     return start, min(stop, len(run.signals.times))
+
+
+def refuse_changed_later(run: Run, step_id: str, spec: BaseModel) -> None:
+    """Refuse to judge a step by objects that later steps changed before a sample was recorded.
+
+    Steps that take no time follow each other at one moment. The sample after it shows what all of
+    them did, and belongs to each.
+
+    Args:
+        run: The run.
+        step_id: The id or the path of the step; empty for the whole run.
+        spec: The expectation, with the names of the objects that it is about.
+
+    Raises:
+        NotObservable: The expectation names such an object.
+    """
+    steps = [step for step in run.steps if step_id and step_id in (step.id, step.path)]
+    if not steps or steps[0].status == "not reached":
+        return
+    step, text = steps[0], str(spec.model_dump())
+    start, stop = _samples(run, step)
+    for other in run.steps[run.steps.index(step) + 1 :]:
+        change = other.result.find(SceneChange)
+        if change is None or is_nested(other.path, step.path):
+            continue
+        if not start <= other.end_index < stop:
+            continue
+        for name in change.names:
+            if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text):
+                raise NotObservable(
+                    f"step '{other.id}' changed '{name}' at the same moment, before a sample"
+                    f" showed what '{step.id}' did: put `wait: 10 ms` between them"
+                )
 
 
 def object_record(run: Run, name: str) -> ObjectRecord:

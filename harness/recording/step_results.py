@@ -26,6 +26,11 @@ class SceneChange(Detail):
     removed: tuple[str, ...] | None = None
     moved: tuple[str, ...] | None = None
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All these objects."""
+        return (*(self.added or ()), *(self.removed or ()), *(self.moved or ()))
+
 
 @dataclass(frozen=True)
 class Attachment(Detail):
