@@ -114,8 +114,8 @@ def _efforts(description: RobotDescription) -> tuple[FloatArray, FloatArray]:
     joints = [model.joints[model.getJointId(name)] for name in names]
     columns = [joint.idx_v for joint in joints]
     rates = np.array([description.joint_by_name[name].acceleration for name in names])
-    lower = np.maximum(model.lowerPositionLimit, -np.pi)
-    upper = np.minimum(model.upperPositionLimit, np.pi)
+    limits = model.lowerPositionLimit, model.upperPositionLimit
+    lower, upper = np.clip(-np.pi, *limits), np.clip(np.pi, *limits)
     rng = np.random.default_rng(0)
     needed, gravity = np.empty((SAMPLES, len(names))), np.empty((SAMPLES, len(names)))
     for row in range(SAMPLES):

@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from harness.core.errors import RobotOptionError
-from harness.core.geometry import CollisionMode, Mesh, Shape, undivided
+from harness.core.geometry import CollisionMode, Mesh, Shape, reach, undivided
 from harness.core.suggestion import did_you_mean
 from harness.robot.description import RobotDescription
 from harness.robot.mesh_file import decomposition_of
+
+LEAST_LENGTH = 0.05
+"""Shorter links are not compared with their collision shapes [m]."""
+
+LEAST_SHARE = 0.02
+"""Of a link's length: smaller collision shapes are a mistake in units, most likely."""
 
 DEFAULT_MODE: CollisionMode = "parts"
 """How meshes collide where nothing is stated."""
@@ -80,7 +88,41 @@ def with_collision_shapes(
             "moving links without collision shapes, which pass through everything:"
             f" {', '.join(shapeless)}; give them `<collision>`, in MJCF geoms that collide"
         )
+    notes += undersized_note(described)
     return replace(described, notes=(*described.notes, *notes))
+
+
+def undersized_note(description: RobotDescription) -> tuple[str, ...]:
+    """A note on links with collision shapes far smaller than the link is long; empty without."""
+    found: dict[str, tuple[float, float]] = {}
+    for link in description.links:
+        ways = [
+            float(np.linalg.norm(joint.pose.translation))
+            for joint in description.joints
+            if joint.parent == link.name and joint.is_movable
+        ]
+        length = max(ways, default=0.0)
+        if not link.collisions or length < LEAST_LENGTH:
+            continue
+        size = max(map(_size, undivided(link.collisions)))
+        if size < LEAST_SHARE * length:
+            found[link.name] = size, length
+    if not found:
+        return ()
+    name, (size, length) = min(found.items(), key=lambda each: each[1][0] / each[1][1])
+    return (
+        f"the collision shapes of {', '.join(found)} are far smaller than the links, at {name}"
+        f" {1e3 * size:.2g} mm of {1e3 * length:.3g} mm, so most of what touches these links is not"
+        " seen; look at the units and the `scale` of their meshes",
+    )
+
+
+def _size(shape: Shape) -> float:
+    """The largest side of a box that holds a shape [m]."""
+    if isinstance(shape.geometry, Mesh):
+        return float(np.ptp(decomposition_of(shape.geometry).hull, axis=0).max())
+    half = reach(shape.geometry, np.eye(3))
+    return np.inf if half is None else 2 * float(half.max())
 
 
 @dataclass(frozen=True)

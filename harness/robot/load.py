@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -157,7 +157,8 @@ def _parts(spec: RobotSpec, base_dir: Path) -> tuple[RobotPart | None, RobotPart
         )
     main, tool = _main(spec, base_dir), None
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
-        tool = _part(spec.gripper, "gripper", {}, base_dir)
+        own = [group.name for group in main.srdf.groups] if main and spec.model is None else []
+        tool = _part(spec.gripper, "gripper", {}, base_dir, own)
     if tool is not None and tool.facts.kind != "gripper":
         raise RobotOptionError(
             "gripper", f"'{spec.gripper}' is an arm; grippers: {', '.join(gripper_names())}"
@@ -194,8 +195,18 @@ def _is_own(main: RobotPart, gripper: str) -> bool:
     return main.facts.gripper is not None and names_integrated_gripper(gripper, main.srdf)
 
 
-def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> RobotPart:
-    """A bundled robot or gripper, or the one in a folder."""
+def _part(
+    name: str, key: str, args: Mapping[str, Any], base_dir: Path, own: Sequence[str] = ()
+) -> RobotPart:
+    """A bundled robot or gripper, or the one in a folder.
+
+    Args:
+        name: The name of the robot or gripper, or its folder.
+        key: The key of `robot` that states it, for messages.
+        args: The arguments of its xacro file.
+        base_dir: The folder to which its own is relative.
+        own: The groups of the arm, of which one may be its own gripper.
+    """
     if name in _catalogue():
         return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))
     folder = base_dir / name
@@ -205,7 +216,8 @@ def _part(name: str, key: str, args: Mapping[str, Any], base_dir: Path) -> Robot
         folder, facts = collected_robots()[name]
         return _read(folder, facts, name if facts.variants else "", args)
     if key == "gripper":
-        known = did_you_mean(name, gripper_names(), "grippers")
+        kinds = "grippers and groups" if own else "grippers"
+        known = did_you_mean(name, [*gripper_names(), *own], kinds)
     else:
         known = did_you_mean(name, robot_names(), "robots")
     own = "a robot of your own is named by its file: `robot: {urdf: FILE}`"

@@ -101,7 +101,8 @@ def sample_robot_positions(
 
 def _ends(joint: Joint) -> tuple[float, float]:
     if joint.kind != "prismatic":
-        return max(joint.lower, -np.pi), min(joint.upper, np.pi)
+        lower, upper = np.clip([-np.pi, np.pi], joint.lower, joint.upper)
+        return float(lower), float(upper)
     lower = joint.lower if np.isfinite(joint.lower) else -0.5
     return lower, joint.upper if np.isfinite(joint.upper) else lower + 1.0
 

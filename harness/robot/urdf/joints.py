@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,9 @@ KINDS: dict[str, JointKind] = {
     "prismatic": "prismatic",
 }
 FREE = ("floating", "planar")
+
+MOST_TURNS = 4
+"""Turns from zero that are no mistake in a revolute joint."""
 
 
 def zero_limits(joints: Sequence[XmlElement]) -> list[str]:
@@ -52,6 +55,17 @@ def ranges_of_continuous(joints: Sequence[XmlElement]) -> list[str]:
     plural = "s" if len(names) > 1 else ""
     text = f"joint{plural} {', '.join(names)}: `lower` and `upper` are ignored, since the type is"
     return [f"{text} continuous; `revolute` has them"] if names else []
+
+
+def ranges_of_many_turns(joints: Iterable[Joint]) -> list[str]:
+    """A note on the joints whose limits may be degrees: more turns than a cable takes."""
+    return [
+        f"joint {joint.name} turns from {joint.lower:g} to {joint.upper:g} rad,"
+        f" {farthest / (2 * np.pi):.0f} turns from zero: angles in a URDF are radians"
+        for joint in joints
+        if joint.kind == "revolute"
+        and MOST_TURNS * 2 * np.pi < (farthest := max(abs(joint.lower), abs(joint.upper))) <= 720
+    ]
 
 
 def read_joint(element: XmlElement) -> Joint:

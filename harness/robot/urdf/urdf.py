@@ -14,6 +14,7 @@ from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
 from harness.robot.urdf.joints import (
     ranges_of_continuous,
+    ranges_of_many_turns,
     read_joint,
     resolved_mimics,
     zero_limits,
@@ -89,6 +90,7 @@ def parse_urdf(
     notes += reader.undrawn_note()
     notes += zero_limits(root.findall("joint"))
     notes += ranges_of_continuous(root.findall("joint"))
+    notes += ranges_of_many_turns(joints)
     if not links and any(root.find(tag) is not None for tag in OF_SRDF):
         root.refuse(
             "this is an SRDF", "its links and joints are in a URDF; an SRDF is named by `srdf`"
