@@ -131,7 +131,7 @@ def refuse_changed_later(run: Run, step_id: str, spec: BaseModel) -> None:
     them did, and belongs to each.
 
     Args:
-        run: The run.
+        run: The run with its steps.
         step_id: The id or the path of the step; empty for the whole run.
         spec: The expectation, with the names of the objects that it is about.
 

@@ -4,10 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pydantic import BaseModel
 
 from harness.assertions.joints import gripper_joints, is_measured, near, resting_joints
 from harness.assertions.text import amount, amounts, percentages
-from harness.assertions.window import NotObservable, NotReached, refuse_unrecorded_steps, window_of
+from harness.assertions.window import (
+    NotObservable,
+    NotReached,
+    refuse_changed_later,
+    refuse_unrecorded_steps,
+    window_of,
+)
 from tests.assertions.synthetic_run import ROBOT, changed, make_run, step
 
 STEPS = (
@@ -38,6 +45,48 @@ def test_what_a_step_puts_somewhere_shows_in_the_sample_after_it():
     assert (window_of(run, "move").start, window_of(run, "move").stop) == (11, 21)
     with pytest.raises(NotReached, match="nothing was recorded"):
         window_of(run, "last")
+
+
+PUT_A, PUT_B = ({"result": {"moved": [name]}} for name in ("a", "b"))
+ROW = (
+    step("before", 0, 11, path="steps[0]"),
+    step("all", 10, 11, "sequence", path="steps[1]"),
+    step("put a", 10, 11, "move_object", path="steps[1].steps[0]", **PUT_A),
+    step("put b", 10, 11, "move_object", path="steps[1].steps[1]", **PUT_B),
+    step("again", 10, 11, "move_object", path="steps[2]", **PUT_A),
+    step("go", 10, 30, path="steps[3]"),
+    step("later", 29, 30, "move_object", path="steps[4]", **PUT_B),
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "by"),
+    [
+        ("put a", {"object": "b"}, "put b"),
+        ("put a", {"object": "a"}, "again"),
+        ("put a", {"predicate": {"any_of": [{"on": ["c", "b"]}]}}, "put b"),
+        ("put a", {"formula": "always z(b) > 0.2"}, "put b"),
+        ("all", {"object": "a"}, "again"),
+        ("all", {"object": "b"}, ""),  # what its own steps did is its own
+        ("put b", {"object": "b"}, ""),
+        ("put a", {"object": "b2"}, ""),
+        ("put a", {"object": "c"}, ""),
+        ("again", {"object": "a"}, ""),
+        ("before", {"object": "a"}, ""),  # it ends with the sample before
+        ("go", {"object": "b"}, ""),
+        ("", {"object": "b"}, ""),
+    ],
+)
+def test_what_a_later_step_changed_at_the_same_moment_is_not_judged(name, words, by):
+    class Words(BaseModel, extra="allow"):
+        pass
+
+    run = make_run(60, steps=ROW)
+    if not by:
+        refuse_changed_later(run, name, Words(**words))
+        return
+    with pytest.raises(NotObservable, match=f"step '{by}' changed '.' at the same moment"):
+        refuse_changed_later(run, name, Words(**words))
 
 
 def test_a_window_is_that_of_a_step_by_name_or_path_or_the_whole_run():
