@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.run import Run
-from harness.recording.step_record import StepRecord
+from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.step_results import SceneChange
 from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import robot_poses
@@ -38,16 +38,34 @@ def scene_poses(
     poses = robot_poses(description, run.signals.joint_positions[sample])
     present = _present_after(run, step)
     seen = sample if step is None or step.end_time > step.start_time else sample + 1
+    later = _moved_later(run, step)
     for obj in world_objects:
         recorded = run.signals.object_poses.get(obj.name)
         if recorded is None or (present is not None and obj.name not in present):
             continue
         # changes by a step without duration are in the next sample, if there is one
-        rows = recorded[[min(seen, len(recorded) - 1), sample]]
+        indices = [min(seen, len(recorded) - 1), sample]
+        if obj.name in later:  # the planning scene shows a change one sample before the physics
+            indices.insert(0, sample if obj.in_simulation else max(0, sample - 1))
+        rows = recorded[indices]
         finite = np.flatnonzero(np.isfinite(rows).all(axis=1))
         if len(finite):
             poses[obj.name] = SE3.from_vector(rows[finite[0]])
     return poses
+
+
+def _moved_later(run: Run, step: StepRecord | None) -> set[str]:
+    """Objects that later steps put somewhere else at the moment a step ended, and it did not."""
+    if step is None:
+        return set()
+    place = run.steps.index(step)
+    moves = [
+        (index > place and not is_nested(each.path, step.path), change.moved or ())
+        for index, each in enumerate(run.steps)
+        if each.end_index == step.end_index and (change := each.result.find(SceneChange))
+    ]
+    later = {name for is_later, names in moves if is_later for name in names}
+    return later - {name for is_later, names in moves if not is_later for name in names}
 
 
 def floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:

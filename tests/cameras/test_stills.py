@@ -220,6 +220,33 @@ def test_of_steps_at_one_moment_each_shows_what_was_there_after_it(ur3e):
     assert shown == [False, True, False]
 
 
+@pytest.mark.parametrize("name", ["red_box", "imagined"])
+def test_a_step_does_not_show_where_a_later_one_puts_an_object_at_its_end(ur3e, name):
+    """A motion ends at sample 1; two steps put the object somewhere else, then time goes on.
+
+    The physics shows that at sample 2, the planning scene at sample 1.
+    """
+    run = a_run(ur3e)
+    at = np.tile(RED_BOX.pose.as_vector(), (4, 1))
+    at[2 if name == "red_box" else 1 :, 2] += 0.3
+    poses = {**run.signals.object_poses, name: at}
+    put = {"verb": "move_object", "start_time": 1.0, "end_time": 1.0}
+    moved = Details.of(SceneChange(moved=(name,)))
+    other = Details.of(SceneChange(moved=("ground",)))
+    motion = replace(run.steps[1], path="steps[0]", start_time=0.0, end_time=1.0)
+    first, second = (
+        replace(run.steps[1], path=f"steps[{number}]", result=result, **put)
+        for number, result in ((1, other), (2, moved))
+    )
+    run = replace(
+        run,
+        steps=(motion, first, second),
+        signals=replace(run.signals, object_poses=poses),
+    )
+    heights = [scene_poses(ur3e, OBJECTS, run, 1, step)[name].translation[2] for step in run.steps]
+    assert heights == pytest.approx([0.05, 0.05, 0.35])
+
+
 def test_the_overview_holds_every_point():
     rng = np.random.default_rng(3)
     points = rng.uniform(-1.0, 1.5, (200, 3))
