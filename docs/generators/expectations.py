@@ -28,9 +28,9 @@ EXPECTATIONS_HEAD = """\
 An expectation is a predicate, alone or inside a temporal word. Its window is the step if it is
 listed under the step's `expect`, and the whole run if it is listed under the file's. A step that
 puts, adds or removes objects takes no time: the sample after it is the first that shows what it
-did, and belongs to it. Where another step changes an object at the same moment, that sample shows what
-both did: an expectation of the first that names the object is not observable, unless a `wait` stands
-between them.
+did, and belongs to it. Where another step changes an object at the same moment, that sample shows
+what both did: an expectation of the first that names the object is not observable, unless a `wait`
+stands between them.
 
 ```yaml
 expect:
