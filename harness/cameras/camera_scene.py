@@ -58,7 +58,7 @@ def _moved_later(run: Run, step: StepRecord | None) -> set[str]:
     """Objects that later steps put somewhere else at the moment a step ended, and it did not."""
     if step is None:
         return set()
-    place = run.steps.index(step)
+    place = _place(run, step)
     moves = [
         (index > place and not is_nested(each.path, step.path), change.moved or ())
         for index, each in enumerate(run.steps)
@@ -66,6 +66,11 @@ def _moved_later(run: Run, step: StepRecord | None) -> set[str]:
     ]
     later = {name for is_later, names in moves if is_later for name in names}
     return later - {name for is_later, names in moves if not is_later for name in names}
+
+
+def _place(run: Run, step: StepRecord) -> int:
+    """Index in the run of a step; its record may have been completed since."""
+    return [each.path for each in run.steps].index(step.path)
 
 
 def floor_height(description: RobotDescription, world_objects: Sequence[WorldObject]) -> float:
@@ -85,8 +90,7 @@ def _present_after(run: Run, step: StepRecord | None) -> set[str] | None:
     """
     if step is None:
         return None
-    places = [each.path for each in run.steps]
-    last = places.index(step.path)
+    last = _place(run, step)
     changes = [
         (place, kind, name)
         for place, each in enumerate(run.steps)
