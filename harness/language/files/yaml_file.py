@@ -18,12 +18,10 @@ import yaml
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
 from harness.language.files.yaml_scalars import scalar_of
-from harness.language.files.yaml_wording import syntax_problem
+from harness.language.files.yaml_wording import DEEPEST, TOO_DEEP, syntax_problem
 
 LARGEST_FILE = 2_000_000  # [bytes]
 LARGEST_TREE = 100_000  # values, aliases expanded
-DEEPEST = 50
-
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -232,7 +230,7 @@ class _Composer:
 
     def _bound(self, place: Place, depth: int) -> None:
         if depth > DEEPEST:
-            raise SpecError([place.problem(f"nested more than {DEEPEST} levels deep")])
+            raise SpecError([place.problem(TOO_DEEP)])
         if self._count > LARGEST_TREE:
             message = f"more than {LARGEST_TREE} values, aliases expanded"
             raise SpecError([place.problem(message)])

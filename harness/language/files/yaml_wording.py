@@ -9,6 +9,11 @@ import yaml
 from harness.core.errors import Problem
 from harness.language.files.source import Place, Source
 
+DEEPEST = 50
+"""Most levels of lists and mappings in each other."""
+
+TOO_DEEP = f"nested more than {DEEPEST} levels deep"
+
 PLAINER = (
     ("mapping values are not allowed", "a second `:` here; quote text that contains `: `"),
     ("found undefined alias", "no anchor has this name; text that begins with `*` needs quotes"),
@@ -34,6 +39,8 @@ def syntax_problem(error: yaml.MarkedYAMLError, source: Source) -> Problem:
     if mark is None:
         return Problem(source.path, 0, 0, reason)
     place = _place(mark, source)
+    if "maximum nesting depth" in reason:  # the scanner's own limit, where it reads far ahead
+        return place.problem(TOO_DEEP)
     character = source.line(place.line)[mark.column : mark.column + 1]
     if "cannot start any token" in reason:
         if character == "\t":
