@@ -299,8 +299,9 @@ def test_every_node_of_a_tree_contains_what_is_below_it(collision, tmp_path):
         Shape(Capsule(0.02, 0.1), at(0, 0, 1)),
         Shape(Cylinder(0.05, 0.1), at(0, 1, 0, (1, 2, 0))),
     ]
-    tree = RigidShapes(0, tuple(shapes)).tree
-    low, high = tree.box().reshape(2, 3)
+    rigid = RigidShapes(0, tuple(shapes), at(0.2, 0.1, 0, (1, 0, 0)))
+    tree = rigid.tree
+    low, high = rigid.box.reshape(2, 3)
     for node, (end, _) in enumerate(tree.nodes):
         center, radius = tree.spheres[node, :3], tree.spheres[node, 3]
         for below in range(node, end):

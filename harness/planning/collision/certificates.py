@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -15,8 +15,9 @@ from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.compiled import Certify
-from harness.planning.collision.convex_tree import ConvexTree
+from harness.planning.collision.convex_tree import concatenate
 from harness.planning.collision.kernel.results import FULL
+from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
 from harness.robot.description import Joint
@@ -28,7 +29,7 @@ MOST_LEFT = 64 * 1024
 """Size of the memory for the pairs that are left in the intervals of a motion; where it is full,
 all pairs of the whole interval are compared again."""
 
-MOST_WAITING, SCRATCH = 1024, 16
+MOST_WAITING, SCRATCH = 1024, 17
 """Largest number of pairs of nodes that wait for comparison, and rows of working memory."""
 
 
@@ -60,12 +61,16 @@ class MotionArrays:
             drive: What the group's positions add to them, shape (M, dof).
             arrays: The arrays that are the same for each motion.
         """
-        self._rest, self._drive = rest, drive
+        self._rest, self._drive = rest, np.ascontiguousarray(drive.T)
+        self._line = np.empty((2, len(rest))), np.empty(2)  # of most motions
+        self._corners, self._places = self._line
         self._arrays: list[Array] = [np.ascontiguousarray(array) for array in arrays]
         self.table = np.ones((VARYING + len(arrays), 4), dtype=np.int64)
         self._address = int(self.table.ctypes.data)
         for row, array in enumerate(self._arrays, start=VARYING):
             self._enter(row, array)
+        self._enter(0, self._corners)
+        self._enter(1, self._places)
         self._make_room(INTERVALS)
 
     def certify(
@@ -82,9 +87,16 @@ class MotionArrays:
         Returns:
             A blocked state or -1, and the first and last states of undecided stretches, (n, 2).
         """
-        corners = np.ascontiguousarray(self._rest + motion.corners @ self._drive.T)
-        self._enter(0, corners)
-        self._enter(1, motion.places)
+        corners, places = self._line
+        if len(motion.places) != len(places):
+            corners, places = np.empty((len(motion.places), len(self._rest))), motion.places.copy()
+        np.matmul(motion.corners, self._drive, out=corners)
+        corners += self._rest
+        places[:] = motion.places
+        if corners is not self._corners:
+            self._corners, self._places = corners, places
+            self._enter(0, corners)
+            self._enter(1, places)
         undecided = check(self._address, low, high)
         while undecided == FULL:
             self._make_room(4 * len(self._queue))
@@ -114,31 +126,50 @@ def motion_arrays(model: CollisionModel, space: GroupSpace, margins: FloatArray)
     margin = margins[layout.pairs]
     free = np.maximum(margin, 0.0) + ROUNDING
     blocked = np.where(margin >= 0, margin - ROUNDING, -np.inf)
-    tree = model.tree
+    links, objects = (
+        _tree_arrays(tuple(each.rigid for each in model.bodies if each.is_link == is_link))
+        for is_link in (True, False)
+    )
     arrays = (
         *(moving.parent, moving.chain, moving.body_poses(model.bodies)),
-        *(layout.body_rows, layout.boxes),
-        *(tree.spheres, tree.nodes, tree.convexes, tree.sizes, tree.points),
-        *(tree.edges_at, tree.edges),
-        *(np.column_stack([free, blocked]), layout.checks, layout.keys, layout.joints),
-        *_working_memory(layout, tree, len(moving.columns)),
+        *(layout.body_rows, layout.boxes, layout.balls),
+        *(*links, links[2][:, 0].copy(), *objects, objects[2][:, 0].copy()),
+        *(
+            np.column_stack([free, blocked]),
+            *map(_indices, (layout.checks, layout.paths, layout.joints)),
+        ),
+        *_working_memory(layout, len(moving.columns)),
     )
     return MotionArrays(space.offset[moving.columns], space.matrix[moving.columns], arrays)
 
 
-def _working_memory(layout: _Layout, tree: ConvexTree, width: int) -> Arrays:
+@lru_cache(maxsize=8)
+def _tree_arrays(bodies: tuple[RigidShapes, ...]) -> Arrays:
+    """The arrays of the trees of bodies, one after another; scenes share those of the links."""
+    tree = concatenate([rigid.tree for rigid in bodies])
+    sets = _indices(tree.convexes), tree.sizes, tree.points
+    return tree.spheres, tree.nodes, *sets, _indices(tree.edges_at), _indices(tree.edges)
+
+
+def _indices(array: Array) -> Array:
+    """Indices that are not negative, as numbers without a sign.
+
+    The compiled code does not look for indices that count from the end then: a tenth of its time.
+    """
+    return array.astype(np.uint32)
+
+
+def _working_memory(layout: _Layout, width: int) -> Arrays:
     """The memory of the compiled check that does not depend on the length of a motion."""
-    bodies, pairs, keys = len(layout.body_rows), len(layout.checks), len(layout.keys)
-    floats = ((width,), (width,), (width, 12), (bodies, 12), (bodies, 3), (keys, 2, 9))
+    bodies, pairs, deepest = len(layout.body_rows), len(layout.checks), layout.deepest
+    floats = ((width,), (width,), (width, 12), (bodies, 12), (bodies, 3), (bodies, 1 + deepest, 9))
     return (
-        *(np.empty(shape) for shape in floats),
+        *(np.zeros(shape) for shape in floats),
         np.zeros((pairs, 3)),
         np.empty((SCRATCH, 13)),
         np.empty(bodies, dtype=np.int64),
-        np.empty(keys, dtype=np.int64),
-        tree.convexes[:, 0].copy(),
-        np.empty((MOST_WAITING, 2), dtype=np.int64),
-        np.arange(max(MOST_LEFT, 2 * pairs)),
+        np.empty((MOST_WAITING, 2), dtype=np.uint32),
+        np.arange(max(MOST_LEFT, 2 * pairs), dtype=np.uint32),
     )
 
 
@@ -198,14 +229,18 @@ class MovingJoints:
 
 
 class _Layout:
-    """The pairs of a scene as indices of bodies and keys.
+    """The pairs of a scene as indices of bodies.
 
     Attributes:
-        body_rows: The joint that carries each body, and its root in the tree, shape (B, 2).
+        body_rows: The joint that carries each body, its root in the tree of the links or of the
+            objects, and which of them that is, 0 or 1, shape (B, 3).
         boxes: The lower and upper corner of each body's bounding box, shape (B, 6).
-        keys: The joints that move two bodies relative to each other, as ranges of `joints`.
-        joints: The joints of all keys.
-        checks: The two bodies and the key of each pair, shape (K, 3).
+        balls: Centre and radius of each body's ball, shape (B, 4).
+        paths: Where the joints of each body begin in `joints`, shape (B + 1,).
+        joints: The moving joints that carry each body, tip first.
+        deepest: The largest number of joints that carry a body.
+        checks: The two bodies of each pair, and how many of the joints of each body move it
+            relative to the other, shape (K, 4).
         pairs: The index of each of them in the scene, shape (K,).
     """
 
@@ -220,34 +255,22 @@ class _Layout:
         ends = model.pairs[self.pairs]
         swapped = has_plane[ends[:, 0]]
         ends[swapped] = ends[swapped, ::-1]
-        moved = np.where(carrier[ends] < 0, -1, ends)  # what stands still has the key of the other
-        count = len(carriers) + 1
-        numbers, key_of = np.unique((moved + 1) @ [count, 1], return_inverse=True)
-        paths = [_path(each, parent) for each in (*carriers, -1)]
-        self.keys, self.joints = _keys(np.column_stack(np.divmod(numbers, count)) - 1, paths)
-        self.checks: IntArray = np.column_stack([ends, key_of])
+        chains = [_path(each, parent) for each in range(-1, len(parent))]
+        of_bodies = [chains[1 + each] for each in carriers]
+        self.deepest = max(map(len, of_bodies), default=0)
+        self.paths: IntArray = np.cumsum([0, *map(len, of_bodies)], dtype=np.int64)
+        self.joints: IntArray = np.array([*chain(*of_bodies), 0], dtype=np.int64)
+        shared = np.array([[len({*one} & {*other}) for other in chains] for one in chains])
+        depths = np.array([len(each) for each in chains])
+        ahead = 1 + carrier[ends]
+        counts = depths[ahead] - shared[ahead[:, 0], ahead[:, 1]][:, None]
+        self.checks: IntArray = np.column_stack([ends, counts]).astype(np.int64)
         self.boxes: FloatArray = np.array([body.rigid.box for body in model.bodies])
-        roots = np.cumsum([0, *(len(body.rigid.tree.nodes) for body in model.bodies)])[:-1]
-        self.body_rows: IntArray = np.column_stack([carrier, roots]).astype(np.int64)
-
-
-def _keys(names: IntArray, paths: Sequence[list[int]]) -> tuple[IntArray, IntArray]:
-    """The joints that move two bodies relative to each other, as in `_Layout`.
-
-    Args:
-        names: The two bodies of each key, -1 for what stands still, shape (R, 2).
-        paths: The joints that move each body, tip first; at the end those of what stands still.
-    """
-    keys: list[tuple[int, ...]] = []
-    joints: list[int] = []
-    for body, other in names.tolist():
-        near = [joint for joint in paths[body] if joint not in paths[other]]
-        far = [joint for joint in paths[other] if joint not in paths[body]]
-        start = len(joints)
-        middle, end = start + len(near), start + len(near) + len(far)
-        joints += near + far
-        keys.append((body if near else -1, other if far else -1, start, middle, middle, end))
-    return np.array(keys, dtype=np.int64).reshape(-1, 6), np.array(joints or [0], dtype=np.int64)
+        self.balls: FloatArray = np.array([body.rigid.tree.spheres[0] for body in model.bodies])
+        sizes = np.array([len(body.rigid.tree.nodes) for body in model.bodies], dtype=np.int64)
+        is_link = np.array([body.is_link for body in model.bodies], dtype=bool)
+        roots = np.where(is_link, np.cumsum(sizes * is_link), np.cumsum(sizes * ~is_link)) - sizes
+        self.body_rows: IntArray = np.column_stack([carrier, roots, ~is_link]).astype(np.int64)
 
 
 def _path(joint: int, parent: tuple[int, ...]) -> list[int]:

@@ -15,7 +15,6 @@ import pinocchio as pin
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.planning.collision.convex_tree import ConvexTree, concatenate
 from harness.planning.collision.near_pairs import PlacedShapes
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.model.robot_model import RobotModel, pin_from_se3
@@ -172,11 +171,6 @@ class CollisionModel:
             for pair, distance in nearest.items()
         ]
         return sorted(found, key=lambda each: (each[1].distance, each[1].first, each[1].second))
-
-    @cached_property
-    def tree(self) -> ConvexTree:
-        """The trees of all bodies, one after another."""
-        return concatenate([body.rigid.tree for body in self.bodies])
 
     @cached_property
     def _shapes(self) -> PlacedShapes:

@@ -12,7 +12,7 @@ import numpy as np
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.kernel.convex_kinds import CYLINDER, HALF_SPACE, POINTS, POLYTOPE
-from harness.robot.mesh_file import convex_hull, read_triangles
+from harness.robot.mesh_file import convex_hull, decomposition_of, read_triangles
 
 FEW_POINTS = 32
 """Number of points up to which comparing all of them finds the farthest one the fastest."""
@@ -57,29 +57,6 @@ class ConvexTree:
         same = self.edges_at, self.edges
         return ConvexTree(spheres, self.nodes, self.convexes, self.sizes, points, *same)
 
-    def box(self) -> FloatArray:
-        """The lower and the upper corner of the box about all sets, shape (6,)."""
-        low, high = np.full(3, np.inf), np.full(3, -np.inf)
-        node = 0
-        while node < len(self.nodes):
-            end, convex = self.nodes[node].tolist()
-            if convex < 0:
-                node += 1
-                continue
-            node = end  # the set contains those below it
-            first, last, kind = self.convexes[convex].tolist()
-            rounding, radius, half = self.sizes[convex].tolist()
-            points, reach = self.points[first:last], rounding
-            if kind == HALF_SPACE:
-                return np.repeat([-np.inf, np.inf], 3)
-            if kind == CYLINDER:
-                axis = points[1] - points[0]
-                reach = np.abs(axis) * half + np.sqrt(np.maximum(1.0 - axis**2, 0.0)) * radius
-                points = points[:1]
-            low = np.minimum(low, points.min(axis=0) - reach)
-            high = np.maximum(high, points.max(axis=0) + reach)
-        return np.concatenate([low, high])
-
 
 def shape_tree(shape: Shape) -> ConvexTree:
     """The tree of a shape in the frame that it is placed in.
@@ -91,8 +68,38 @@ def shape_tree(shape: Shape) -> ConvexTree:
     return tree.placed(shape.pose.rotation, shape.pose.translation)
 
 
+def shape_box(shape: Shape) -> FloatArray:
+    """The lower and the upper corner of the box about a shape, shape (6,), in its outer frame.
+
+    Raises:
+        RobotError: A mesh file cannot be read.
+    """
+    if isinstance(shape.geometry, Mesh):
+        points = _points(shape.geometry) @ shape.pose.rotation.T + shape.pose.translation
+        return np.concatenate([points.min(axis=0), points.max(axis=0)])
+    tree = shape_tree(shape)
+    (kind,), (rounding, radius, half) = tree.convexes[:, 2], tree.sizes[0].tolist()
+    if kind == HALF_SPACE:
+        return np.repeat([-np.inf, np.inf], 3)
+    points, reach = tree.points, rounding
+    if kind == CYLINDER:
+        axis = points[1] - points[0]
+        reach = np.abs(axis) * half + np.sqrt(np.maximum(1.0 - axis**2, 0.0)) * radius
+        points = points[:1]
+    return np.concatenate([points.min(axis=0) - reach, points.max(axis=0) + reach])
+
+
+def _points(geometry: Mesh) -> FloatArray:
+    """Points of a mesh whose convex hull contains all of it, shape (N, 3) [m]."""
+    if geometry.collision == "exact":
+        return read_triangles(geometry).vertices
+    found, part = decomposition_of(geometry), geometry.part
+    return found.hull if part is None else found.parts[part]
+
+
 def concatenate(trees: Sequence[ConvexTree]) -> ConvexTree:
     """Several trees one after another, their indices shifted."""
+    trees = [_NOTHING, *trees]
 
     def rows(name: str) -> Any:
         return np.concatenate([getattr(tree, name) for tree in trees])
@@ -117,6 +124,17 @@ def concatenate(trees: Sequence[ConvexTree]) -> ConvexTree:
         np.append(edges_at + starts("edges", "points"), len(edges)),
         edges,
     )
+
+
+_NOTHING = ConvexTree(
+    np.empty((0, 4)),
+    np.empty((0, 2), dtype=np.int64),
+    np.empty((0, 3), dtype=np.int64),
+    np.empty((0, 3)),
+    np.empty((0, 3)),
+    np.zeros(1, dtype=np.int64),
+    np.empty(0, dtype=np.int64),
+)
 
 
 @lru_cache(maxsize=1024)
@@ -191,65 +209,156 @@ def _hull(geometry: Mesh) -> ConvexTree:
     if len(points) <= FEW_POINTS:
         return _leaf(points)
     polygons = (hull.polygons(row) for row in range(hull.num_polygons))
-    faces = np.array([(face[0], face[1], face[2]) for face in polygons], dtype=np.int64)
-    used, faces = np.unique(faces, return_inverse=True)
-    return _leaf(points[used], faces.reshape(-1, 3))
+    return _polytope(points, np.array([(face[0], face[1], face[2]) for face in polygons]))
 
 
 def _hull_of_points(points: FloatArray) -> ConvexTree:
     """A node that contains points, shape (N, 3)."""
     if len(points) <= FEW_POINTS:
         return _leaf(points)
-    from scipy.spatial import ConvexHull, QhullError
+    from scipy.spatial import ConvexHull, QhullError  # Coal's Qhull can crash on flat points
 
     try:
-        hull = ConvexHull(points)
+        return _polytope(points, ConvexHull(points).simplices.astype(np.int64))
     except QhullError:  # flat
         return _leaf(points)
-    used, faces = np.unique(hull.simplices, return_inverse=True)
-    return _leaf(points[used], faces.reshape(-1, 3))
+
+
+def _polytope(points: FloatArray, faces: IntArray) -> ConvexTree:
+    """A node with the corners of triangles that enclose it, shape (F, 3)."""
+    used, corners = np.unique(faces, return_inverse=True)
+    return _leaf(points[used], corners.reshape(-1, 3))
 
 
 def _surface(vertices: FloatArray, faces: IntArray) -> ConvexTree:
-    """The tree of a surface: hulls of ever fewer triangles."""
-    middles = vertices[faces].mean(axis=1)
-    found: list[ConvexTree] = []
-    ends: list[int] = []
+    """The tree of a surface: hulls of ever fewer triangles, halved down to single ones."""
+    order, levels = _halved(vertices[faces].mean(axis=1))
+    count = 2 * len(faces) - 1
+    spheres, ends = np.empty((count, 4)), np.empty(count, dtype=np.int64)
+    convexes = np.empty((count, 3), dtype=np.int64)
+    points: list[FloatArray] = []
+    hulls: list[tuple[int, ConvexTree]] = []
+    used = 0
+    for places, first, last in levels:
+        ends[places] = places + 2 * (last - first) - 1
+        of_node, corner = _corners_of_ranges(faces[order], first, last)
+        starts = np.searchsorted(of_node, np.arange(len(places)))
+        sizes = np.diff(np.append(starts, len(of_node)))
+        corners = vertices[corner]
+        is_few = sizes <= FEW_POINTS
+        spheres[places] = _balls(corners, starts, sizes)
+        for row in np.flatnonzero(~is_few).tolist():
+            some = corners[starts[row] : starts[row] + sizes[row]]
+            hulls.append((int(places[row]), _hull_of_points(some)))
+        points.append(corners[np.repeat(is_few, sizes)])
+        begins = used + np.cumsum(sizes * is_few) - sizes * is_few
+        convexes[places] = np.column_stack(
+            [begins, begins + sizes, np.full(len(places), POINTS, dtype=np.int64)]
+        )
+        used += len(points[-1])
+    edges_at, edges = [np.zeros(used, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for place, hull in hulls:
+        spheres[place], convexes[place] = hull.spheres[0], hull.convexes[0] + [used, used, 0]
+        edges_at.append(hull.edges_at[:-1] + sum(map(len, edges)))
+        edges.append(hull.edges + used)
+        points.append(hull.points)
+        used += len(hull.points)
+    neighbours = np.concatenate(edges)
+    return ConvexTree(
+        spheres,
+        np.column_stack([ends, np.arange(count)]),
+        convexes,
+        np.zeros((count, 3)),
+        np.concatenate(points),
+        np.append(np.concatenate(edges_at), len(neighbours)),
+        neighbours,
+    )
 
-    def descend(members: IntArray) -> None:
-        place = len(found)
-        found.append(_hull_of_points(vertices[np.unique(faces[members])]))
-        ends.append(0)
-        if len(members) > 1:
-            for half in _halves(middles, members):
-                descend(half)
-        ends[place] = len(found)
 
-    descend(np.arange(len(faces)))
-    tree = concatenate(found)
-    return replace(tree, nodes=np.column_stack([ends, tree.nodes[:, 1]]))
+def _halved(places: FloatArray) -> tuple[IntArray, list[tuple[IntArray, IntArray, IntArray]]]:
+    """Halve members along the axis on which their places differ most, down to single ones.
+
+    Returns:
+        The members in an order in which those of each node are adjacent; and for each level of the
+        tree the preorder indices of its nodes, and their first members and those after the last.
+    """
+    order = np.arange(len(places))
+    levels: list[tuple[IntArray, IntArray, IntArray]] = []
+    at, first, last = np.array([0]), np.array([0]), np.array([len(places)])
+    while len(at):
+        levels.append((at, first, last))
+        many = last - first > 1
+        at, first, last = at[many], first[many], last[many]
+        if not len(at):
+            break
+        sizes = last - first
+        rows, node = _ranges(first, sizes)
+        members = places[order[rows]]
+        starts = np.cumsum(sizes) - sizes
+        extents = np.maximum.reduceat(members, starts) - np.minimum.reduceat(members, starts)
+        along = members[np.arange(len(rows)), extents.argmax(axis=1)[node]]
+        order[rows] = order[rows[np.lexsort((along, node))]]
+        middle = first + sizes // 2
+        at = np.column_stack([at + 1, at + 2 * (middle - first)]).ravel()
+        first, last = (np.column_stack(ends).ravel() for ends in ([first, middle], [middle, last]))
+    return order, levels
+
+
+def _ranges(first: IntArray, sizes: IntArray) -> tuple[IntArray, IntArray]:
+    """The numbers in several ranges, and the range of each."""
+    starts = np.cumsum(sizes) - sizes
+    of_range = np.repeat(np.arange(len(sizes)), sizes)
+    return np.arange(len(of_range)) + (first - starts)[of_range], of_range
+
+
+def _corners_of_ranges(
+    faces: IntArray, first: IntArray, last: IntArray
+) -> tuple[IntArray, IntArray]:
+    """The corners of the triangles in each of several ranges, once each, as range and corner."""
+    rows, of_range = _ranges(first, last - first)
+    corners = faces[rows]
+    count = int(corners.max()) + 1
+    return np.divmod(np.unique((of_range[:, None] * count + corners).ravel()), count)
+
+
+def _balls(points: FloatArray, starts: IntArray, sizes: IntArray) -> FloatArray:
+    """Centre and radius of a ball around each of several runs of points, shape (n, 4)."""
+    middles = 0.5 * (np.minimum.reduceat(points, starts) + np.maximum.reduceat(points, starts))
+    away = np.linalg.norm(points - np.repeat(middles, sizes, axis=0), axis=1)
+    return np.column_stack([middles, np.maximum.reduceat(away, starts)])
 
 
 def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
-    """One tree above several, which are halved where there are many."""
+    """One tree above several, which are halved where there are many.
+
+    Its nodes are hulls too where the shapes below are polytopes: one hull is compared in less time
+    than all of its parts, and mostly suffices.
+    """
     if len(trees) == 1:
         return trees[0]
-    roots = np.array([tree.spheres[0] for tree in trees])
     if len(trees) > 2:
-        halves = _halves(roots[:, :3], np.arange(len(trees)))
+        roots = np.array([tree.spheres[0, :3] for tree in trees])
+        halves = _halves(roots, np.arange(len(trees)))
         return joined([joined([trees[row] for row in half]) for half in halves])
-    centers, radii = roots[:, :3], roots[:, 3]
-    if not np.isfinite(radii).all():
-        root = np.array([0.0, 0.0, 0.0, np.inf])
-    else:
-        low, high = (centers - radii[:, None]).min(axis=0), (centers + radii[:, None]).max(axis=0)
-        middle = 0.5 * (low + high)
-        root = np.append(middle, (np.linalg.norm(centers - middle, axis=1) + radii).max())
     below = concatenate(trees)
-    convexes = below.nodes[:, 1]
-    top = np.array([[1 + len(below.nodes), -1]])
-    nodes = np.vstack([top, np.column_stack([below.nodes[:, 0] + 1, convexes])])
-    return replace(below, spheres=np.vstack([root, below.spheres]), nodes=nodes)
+    if np.isin(below.convexes[:, 2], (POINTS, POLYTOPE)).all() and not below.sizes.any():
+        tree = concatenate([_hull_of_points(below.points), below])
+        tree.nodes[0, 0] = len(tree.nodes)
+        return tree
+    top, nodes = np.array([[1 + len(below.nodes), -1]]), below.nodes + np.array([1, 0])
+    spheres = np.vstack([_ball_around(*(tree.spheres[0] for tree in trees)), below.spheres])
+    return replace(below, spheres=spheres, nodes=np.vstack([top, nodes]))
+
+
+def _ball_around(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Centre and radius of a ball that contains two others, shape (4,)."""
+    balls = np.array([first, second])
+    centers, radii = balls[:, :3], balls[:, 3]
+    if not np.isfinite(radii).all():
+        return np.array([0.0, 0.0, 0.0, np.inf])
+    low, high = (centers - radii[:, None]).min(axis=0), (centers + radii[:, None]).max(axis=0)
+    middle = 0.5 * (low + high)
+    return np.append(middle, (np.linalg.norm(centers - middle, axis=1) + radii).max())
 
 
 def _halves(places: FloatArray, members: IntArray) -> tuple[IntArray, IntArray]:

@@ -12,7 +12,8 @@ import numpy as np
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.collision.convex_tree import ConvexTree, joined, shape_tree
+from harness.planning.collision.convex_tree import ConvexTree, shape_box
+from harness.planning.collision.stored_trees import stored_tree
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import RobotDescription
 from harness.robot.solids import coal_geometry
@@ -24,11 +25,20 @@ class RigidShapes:
 
     Attributes:
         joint: Pinocchio's joint they move with; 0 stands still.
-        shapes: The shapes, placed on the joint.
+        body_shapes: The shapes, placed on their body.
+        placement: The pose of the body on the joint.
     """
 
     joint: int
-    shapes: tuple[Shape, ...]
+    body_shapes: tuple[Shape, ...]
+    placement: SE3
+
+    @cached_property
+    def shapes(self) -> tuple[Shape, ...]:
+        """The shapes, placed on the joint."""
+        return tuple(
+            Shape(shape.geometry, self.placement @ shape.pose) for shape in self.body_shapes
+        )
 
     @cached_property
     def solids(self) -> tuple[Any, ...]:
@@ -36,19 +46,15 @@ class RigidShapes:
         return tuple(map(coal_geometry, self.shapes))
 
     @cached_property
-    def trees(self) -> tuple[ConvexTree, ...]:
-        """The tree of each shape in the frame of the joint."""
-        return tuple(map(shape_tree, self.shapes))
-
-    @cached_property
     def tree(self) -> ConvexTree:
-        """One tree of all shapes."""
-        return joined(self.trees)
+        """One tree of all shapes in the frame of the joint."""
+        tree = stored_tree(self.body_shapes)
+        return tree.placed(self.placement.rotation, self.placement.translation)
 
     @cached_property
     def boxes(self) -> FloatArray:
         """The lower and the upper corner of each shape's box in the joint's frame, shape (n, 6)."""
-        return np.array([tree.box() for tree in self.trees])
+        return np.array([shape_box(shape) for shape in self.shapes])
 
     @cached_property
     def box(self) -> FloatArray:
@@ -63,8 +69,7 @@ def rigid_shapes(
     joint, T_joint_body = 0, pose
     if link is not None:
         joint, T_joint_body = robot.parent_joint(link), robot.placement(link) @ pose
-    placed = tuple(Shape(shape.geometry, T_joint_body @ shape.pose) for shape in shapes)
-    return RigidShapes(joint, placed)
+    return RigidShapes(joint, tuple(shapes), T_joint_body)
 
 
 @lru_cache(maxsize=4)

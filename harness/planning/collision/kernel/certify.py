@@ -12,6 +12,8 @@ from harness.planning.collision.kernel.compiling import (
     floats_1d,
     floats_2d,
     floats_3d,
+    indices_1d,
+    indices_2d,
     inlined,
     integers_1d,
     integers_2d,
@@ -27,6 +29,7 @@ from harness.planning.collision.kernel.motion_bound import (
 from harness.planning.collision.kernel.results import FULL
 from harness.planning.collision.kernel.tree_distance import (
     BLOCKED,
+    CLEAR_STATE,
     FREE,
     UNDECIDED,
     box_gap,
@@ -63,6 +66,21 @@ def segment_of(places, place):
     return low
 
 
+@inlined
+def tree_at(table, row):
+    """The arrays of a `ConvexTree` in its order, and a point of each set to begin a search with."""
+    return (
+        floats_2d(table, row),
+        integers_2d(table, row + 1),
+        indices_2d(table, row + 2),
+        floats_2d(table, row + 3),
+        floats_2d(table, row + 4),
+        indices_1d(table, row + 5),
+        indices_1d(table, row + 6),
+        indices_1d(table, row + 7),
+    )
+
+
 def certify(table, low, high):
     """Classify a range of the states of a motion as free, blocked or undecided.
 
@@ -76,13 +94,14 @@ def certify(table, low, high):
             state, shape (stretches, 2);
             the moving joint before each moving joint, or -1, shape (M,); each joint's pose on its
             parent at 0 (12), axis (3), 1 if prismatic, shape (M, 16); the poses of the bodies on
-            their joints or in the world, shape (B, 12); the joint or -1 and the root node of each
-            body, shape (B, 2); the lower and upper corner of its bounding box, shape (B, 6);
-            the arrays of a `ConvexTree` of all bodies, in its order;
+            their joints or in the world, shape (B, 12); the joint of each body or -1, its root, and
+            1 if it is in the tree of objects, shape (B, 3); the lower and upper corner of its
+            bounding box, shape (B, 6); its ball, shape (B, 4);
+            the arrays of `tree_at` of all links, and those of all objects;
             the distances above which a pair is free and below which it is blocked, shape (K, 2);
-            its two bodies and its key, shape (K, 3); the two bodies of each key (-1: static) and
-            the joints that move them relative to each other, as ranges of the next array, shape
-            (R, 6); moving joints, tip first, shape (J,);
+            its two bodies and how many joints next to each of them move it relative to the other,
+            shape (K, 4); where the joints of each body begin in the next array, shape (B + 1,); the
+            moving joints that carry each body, tip first, shape (J,);
             and the working memory of `certificates._working_memory`.
         low: The number of the first state to classify.
         high: The number of the last state to classify.
@@ -94,25 +113,19 @@ def certify(table, low, high):
     queue, found = integers_2d(table, 2), integers_2d(table, 3)
     parent, chain = integers_1d(table, 4), floats_2d(table, 5)
     body_poses, bodies, boxes = floats_2d(table, 6), integers_2d(table, 7), floats_2d(table, 8)
-    spheres, nodes, convexes = floats_2d(table, 9), integers_2d(table, 10), integers_2d(table, 11)
-    sizes, points = floats_2d(table, 12), floats_2d(table, 13)
-    edges_at, edges = integers_1d(table, 14), integers_1d(table, 15)
-    margins, checks = floats_2d(table, 16), integers_2d(table, 17)
-    keys, joints = integers_2d(table, 18), integers_1d(table, 19)
-    here, rates, poses = floats_1d(table, 20), floats_1d(table, 21), floats_2d(table, 22)
-    body_at, middles, shifts = floats_2d(table, 23), floats_2d(table, 24), floats_3d(table, 25)
-    axes, scratch = floats_2d(table, 26), floats_2d(table, 27)
-    body_stamp, key_stamp = integers_1d(table, 28), integers_1d(table, 29)
-    hints, stack, left = integers_1d(table, 30), integers_2d(table, 31), integers_1d(table, 32)
-    sets = (convexes, sizes, points, edges_at, edges, hints)
+    balls, links, objects = floats_2d(table, 9), tree_at(table, 10), tree_at(table, 18)
+    margins, checks = floats_2d(table, 26), indices_2d(table, 27)
+    paths, joints = indices_1d(table, 28), indices_1d(table, 29)
+    here, rates, poses = floats_1d(table, 30), floats_1d(table, 31), floats_2d(table, 32)
+    body_at, middles, motions = floats_2d(table, 33), floats_2d(table, 34), floats_3d(table, 35)
+    axes, scratch = floats_2d(table, 36), floats_2d(table, 37)
+    body_stamp, stack, left = integers_1d(table, 38), indices_2d(table, 39), indices_1d(table, 40)
     width = corners.shape[1]
     total = checks.shape[0]
     for body in range(body_stamp.shape[0]):
         body_stamp[body] = -1
-    for key in range(key_stamp.shape[0]):
-        key_stamp[key] = -1
     room = total
-    T, motion, way = scratch[0], scratch[14], scratch[15]
+    T, motion, ways = scratch[0], scratch[14], scratch[15:17]
     undecided = 0
     queue[0, 0], queue[0, 1], queue[0, 2], queue[0, 3] = high, high, 0, total
     head, tail = 0, 1
@@ -148,7 +161,6 @@ def certify(table, low, high):
         is_open, is_contact = False, True
         for place in range(begin, end):
             check = left[place]
-            key = checks[check, 2]
             for side in range(2):
                 body = checks[check, side]
                 if body_stamp[body] != stamp:
@@ -157,8 +169,7 @@ def certify(table, low, high):
                     else:
                         for i in range(12):
                             body_at[body, i] = body_poses[body, i]
-                    n = bodies[body, 1]
-                    u, v, w = spheres[n, 0], spheres[n, 1], spheres[n, 2]
+                    u, v, w = balls[body, 0], balls[body, 1], balls[body, 2]
                     for i in range(3):
                         middles[body, i] = (
                             body_at[body, 3 * i] * u
@@ -166,65 +177,58 @@ def certify(table, low, high):
                             + body_at[body, 3 * i + 2] * w
                             + body_at[body, 9 + i]
                         )
+                    if high > low:
+                        body_motion(
+                            rates, joints, paths[body], paths[body + 1], chain, poses,
+                            middles[body, 0], middles[body, 1], middles[body, 2], balls[body, 3],
+                            motions[body],
+                        )  # fmt: skip
                     body_stamp[body] = stamp
-            moved = 0.0
-            if high > low:
-                if key_stamp[key] != stamp:
-                    for side in range(2):
-                        body = keys[key, side]
-                        shifts[key, side, 8] = 0.0
-                        if body >= 0:
-                            body_motion(
-                                rates,
-                                joints,
-                                keys[key, 2 + 2 * side],
-                                keys[key, 3 + 2 * side],
-                                chain,
-                                poses,
-                                middles[body, 0],
-                                middles[body, 1],
-                                middles[body, 2],
-                                spheres[bodies[body, 1], 3],
-                                shifts[key, side],
-                            )
-                    key_stamp[key] = stamp
-                moved = shifts[key, 0, 8] + shifts[key, 1, 8]
             first, second = checks[check, 0], checks[check, 1]
+            near, far = checks[check, 2], checks[check, 3]
+            moved = motions[first, near, 8] + motions[second, far, 8] if high > low else 0.0
             free, blocked = margins[check, 0], margins[check, 1]
             x = middles[first, 0] - middles[second, 0]
             y = middles[first, 1] - middles[second, 1]
             z = middles[first, 2] - middles[second, 2]
-            least = spheres[bodies[first, 1], 3] + spheres[bodies[second, 1], 3] + free + moved
+            least = balls[first, 3] + balls[second, 3] + free + moved
             if x * x + y * y + z * z > least * least:
                 continue
-            if high > low:
-                relative_motion(shifts[key], keys[key], straight, body_at[second], motion)
-            is_free = False
+            is_free, is_hopeless = False, False
             for side in range(2):
                 ball, body = (first, second) if side == 0 else (second, first)
-                gap = box_gap(middles[ball], body_at[body], boxes[body], way)
-                least = gap - spheres[bodies[ball, 1], 3] - free
-                if least > moved:
-                    is_free = True
-                elif least > 0.0:
-                    base = body_at[second]
-                    least -= motion_along(
-                        motion,
-                        base[0] * way[0] + base[3] * way[1] + base[6] * way[2],
-                        base[1] * way[0] + base[4] * way[1] + base[7] * way[2],
-                        base[2] * way[0] + base[5] * way[1] + base[8] * way[2],
-                    )
-                    is_free = least > 0.0
-                if is_free:
-                    break
+                gap = box_gap(middles[ball], body_at[body], boxes[body], ways[side])
+                radius = balls[ball, 3]
+                ways[side, 3] = gap - radius - free
+                if gap - radius > free:
+                    is_free, is_hopeless = gap - radius - free > moved, moved > gap + radius
+                    if is_free or is_hopeless:
+                        break
             if is_free:
                 continue
-            relative_transform(body_at[second], body_at[first], T)
-            root, other_root = bodies[first, 1], bodies[second, 1]
-            answer = compare_trees(
-                spheres, nodes, sets, root, other_root, T, free, blocked, high > low, motion,
-                axes[check], stack, scratch,
-            )  # fmt: skip
+            answer = CLEAR_STATE
+            if not is_hopeless:
+                base = body_at[second]
+                if high > low:
+                    near_motion, far_motion = motions[first, near], motions[second, far]
+                    relative_motion(near_motion, far_motion, straight, base, motion)
+                    for side in range(2):
+                        x, y, z = ways[side, 0], ways[side, 1], ways[side, 2]
+                        is_free |= ways[side, 3] > 0.0 and ways[side, 3] > motion_along(
+                            motion,
+                            base[0] * x + base[3] * y + base[6] * z,
+                            base[1] * x + base[4] * y + base[7] * z,
+                            base[2] * x + base[5] * y + base[8] * z,
+                        )
+                    if is_free:
+                        continue
+                relative_transform(base, body_at[first], T)
+                tree = links if bodies[first, 2] == 0 else objects
+                other = links if bodies[second, 2] == 0 else objects
+                answer = compare_trees(
+                    tree, other, bodies[first, 1], bodies[second, 1], T, free, blocked,
+                    high > low, motion, axes[check], stack, scratch,
+                )  # fmt: skip
             if answer == FREE:
                 continue
             if answer == BLOCKED:

@@ -54,6 +54,7 @@ def _view(dtype: Any, ndim: int) -> Any:
 
 floats_1d, floats_2d, floats_3d = (_view(types.float64, ndim) for ndim in (1, 2, 3))
 integers_1d, integers_2d = (_view(types.int64, ndim) for ndim in (1, 2))
+indices_1d, indices_2d = (_view(types.uint32, ndim) for ndim in (1, 2))
 
 
 def assembly(entry: Any, arguments: int) -> tuple[str, str]:

@@ -21,9 +21,9 @@ MOST_ITERATIONS = 48
 
 
 @inlined
-def support(sets, c, x, y, z):
+def support(tree, c, x, y, z):
     """The point of a convex set that is farthest along a direction, without its rounding."""
-    convexes, sizes, points, edges_at, edges, hints = sets
+    _, _, convexes, sizes, points, edges_at, edges, hints = tree
     first, last, kind = convexes[c, 0], convexes[c, 1], convexes[c, 2]
     if kind == CYLINDER:
         u, v, w = points[first, 0], points[first, 1], points[first, 2]
@@ -57,7 +57,7 @@ def support(sets, c, x, y, z):
 
 
 @inlined
-def distance_bounds(sets, a, b, T, moves, motion, free, blocked, axis, scratch):
+def distance_bounds(tree, other, a, b, T, moves, motion, free, blocked, axis, scratch):
     """Bounds of the distance between two convex sets, the first placed at T in the second's frame.
 
     The Gilbert-Johnson-Keerthi algorithm [1]. Each support point along an axis gives a separating
@@ -79,14 +79,14 @@ def distance_bounds(sets, a, b, T, moves, motion, free, blocked, axis, scratch):
         [1] E. Gilbert, D. Johnson, S. Keerthi, "A Fast Procedure for Computing the Distance Between
             Complex Objects in Three-Dimensional Space", IEEE J-RA 4(2), 1988.
     """
-    convexes, sizes, points = sets[0], sets[1], sets[2]
+    convexes, sizes, points = other[2], other[3], other[4]
     if convexes[b, 2] == HALF_SPACE:
         at = convexes[b, 0]
         x = points[at, 0] - points[at + 1, 0]
         y = points[at, 1] - points[at + 1, 1]
         z = points[at, 2] - points[at + 1, 2]
         u, v, w = support(
-            sets,
+            tree,
             a,
             T[0] * x + T[3] * y + T[6] * z,
             T[1] * x + T[4] * y + T[7] * z,
@@ -97,32 +97,27 @@ def distance_bounds(sets, a, b, T, moves, motion, free, blocked, axis, scratch):
             T[3] * u + T[4] * v + T[5] * w + T[10] - points[at, 1],
             T[6] * u + T[7] * v + T[8] * w + T[11] - points[at, 2],
         )
-        exact = -(u * x + v * y + w * z) - sizes[a, 0]
+        exact = -(u * x + v * y + w * z) - tree[3][a, 0]
         return exact - (motion_along(motion, x, y, z) if moves else 0.0), exact, exact
-    S, near, trial, other = scratch[3:10], scratch[10], scratch[11], scratch[12]
-    rounding = sizes[a, 0] + sizes[b, 0]
+    S, near, trial, spare = scratch[3:10], scratch[10], scratch[11], scratch[12]
+    rounding = tree[3][a, 0] + sizes[b, 0]
     vx, vy, vz = axis[0], axis[1], axis[2]
     count = 0
     later, least, most = -np.inf, -np.inf, np.inf
     for _ in range(MOST_ITERATIONS):
         size = math.sqrt(vx * vx + vy * vy + vz * vz)
-        wx, wy, wz = T[9], T[10], T[11]
-        for side in range(2):
-            if side == 0:
-                x = -(T[0] * vx + T[3] * vy + T[6] * vz)
-                y = -(T[1] * vx + T[4] * vy + T[7] * vz)
-                z = -(T[2] * vx + T[5] * vy + T[8] * vz)
-            else:
-                x, y, z = vx, vy, vz
-            x, y, z = support(sets, a if side == 0 else b, x, y, z)
-            if side == 0:
-                wx += T[0] * x + T[1] * y + T[2] * z
-                wy += T[3] * x + T[4] * y + T[5] * z
-                wz += T[6] * x + T[7] * y + T[8] * z
-            else:
-                wx -= x
-                wy -= y
-                wz -= z
+        x, y, z = support(
+            tree,
+            a,
+            -(T[0] * vx + T[3] * vy + T[6] * vz),
+            -(T[1] * vx + T[4] * vy + T[7] * vz),
+            -(T[2] * vx + T[5] * vy + T[8] * vz),
+        )
+        wx = T[0] * x + T[1] * y + T[2] * z + T[9]
+        wy = T[3] * x + T[4] * y + T[5] * z + T[10]
+        wz = T[6] * x + T[7] * y + T[8] * z + T[11]
+        x, y, z = support(other, b, vx, vy, vz)
+        wx, wy, wz = wx - x, wy - y, wz - z
         vx, vy, vz = vx / size, vy / size, vz / size
         bound = vx * wx + vy * wy + vz * wz - rounding
         ahead = bound - (motion_along(motion, vx, vy, vz) if moves else 0.0)
@@ -136,7 +131,7 @@ def distance_bounds(sets, a, b, T, moves, motion, free, blocked, axis, scratch):
         if least > free and most - (bound - ahead) <= free:
             break
         S[count, 0], S[count, 1], S[count, 2] = wx, wy, wz
-        count, inside = reduce_simplex(S, count + 1, near, trial, other)
+        count, inside = reduce_simplex(S, count + 1, near, trial, spare)
         if count == 4:
             most = -inside - rounding
             break

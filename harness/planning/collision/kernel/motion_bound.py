@@ -60,22 +60,20 @@ def joint_poses(values, parent, chain, out, scratch):
 
 
 @compiled
-def body_motion(rates, joints, first, last, chain, poses, x, y, z, radius, out):
-    """How a ball moves when joints, listed tip first, move by their rates.
+def body_motion(rates, path, first, last, chain, poses, x, y, z, radius, out):
+    """How a ball moves when the joints before it, listed tip first, move by their rates.
 
     Args:
         rates: How far each joint moves to either end of the interval, with its sign.
-        out: Output: the first-order motion of the ball's centre (3), its rotation vector (3), its
-            radius, a bound of the second-order motion of its points, and a bound of all motion.
+        path: The joints, of which those from `first` to `last` carry the ball.
+        out: Output, a row for each number of joints from the tip on that move: the first-order
+            motion of the ball's centre (3), its rotation vector (3), its radius, a bound of the
+            second-order motion of its points, and a bound of all motion.
     """
-    turns = 0.0
-    for k in range(first, last):
-        if chain[joints[k], 15] <= 0.5:
-            turns += abs(rates[joints[k]])
     moved = distal = second = 0.0
     vx = vy = vz = ox = oy = oz = 0.0
     for k in range(first, last):
-        m = joints[k]
+        m = path[k]
         rate, w = rates[m], abs(rates[m])
         a = poses[m, 0] * chain[m, 12] + poses[m, 1] * chain[m, 13] + poses[m, 2] * chain[m, 14]
         b = poses[m, 3] * chain[m, 12] + poses[m, 4] * chain[m, 13] + poses[m, 5] * chain[m, 14]
@@ -84,19 +82,19 @@ def body_motion(rates, joints, first, last, chain, poses, x, y, z, radius, out):
             vx, vy, vz = vx + rate * a, vy + rate * b, vz + rate * c
             moved += w
             distal += w
-            second += w * turns
-            continue
-        u, v, t = x - poses[m, 9], y - poses[m, 10], z - poses[m, 11]
-        d, e, f = b * t - c * v, c * u - a * t, a * v - b * u
-        vx, vy, vz = vx + rate * d, vy + rate * e, vz + rate * f
-        ox, oy, oz = ox + rate * a, oy + rate * b, oz + rate * c
-        lever = math.sqrt(u * u + v * v + t * t) + radius + moved
-        moved += w * (math.sqrt(d * d + e * e + f * f) + radius + moved)
-        distal += w * lever
-        turns -= w
-        second += w * (2.0 * max(turns, 0.0) * lever + distal)
-    out[0], out[1], out[2], out[3], out[4], out[5] = vx, vy, vz, ox, oy, oz
-    out[6], out[7], out[8] = radius, 0.5 * second, moved
+        else:
+            u, v, t = x - poses[m, 9], y - poses[m, 10], z - poses[m, 11]
+            d, e, f = b * t - c * v, c * u - a * t, a * v - b * u
+            vx, vy, vz = vx + rate * d, vy + rate * e, vz + rate * f
+            ox, oy, oz = ox + rate * a, oy + rate * b, oz + rate * c
+            lever = math.sqrt(u * u + v * v + t * t) + radius + moved
+            moved += w * (math.sqrt(d * d + e * e + f * f) + radius + moved)
+            second += w * (3.0 * distal + w * lever)
+            distal += w * lever
+        row = 1 + k - first
+        out[row, 0], out[row, 1], out[row, 2] = vx, vy, vz
+        out[row, 3], out[row, 4], out[row, 5] = ox, oy, oz
+        out[row, 6], out[row, 7], out[row, 8] = radius, 0.5 * second, moved
 
 
 @inlined
@@ -121,21 +119,26 @@ def motion_along(motion, x, y, z):
 
 
 @compiled
-def relative_motion(sides, key, straight, base, out):
-    """The motion of two bodies as `motion_along` needs it, in the frame of the second."""
+def relative_motion(near, far, straight, base, out):
+    """The motion of two bodies as `motion_along` needs it, in the frame of the second.
+
+    Args:
+        near: The motion of the first body relative to the second, a row of `body_motion`.
+        far: The same of the second body.
+        straight: Whether the interval is a straight line.
+        base: The pose of the second body.
+    """
+    out[12] = near[8] + far[8]
     for i in range(12):
         out[i] = 0.0
-    out[12] = sides[0, 8] + sides[1, 8]
     if not straight:
         out[11] = out[12]
         return
-    for side in range(2):
-        if key[side] < 0:
-            continue
-        sign = 1.0 if side == 0 else -1.0
-        for i in range(3):
-            a, b, c = base[i], base[3 + i], base[6 + i]
-            out[i] += sign * (a * sides[side, 0] + b * sides[side, 1] + c * sides[side, 2])
-            out[3 + 3 * side + i] = a * sides[side, 3] + b * sides[side, 4] + c * sides[side, 5]
-        out[9 + side] = sides[side, 6]
-        out[11] += sides[side, 7]
+    for i in range(3):
+        a, b, c = base[i], base[3 + i], base[6 + i]
+        x, y, z = near[0] - far[0], near[1] - far[1], near[2] - far[2]
+        out[i] = a * x + b * y + c * z
+        out[3 + i] = a * near[3] + b * near[4] + c * near[5]
+        out[6 + i] = a * far[3] + b * far[4] + c * far[5]
+    out[9], out[10] = near[6], far[6]
+    out[11] = near[7] + far[7]

@@ -18,7 +18,9 @@ FREE, CLEAR_STATE, UNDECIDED, BLOCKED = range(4)
 blocked there."""
 
 GIVE_UP = 0.7
-"""Size of two nodes, relative to an interval's motion bound, below which they are not refined."""
+"""Size of two nodes, relative to an interval's motion bound, below which they are not refined: a
+shorter interval costs less. Nodes that are apart are not refined for the sake of the motion either.
+"""
 
 
 @inlined
@@ -48,13 +50,15 @@ def box_gap(center, base, box, out):
 
 @inlined
 def compare_trees(
-    spheres, nodes, sets, first, second, T, free, blocked, moves, motion, axis, stack, scratch
+    tree, other, first, second, T, free, blocked, moves, motion, axis, stack, scratch
 ):
     """Whether two trees keep a distance over an interval and at its middle state.
 
     Args:
-        first: The root of the tree that is placed at T in the frame of the other.
-        second: The root of the other tree.
+        tree: The arrays of the first tree, as of `certify.tree_at`.
+        other: The same of the second tree.
+        first: The root of the first tree, which is placed at T in the frame of the other.
+        second: The root of the second tree.
         free: The distance above which a state is free.
         blocked: The distance below which a state is blocked.
         moves: Whether the interval is more than its middle state.
@@ -64,22 +68,23 @@ def compare_trees(
     stack[0, 0], stack[0, 1] = first, second
     waiting, answer = 1, FREE
     local = scratch[13]
+    spheres, nodes, far_spheres, far_nodes = tree[0], tree[1], other[0], other[1]
     while waiting > 0:
         waiting -= 1
         i, j = stack[waiting, 0], stack[waiting, 1]
         u, v, w = spheres[i, 0], spheres[i, 1], spheres[i, 2]
-        x = T[0] * u + T[1] * v + T[2] * w + T[9] - spheres[j, 0]
-        y = T[3] * u + T[4] * v + T[5] * w + T[10] - spheres[j, 1]
-        z = T[6] * u + T[7] * v + T[8] * w + T[11] - spheres[j, 2]
+        x = T[0] * u + T[1] * v + T[2] * w + T[9] - far_spheres[j, 0]
+        y = T[3] * u + T[4] * v + T[5] * w + T[10] - far_spheres[j, 1]
+        z = T[6] * u + T[7] * v + T[8] * w + T[11] - far_spheres[j, 2]
         gap = math.sqrt(x * x + y * y + z * z)
-        size = spheres[i, 3] + spheres[j, 3]
+        size = spheres[i, 3] + far_spheres[j, 3]
         if gap - size > free:
             if not moves or gap - size - motion[12] > free:
                 continue
             if gap - size - motion_along(motion, x / gap, y / gap, z / gap) > free:
                 continue
-        a, b = nodes[i, 1], nodes[j, 1]
-        i_leaf, j_leaf = nodes[i, 0] == i + 1, nodes[j, 0] == j + 1
+        a, b = nodes[i, 1], far_nodes[j, 1]
+        i_leaf, j_leaf = nodes[i, 0] == i + 1, far_nodes[j, 0] == j + 1
         is_exact = i_leaf and j_leaf
         if a >= 0 and b >= 0:
             direction = local
@@ -93,7 +98,7 @@ def compare_trees(
                     direction[0] = 1.0
             wall = blocked if is_exact else -np.inf
             later, least, most = distance_bounds(
-                sets, a, b, T, moves, motion, free, wall, direction, scratch
+                tree, other, a, b, T, moves, motion, free, wall, direction, scratch
             )
             if later > free:
                 continue
@@ -103,11 +108,11 @@ def compare_trees(
                     return BLOCKED
                 answer = max(answer, CLEAR_STATE if least > free else UNDECIDED)
                 continue
-            if moves and size < GIVE_UP * motion[12]:
+            if moves and (least > free or size < GIVE_UP * motion[12]):
                 moves, answer = False, max(answer, CLEAR_STATE)
-                if least > free:
-                    continue
-        if j_leaf or (not i_leaf and spheres[i, 3] >= spheres[j, 3]):
+            if not moves and least > free:
+                continue
+        if j_leaf or (not i_leaf and spheres[i, 3] >= far_spheres[j, 3]):
             child = i + 1
             while child < nodes[i, 0]:
                 if waiting >= stack.shape[0]:
@@ -117,10 +122,10 @@ def compare_trees(
                 child = nodes[child, 0]
         else:
             child = j + 1
-            while child < nodes[j, 0]:
+            while child < far_nodes[j, 0]:
                 if waiting >= stack.shape[0]:
                     return UNDECIDED
                 stack[waiting, 0], stack[waiting, 1] = i, child
                 waiting += 1
-                child = nodes[child, 0]
+                child = far_nodes[child, 0]
     return answer
