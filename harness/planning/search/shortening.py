@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+
 import numpy as np
 
 from harness.core.types import FloatArray
@@ -19,6 +23,9 @@ def shorten(
 ) -> FloatArray:
     """Cut corners of a free path: waypoints dropped first, then random points on it joined.
 
+    What remains of an edge is not checked anew: whoever needs it free at other states verifies the
+    whole path.
+
     Args:
         waypoints: The waypoints, free along the edges, shape (N, dof).
         checker: The checker of the edges; margins are kept as they were on the path.
@@ -28,59 +35,70 @@ def shorten(
     Returns:
         Waypoints, shape (M, dof), M <= N mostly; the ends are the same.
     """
-    path = _without_redundant_waypoints(list(waypoints), checker, resolution)
-    rng = np.random.default_rng(seed)
-    for _ in range(TRIES):
-        if len(path) < 3:
-            break
-        path = _shortcut(path, np.sort(rng.random(2)), checker, resolution)
-    return np.array(_without_redundant_waypoints(path, checker, resolution))
+    path = _without_redundant_waypoints(waypoints, checker, resolution)
+    knots = _knots(path)
+    for places in np.sort(np.random.default_rng(seed).random((TRIES, 2))).tolist():
+        shortcut = _shortcut(path, knots, places)
+        if shortcut is None:
+            continue
+        before, a, b, after = shortcut
+        if checker.edge_free(a, b, resolution):
+            path = _without_repetitions(np.vstack([path[:before], a, b, path[after:]]))
+            knots = _knots(path)
+    return _without_redundant_waypoints(path, checker, resolution)
 
 
 def _without_redundant_waypoints(
-    path: list[FloatArray], checker: MotionChecker, resolution: float
-) -> list[FloatArray]:
+    path: FloatArray, checker: MotionChecker, resolution: float
+) -> FloatArray:
     """From each kept waypoint, go straight to the farthest that a free edge reaches."""
-    kept, index = [path[0]], 0
+    kept, index = [0], 0
     while index < len(path) - 1:
         target = len(path) - 1
         while target > index + 1 and not checker.edge_free(path[index], path[target], resolution):
             target -= 1
-        kept.append(path[target])
+        kept.append(target)
         index = target
-    return kept
+    return path[kept]
 
 
 def _shortcut(
-    path: list[FloatArray], places: FloatArray, checker: MotionChecker, resolution: float
-) -> list[FloatArray]:
-    """Join two points on the path, given as shares of its length, if the line is free."""
-    points = np.array(path)
-    knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    first, second = places * knots[-1]
-    before, after = (
-        min(int(np.searchsorted(knots, place, side="right")) - 1, len(path) - 2)
-        for place in (first, second)
-    )
+    path: FloatArray, knots: Sequence[float], places: Sequence[float]
+) -> tuple[int, FloatArray, FloatArray, int] | None:
+    """A straight line between two points on the path that is worth checking.
+
+    Args:
+        path: The waypoints, shape (N, dof).
+        knots: The length of the path up to each waypoint.
+        places: The two points, as shares of the whole length.
+
+    Returns:
+        The number of waypoints before the first point, both points, and the first waypoint after
+        the second; None where both are on one edge, or the line saves too little.
+    """
+    first, second = (share * knots[-1] for share in places)
+    before, after = (min(bisect_right(knots, each), len(path) - 1) for each in (first, second))
     if before == after:
-        return path
-    a, b = (
-        points[index]
-        + (points[index + 1] - points[index]) * ((place - knots[index]) / _length(knots, index))
-        for place, index in ((first, before), (second, after))
-    )
-    if second - first - float(np.linalg.norm(b - a)) < WORTH * knots[-1]:
-        return path
-    edges = ((a, b), (points[before], a), (b, points[after + 1]))  # parts are checked at new states
-    if not all(checker.edge_free(*edge, resolution) for edge in edges):
-        return path
-    joined = [*path[: before + 1], a, b, *path[after + 1 :]]
-    return [
-        point
-        for index, point in enumerate(joined)
-        if index == 0 or np.linalg.norm(point - joined[index - 1]) > 1e-9
-    ]
+        return None
+    a, b = (_point(path, knots, *each) for each in ((first, before), (second, after)))
+    if second - first - math.dist(a, b) < WORTH * knots[-1]:
+        return None
+    return before, a, b, after
 
 
-def _length(knots: FloatArray, index: int) -> float:
-    return max(float(knots[index + 1] - knots[index]), 1e-12)
+def _knots(path: FloatArray) -> list[float]:
+    """The length of a path up to each waypoint."""
+    return [0.0, *np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1)).tolist()]
+
+
+def _point(path: FloatArray, knots: Sequence[float], length: float, after: int) -> FloatArray:
+    """The point after a length of the path, on the edge that ends at the waypoint `after`."""
+    before = after - 1
+    share = (length - knots[before]) / max(knots[after] - knots[before], 1e-12)
+    return path[before] + (path[after] - path[before]) * share
+
+
+def _without_repetitions(path: FloatArray) -> FloatArray:
+    """The waypoints that are apart from the one before."""
+    apart = np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-9
+    return path[np.append(True, apart)]
