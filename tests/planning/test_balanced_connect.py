@@ -32,7 +32,7 @@ def test_a_tree_in_a_narrow_bend_grows_by_shorter_steps_until_it_is_outside():
     for _ in range(2000):
         angle = rng.uniform(0.0, 2 * np.pi)
         sample = 4.0 * np.array([np.cos(angle), np.sin(angle)])
-        (near,), (distance,) = tree.nearest(sample[None])
+        near, distance = tree.nearest(sample)
         tree.grow(near, sample, distance, in_the_bend)
     assert tree.points[: tree.count, 1].max() > 2.0
 
@@ -44,7 +44,7 @@ def test_samples_are_drawn_about_the_tree_and_inside_the_limits():
     assert np.allclose(drawn.min(axis=0), [-BEYOND, -BEYOND], atol=0.05)
     assert np.allclose(drawn.max(axis=0), [1.0 + BEYOND, 1.2 + BEYOND], atol=0.05)
     for sample in ([2.4, 1.2], [1.0, 2.6], [-1.0, -1.0]):
-        (near,), (distance,) = tree.nearest(np.array([sample]))
+        near, distance = tree.nearest(np.array(sample))
         assert tree.grow(near, np.array(sample), distance, lambda *_: True) is not None
     drawn = np.array([tree.draw(samples)[0] for _ in range(200)])
     assert np.allclose(drawn.min(axis=0), limits[0], atol=0.05)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -168,7 +169,8 @@ class GroupSpace:
 
     def distance(self, first: FloatArray, second: FloatArray) -> float:
         """Joint-space distance, metres weighted [rad]."""
-        return float(np.linalg.norm((second - first) * self.metric))
+        away = (second - first) * self.metric
+        return math.sqrt(away.dot(away))
 
     def effort(self, first: FloatArray, second: FloatArray) -> float:
         """How much of the arm moves: turns weighted by the reach distal to each joint."""

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 from harness.ports.path_planning import PathRequest, PathResult
 
 RANGE = 1.5
 """Longest edge [rad]."""
 
-DOMAIN = 1.5
-"""Radius of a vertex's domain after the first blocked edge from it [rad]; infinite before.
-
-A tree in a narrow place, such as a gripper between bars, touches the obstacles with every vertex.
-With a radius of 4 rad, nearly every sample lay in a domain and pulled a vertex into them: 7 % of
-cages around a 7-axis arm took more than 200,000 state checks, the mean was 46,000. With 1.5 rad and
-samples near the tree (`BEYOND`) none took more than 73,000, and the mean was 4,500.
-"""
+DOMAIN = 4.0
+"""Radius of a vertex's domain after the first blocked edge from it [rad]; infinite before."""
 
 SMALLEST_DOMAIN = 1.0
 """Radius below which a domain does not shrink [rad]."""
@@ -41,18 +36,17 @@ With a larger budget it is more of them. Of 900 searches in cages that found a p
 than 235; from a closed box the search gives up after a third of its budget.
 """
 
-BEYOND = 1.0
+BEYOND = 1.5
 """How far beyond the tree that grows samples are drawn, along each joint [rad].
 
 The box of the samples grows with the tree, so that every posture is reached in the end. Samples
-from the whole range of the joints are nearly all outside the domains of a small tree: a search in
-a cage takes four times as long, most of it to reject them.
+from the whole range of the joints are nearly all outside the domains of a small tree: in the cages
+of MotionBenchMaker a search takes three times as long, most of it to reject them.
 """
 
 _EdgeCheck = Callable[[FloatArray, FloatArray], bool]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
 _BLOCK = 256
-_GROUP = 16  # most samples whose nearest vertices are found together
 
 PARAMETERS = ("range",)
 
@@ -163,20 +157,14 @@ class _Samples:
     def __init__(self, dof: int, first: int) -> None:
         self._lower, self._upper = np.zeros(dof), np.ones(dof)
         self._first = first
-        self._points = np.empty((0, dof))
-        self._used = 0
+        self._points: list[FloatArray] = []
 
-    def ahead(self, count: int) -> FloatArray:
-        """The next samples, at least one and at most `count`; the same until some are used."""
-        if self._used == len(self._points):
-            self._points = halton(self._first, _BLOCK, self._lower, self._upper)
+    def next(self) -> FloatArray:
+        """The next sample, shape (dof,)."""
+        if not self._points:
+            self._points = list(halton(self._first, _BLOCK, self._lower, self._upper)[::-1])
             self._first += _BLOCK
-            self._used = 0
-        return self._points[self._used : self._used + count]
-
-    def use(self, count: int) -> None:
-        """Pass over the next samples."""
-        self._used += count
+        return self._points.pop()
 
 
 class _Tree:
@@ -207,27 +195,22 @@ class _Tree:
         self.count += 1
         return self.count - 1
 
-    def nearest(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
-        """The vertices nearest to points, shape (K, dof), and their distances [rad]."""
-        away = self.points[: self.count] - points[:, None]
-        squares = np.einsum("kij,kij->ki", away, away)
-        return squares.argmin(axis=1), np.sqrt(squares.min(axis=1))
+    def nearest(self, point: FloatArray) -> tuple[int, float]:
+        """The vertex nearest to a point, and its distance [rad]."""
+        away = self.points[: self.count] - point
+        squares = np.einsum("ij,ij->i", away, away)
+        index = int(squares.argmin())
+        return index, math.sqrt(squares[index])
 
     def draw(self, samples: _Samples) -> tuple[FloatArray, int, float]:
         """The next sample in the domain of its nearest vertex, that vertex, its distance [rad]."""
         refused = 0
         while True:
-            shares = samples.ahead(min(refused + 1, _GROUP))
-            points = self._lower + (self._upper - self._lower) * shares
-            near, distances = self.nearest(points)
-            is_used = self._domains[near] >= distances
-            is_used[max(0, PATIENCE - refused) :] = True
-            index = int(is_used.argmax())
-            if is_used[index]:
-                samples.use(index + 1)
-                return points[index], int(near[index]), float(distances[index])
-            samples.use(len(points))
-            refused += len(points)
+            point = self._lower + (self._upper - self._lower) * samples.next()
+            near, distance = self.nearest(point)
+            if refused == PATIENCE or self._domains[near] >= distance:
+                return point, near, distance
+            refused += 1
 
     def grow(
         self, near: int, sample: FloatArray, distance: float, is_free: _EdgeCheck
@@ -252,7 +235,7 @@ class _Tree:
 
     def connect(self, point: FloatArray, is_free: _EdgeCheck) -> int | None:
         """Extend step by step to a point of the other tree; the vertex that reaches it, or None."""
-        (near,), (distance,) = self.nearest(point[None])
+        near, distance = self.nearest(point)
         while True:
             here = self.points[near]
             is_last = distance <= self._step
