@@ -6,7 +6,6 @@ import pytest
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.balanced_connect import (
     BEYOND,
-    DOMAIN,
     RANGE,
     _Samples,  # pyright: ignore[reportPrivateUsage]
     _Tree,  # pyright: ignore[reportPrivateUsage]
@@ -32,37 +31,34 @@ def test_a_tree_in_a_narrow_bend_grows_by_shorter_steps_until_it_is_outside():
     for _ in range(2000):
         angle = rng.uniform(0.0, 2 * np.pi)
         sample = 4.0 * np.array([np.cos(angle), np.sin(angle)])
-        near, distance = tree.nearest(sample)
-        tree.grow(near, sample, distance, in_the_bend)
+        tree.grow(sample, in_the_bend)
     assert tree.points[: tree.count, 1].max() > 2.0
 
 
 def test_samples_are_drawn_about_the_tree_and_inside_the_limits():
     limits = np.array([[-1.5, -1.5], [4.0, 3.0]])
     tree, samples = _Tree([np.zeros(2), np.array([1.0, 1.2])], RANGE, limits), _Samples(2, 1)
-    drawn = np.array([tree.draw(samples)[0] for _ in range(200)])
+    drawn = np.array([tree.draw(samples) for _ in range(400)])
     assert np.allclose(drawn.min(axis=0), [-BEYOND, -BEYOND], atol=0.05)
     assert np.allclose(drawn.max(axis=0), [1.0 + BEYOND, 1.2 + BEYOND], atol=0.05)
     for sample in ([2.4, 1.2], [1.0, 2.6], [-1.0, -1.0]):
-        near, distance = tree.nearest(np.array(sample))
-        assert tree.grow(near, np.array(sample), distance, lambda *_: True) is not None
-    drawn = np.array([tree.draw(samples)[0] for _ in range(200)])
+        assert tree.grow(np.array(sample), lambda *_: True) is not None
+    drawn = np.array([tree.draw(samples) for _ in range(400)])
     assert np.allclose(drawn.min(axis=0), limits[0], atol=0.05)
     assert np.allclose(drawn.max(axis=0), [2.4 + BEYOND, 3.0], atol=0.05)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 1_000_000])
-def test_no_sample_is_used_twice_and_those_in_a_domain_come_first(seed):
-    samples = _Samples(7, seed)
-    tree = _Tree([np.zeros(7), np.full(7, 4.0)], RANGE, np.tile(WIDE, 7))
-    for vertex in range(2):
-        assert tree.grow(vertex, np.full(7, 2.0), 1.0, lambda *_: False) is None
-    drawn = [tree.draw(samples) for _ in range(100)]
-    assert len({tuple(sample) for sample, _, _ in drawn}) == 100
-    for sample, near, distance in drawn:
-        away = np.linalg.norm(tree.points[:2] - sample, axis=1)
-        assert (near, distance) == (int(away.argmin()), pytest.approx(away.min()))
-    assert sum(distance <= DOMAIN for _, _, distance in drawn) > 0
+def test_no_sample_is_used_twice_and_every_other_one_is_near_a_vertex(seed):
+    samples, ends = _Samples(7, seed), [np.zeros(7), np.full(7, 8.0)]
+    tree = _Tree(ends, RANGE, np.tile(WIDE, 7))
+    drawn = np.array([tree.draw(samples) for _ in range(200)])
+    assert len(np.unique(drawn, axis=0)) == 200
+    near = [np.abs(drawn - end).max(axis=1) <= BEYOND for end in ends]
+    for number, each in enumerate(near):
+        assert 40 <= each[1::2].sum() <= 60, f"the samples about vertex {number}"
+    assert (near[0] | near[1])[1::2].all()
+    assert (near[0] | near[1])[::2].sum() < 10
 
 
 @pytest.mark.parametrize("budget", [10_000, 200_000, 1_000_000])
