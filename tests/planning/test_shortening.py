@@ -6,12 +6,12 @@ from harness.planning.collision.checker import MotionChecker
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.path_search import search
 from harness.planning.search.shortening import shorten
-from harness.planning.verification.verify import FINAL_RESOLUTION
+from harness.planning.verification.verify import VERIFIED_RESOLUTION
 from harness.ports.motion_planning import PlanningOptions
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, boxes, ur
 
 
-def test_a_shortened_path_is_shorter_and_free_at_its_own_states():
+def test_a_path_shortened_at_the_resolution_of_verification_is_verified():
     cell = Cell(ur("ur3e"))
     cell.add(boxes(*FIRST_BOXES))
     start, goal = cell.named("mogi_down"), cell.named("up")
@@ -23,13 +23,13 @@ def test_a_shortened_path_is_shorter_and_free_at_its_own_states():
             checker,
             start,
             [goal],
-            resolution=FINAL_RESOLUTION,
+            resolution=VERIFIED_RESOLUTION,
             max_state_checks=200_000,
             seed=seed,
         )
         assert found.waypoints is not None
         path = np.asarray(found.waypoints)
-        short = shorten(path, checker, FINAL_RESOLUTION, seed)
-        assert checker.path_free(short, FINAL_RESOLUTION)
+        short = shorten(path, checker, VERIFIED_RESOLUTION, seed)
+        assert checker.path_free(short, VERIFIED_RESOLUTION)
         lengths = [np.linalg.norm(np.diff(each, axis=0), axis=1).sum() for each in (short, path)]
         assert lengths[0] <= lengths[1]

@@ -121,7 +121,7 @@ def motion_arrays(model: CollisionModel, space: GroupSpace, margins: FloatArray)
     Args:
         margins: The margin of each of the model's pairs [m], shape (K,).
     """
-    moving = MovingJoints(space)
+    moving = _moving_joints(space)
     layout = _layout(model, tuple(moving.above), tuple(moving.parent.tolist()))
     margin = margins[layout.pairs]
     free = np.maximum(margin, 0.0) + ROUNDING
@@ -226,6 +226,11 @@ class MovingJoints:
         joints = [body.rigid.joint for body in bodies]
         poses = {joint: _flat(self._seen(self.above[joint], joint)) for joint in {*joints}}
         return np.array([poses[joint] for joint in joints]).reshape(-1, 12)
+
+
+@lru_cache(maxsize=4)
+def _moving_joints(space: GroupSpace) -> MovingJoints:
+    return MovingJoints(space)
 
 
 class _Layout:

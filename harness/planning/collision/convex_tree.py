@@ -74,19 +74,23 @@ def shape_box(shape: Shape) -> FloatArray:
     Raises:
         RobotError: A mesh file cannot be read.
     """
-    if isinstance(shape.geometry, Mesh):
-        points = _points(shape.geometry) @ shape.pose.rotation.T + shape.pose.translation
-        return np.concatenate([points.min(axis=0), points.max(axis=0)])
-    tree = shape_tree(shape)
-    (kind,), (rounding, radius, half) = tree.convexes[:, 2], tree.sizes[0].tolist()
-    if kind == HALF_SPACE:
-        return np.repeat([-np.inf, np.inf], 3)
-    points, reach = tree.points, rounding
-    if kind == CYLINDER:
-        axis = points[1] - points[0]
-        reach = np.abs(axis) * half + np.sqrt(np.maximum(1.0 - axis**2, 0.0)) * radius
-        points = points[:1]
-    return np.concatenate([points.min(axis=0) - reach, points.max(axis=0) + reach])
+    rotation, middle = shape.pose.rotation, shape.pose.translation
+    match shape.geometry:
+        case Box(size=size):
+            reach = np.abs(rotation) @ size / 2
+        case Sphere(radius=radius):
+            reach = np.full(3, radius)
+        case Capsule(radius=radius, length=length):
+            reach = np.abs(rotation[:, 2]) * length / 2 + radius
+        case Cylinder(radius=radius, length=length):
+            across = np.sqrt(np.maximum(1.0 - rotation[:, 2] ** 2, 0.0))
+            reach = np.abs(rotation[:, 2]) * length / 2 + across * radius
+        case Plane():
+            reach = np.full(3, np.inf)
+        case Mesh():
+            points = _points(shape.geometry) @ rotation.T + middle
+            return np.concatenate([points.min(axis=0), points.max(axis=0)])
+    return np.concatenate([middle - reach, middle + reach])
 
 
 def _points(geometry: Mesh) -> FloatArray:

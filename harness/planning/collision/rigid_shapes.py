@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.geometry import Shape
+from harness.core.geometry import Mesh, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.collision.convex_tree import ConvexTree, shape_box
+from harness.planning.collision.convex_tree import ConvexTree, shape_box, shape_tree
 from harness.planning.collision.stored_trees import stored_tree
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import RobotDescription
@@ -48,6 +48,8 @@ class RigidShapes:
     @cached_property
     def tree(self) -> ConvexTree:
         """One tree of all shapes in the frame of the joint."""
+        if len(self.shapes) == 1 and not isinstance(self.shapes[0].geometry, Mesh):
+            return shape_tree(self.shapes[0])
         tree = stored_tree(self.body_shapes)
         return tree.placed(self.placement.rotation, self.placement.translation)
 
