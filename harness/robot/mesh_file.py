@@ -138,8 +138,15 @@ def _thickness(points: FloatArray) -> float:
 
 
 def hull_of(points: FloatArray) -> Any:
-    """The convex hull of points as Coal's geometry."""
+    """The convex hull of points as Coal's geometry.
+
+    Raises:
+        RuntimeError: The points are in a plane, or Qhull fails.
+    """
     import coal
+
+    if _thickness(points) < FLAT:  # Qhull can crash on such points
+        raise RuntimeError("its points are in a plane")
 
     corners = coal.StdVec_Vec3s()
     corners.extend(list(points))

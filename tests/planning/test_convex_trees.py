@@ -10,6 +10,7 @@ from harness.core.user_cache import cache_folder
 from harness.planning.collision import stored_trees
 from harness.planning.collision.convex_tree import ConvexTree
 from harness.planning.collision.stored_trees import stored_tree
+from harness.robot.mesh_file import hull_of
 from tests.planning.test_edge_checks import at, write_mesh
 
 
@@ -43,6 +44,13 @@ def test_a_body_with_a_round_part_has_balls_above_its_parts():
     tree = stored_tree((*bracket(), Shape(Sphere(0.1), at(0, 0, 0.3))))
     assert tree.nodes[0, 1] == -1
     assert np.count_nonzero(tree.nodes[:, 0] == np.arange(len(tree.nodes)) + 1) == 4
+
+
+def test_corners_in_a_plane_have_no_hull():
+    grid = np.stack(np.meshgrid(np.arange(7.0), np.arange(7.0), [0.0]), axis=-1).reshape(-1, 3)
+    for turn in ((0, 0, 0), (0.3, 0.2, 0.1)):
+        with pytest.raises(RuntimeError, match="in a plane"):
+            hull_of(0.01 * grid @ at(0, 0, 0, turn).rotation.T)
 
 
 @pytest.mark.parametrize("collision", ["hull", "exact"])

@@ -12,7 +12,7 @@ import numpy as np
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.kernel.convex_kinds import CYLINDER, HALF_SPACE, POINTS, POLYTOPE
-from harness.robot.mesh_file import convex_hull, decomposition_of, read_triangles
+from harness.robot.mesh_file import convex_hull, decomposition_of, hull_of, read_triangles
 
 FEW_POINTS = 32
 """Number of points up to which comparing all of them finds the farthest one the fastest."""
@@ -56,6 +56,14 @@ class ConvexTree:
         points = self.points @ rotation.T + translation
         same = self.edges_at, self.edges
         return ConvexTree(spheres, self.nodes, self.convexes, self.sizes, points, *same)
+
+    def root_corners(self) -> FloatArray | None:
+        """Corners of a polytope that contains everything, shape (N, 3); None without one."""
+        convex = int(self.nodes[0, 1])
+        if convex < 0 or self.convexes[convex, 2] not in (POINTS, POLYTOPE):
+            return None
+        first, last, _ = self.convexes[convex].tolist()
+        return None if self.sizes[convex, 0] > 0 else self.points[first:last]
 
 
 def shape_tree(shape: Shape) -> ConvexTree:
@@ -208,12 +216,26 @@ def _neighbours(faces: IntArray, count: int) -> tuple[IntArray, IntArray]:
 
 def _hull(geometry: Mesh) -> ConvexTree:
     """The hull that Coal makes of a mesh's points."""
-    hull = convex_hull(geometry)
+    return _coal_hull(convex_hull(geometry))
+
+
+def _coal_hull(hull: Any) -> ConvexTree:
+    """The node of a hull of Coal's."""
     points = np.array(hull.points(), dtype=float).reshape(-1, 3)
     if len(points) <= FEW_POINTS:
         return _leaf(points)
     polygons = (hull.polygons(row) for row in range(hull.num_polygons))
     return _polytope(points, np.array([(face[0], face[1], face[2]) for face in polygons]))
+
+
+def _hull_of_solid(points: FloatArray) -> ConvexTree:
+    """A node that contains the corners of solids, shape (N, 3)."""
+    if len(points) <= FEW_POINTS:
+        return _leaf(points)
+    try:
+        return _coal_hull(hull_of(points))
+    except RuntimeError:  # flat
+        return _leaf(points)
 
 
 def _hull_of_points(points: FloatArray) -> ConvexTree:
@@ -345,8 +367,9 @@ def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
         halves = _halves(roots, np.arange(len(trees)))
         return joined([joined([trees[row] for row in half]) for half in halves])
     below = concatenate(trees)
-    if np.isin(below.convexes[:, 2], (POINTS, POLYTOPE)).all() and not below.sizes.any():
-        tree = concatenate([_hull_of_points(below.points), below])
+    solid = [corners for tree in trees if (corners := tree.root_corners()) is not None]
+    if len(solid) == len(trees):
+        tree = concatenate([_hull_of_solid(np.concatenate(solid)), below])
         tree.nodes[0, 0] = len(tree.nodes)
         return tree
     top, nodes = np.array([[1 + len(below.nodes), -1]]), below.nodes + np.array([1, 0])

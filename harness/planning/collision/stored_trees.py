@@ -15,7 +15,7 @@ from harness.core.user_cache import cached, store
 from harness.planning.collision.convex_tree import ConvexTree, joined, shape_tree
 from harness.robot.mesh_file import decomposition_of, metres_per_unit
 
-METHOD = 1
+METHOD = 2
 """Version of the trees; those of another version are computed again."""
 
 _ARRAYS = tuple(each.name for each in dataclasses.fields(ConvexTree))
