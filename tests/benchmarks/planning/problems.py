@@ -52,6 +52,7 @@ class Problem:
     Attributes:
         number: The problem's place among those of its arm and family, from 0.
         obstacles: All in the world frame, but for the ground.
+        ground: The height of the ground [m]; None where there is none.
     """
 
     arm: Arm
@@ -63,6 +64,7 @@ class Problem:
     space: GroupSpace
     start: FloatArray
     goal: FloatArray
+    ground: float | None = GROUND_HEIGHT
 
     def checker(self) -> MotionChecker:
         """A checker of motions from the start."""

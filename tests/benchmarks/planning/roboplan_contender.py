@@ -13,7 +13,7 @@ from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.robot.urdf.write import write_urdf
 from tests.benchmarks.planning.arms import packages
 from tests.benchmarks.planning.contenders import PATIENCE, RANGE, SPACING, Outcome
-from tests.benchmarks.planning.problems import GROUND_HEIGHT, Problem
+from tests.benchmarks.planning.problems import Problem
 
 COLOUR = np.full(4, 0.5)
 GROUND = core.Box(10.0, 10.0, 1.0)
@@ -109,10 +109,12 @@ def _load_scene(scene: core.Scene, problem: Problem) -> None:
     allowed = [pair for pair in description.allowed_collisions if solid.issuperset(pair)]
     for number, shape in enumerate(problem.obstacles):
         _add(scene, f"thing{number}", shape.geometry, shape.pose.matrix())
-    ground = np.eye(4)
-    ground[2, 3] = GROUND_HEIGHT - 0.5
-    scene.addBoxGeometry("ground", "universe", GROUND, np.asfortranarray(ground), COLOUR)
-    things = ["ground", *(f"thing{number}" for number in range(len(problem.obstacles)))]
+    things = [f"thing{number}" for number in range(len(problem.obstacles))]
+    if problem.ground is not None:
+        ground = np.eye(4)
+        ground[2, 3] = problem.ground - 0.5
+        scene.addBoxGeometry("ground", "universe", GROUND, np.asfortranarray(ground), COLOUR)
+        things.append("ground")
     scene.setCollisions([*allowed, *combinations(things, 2)], False)
 
 

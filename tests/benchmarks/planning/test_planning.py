@@ -3,13 +3,13 @@
 import os
 import secrets
 import statistics
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 import pytest
 
+from tests.benchmarks.planning import motion_bench_maker
 from tests.benchmarks.planning.arms import ARMS
 from tests.benchmarks.planning.contenders import (
     PATIENCE,
@@ -137,9 +137,27 @@ def test_the_limits_of_this_run_are_printed(print_row):
         print_row("this run", line)
 
 
-@pytest.mark.parametrize("route", [DEFAULT, EXACT], ids=lambda route: route.name)
+ROUTES = pytest.mark.parametrize("route", [DEFAULT, EXACT], ids=lambda route: route.name)
+
+
+@ROUTES
 def test_planning_on_unseen_problems(route, print_row):
-    problems = make_problems(route, EACH[route], SEED)
+    _race(route, make_problems(route, EACH[route], SEED), route.name, print_row)
+
+
+@ROUTES
+def test_planning_on_motion_bench_maker(route, print_row):
+    """Problems of others: MOTION_BENCH_MAKER names a folder with the data set."""
+    if not motion_bench_maker.FOLDER:
+        print_row("this run", "limited: MOTION_BENCH_MAKER names no folder with that data set")
+        return
+    problems = [*motion_bench_maker.motion_bench_maker(route, EACH[route], SEED)]
+    _race(route, problems, f"MotionBenchMaker, {route.name}", print_row)
+
+
+def _race(
+    route: Route, problems: Sequence[Problem], title: str, print_row: Callable[..., None]
+) -> None:
     for contender in contenders().values():  # loads everything before it is timed
         _ = contender(problems[0]), contender(problems[-1])
     found = {
@@ -151,12 +169,12 @@ def test_planning_on_unseen_problems(route, print_row):
         for name, contender in contenders().items()
     }
     own, free = found[OURS], {name: len(found[name].free()) for name in _judged(route, found)}
-    heading = f"planning with {route.name}"
+    heading = f"planning with {title}"
     print_row(heading, *HEAD)
     for name, results in found.items():
         print_row(heading, name, *results.cells(own, str(free.get(name, "-"))))
-    _print_families(print_row, route, own)
-    for goal in _goals(route, found, free[OURS]):
+    _print_families(print_row, title, own)
+    for goal in _goals(route, title, found, free[OURS]):
         _print_goal(print_row, goal)
     assert len(own.solved()) == free[OURS]
 
@@ -181,19 +199,19 @@ def _judged(route: Route, found: Iterable[str]) -> list[str]:
     return [name for name in found if route is EXACT or ROBOPLAN not in name]
 
 
-def _print_families(print_row: Callable[..., None], route: Route, own: Results) -> None:
-    heading = f"armharness with {route.name}, ms of processor time"
+def _print_families(print_row: Callable[..., None], title: str, own: Results) -> None:
+    heading = f"armharness with {title}, ms of processor time"
     print_row(heading, "arm", "family", "plan", "95 %", "total", "95 %", "largest", "solved")
-    for arm, family in product(ARMS, FAMILIES):
-        some = own.of(p for p in own.outcomes if (p.arm, p.family) == (arm, family))
+    for arm, family in dict.fromkeys((p.arm.name, p.family) for p in own.outcomes):
+        some = own.of(p for p in own.outcomes if (p.arm.name, p.family) == (arm, family))
         largest = max(each.total for each in some.outcomes.values())
         times = [f(name) for name in ("plan", "total") for f in (some.median, some.most)]
         solved = f"{len(some.solved())} of {len(some.outcomes)}"
         cells = [f"{1000 * seconds:.1f}" for seconds in (*times, largest)]
-        print_row(heading, arm.name, family, *cells, solved)
+        print_row(heading, arm, family, *cells, solved)
 
 
-def _goals(route: Route, found: dict[str, Results], free: int) -> list[Goal]:
+def _goals(route: Route, title: str, found: dict[str, Results], free: int) -> list[Goal]:
     own = found[OURS]
     count = len(own.outcomes)
     goals = [
@@ -207,10 +225,10 @@ def _goals(route: Route, found: dict[str, Results], free: int) -> list[Goal]:
             Goal("total, 95 %", 1000 * own.most("total"), 150, True, "ms"),
         ]
     goals.append(Goal("total of naive OMPL", found[NAIVE].ratio_to(own), naive_bound, False, "x"))
-    if route is DEFAULT and ROBOPLAN in found:
+    if ROBOPLAN in found:
         for name in (ROBOPLAN, f"{ROBOPLAN}, verified"):
             goals.append(Goal(f"total of {name}", found[name].ratio_to(own), 5, False, "x"))
-    return [Goal(f"{route.name}: {g.name}", g.figure, g.bound, g.is_upper, g.unit) for g in goals]
+    return [Goal(f"{title}: {g.name}", g.figure, g.bound, g.is_upper, g.unit) for g in goals]
 
 
 def _print_goal(print_row: Callable[..., None], goal: Goal) -> None:
