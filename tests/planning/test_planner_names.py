@@ -1,19 +1,15 @@
 """Planner names as OMPL, MoveIt and people write them; all offered ones are deterministic."""
 
-import gc
 import json
 import os
-import resource
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import ompl.base
 import ompl.geometric
 import pytest
 
-from harness.planning.collision.compiled import use_compiled
 from harness.planning.search.planner_names import planner_names, resolve_planner_id
 from tests.planning.planner_trial import Trial, signature
 
@@ -73,15 +69,7 @@ def test_every_planner_repeats_itself_in_a_fresh_process(trial):
         "from tests.planning.planner_trial import Trial, signature; trial = Trial();"
         "print(json.dumps({n: signature(trial.search(n, seed=8)) for n in planner_names()}))"
     )
-    said = subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONHASHSEED": "123"},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
-    ).stdout
-    assert json.loads(said) == here
+    assert json.loads(_fresh_process(code)) == here
 
 
 @pytest.mark.parametrize("budget", [1, 2, 74, 150])
@@ -101,28 +89,21 @@ def test_no_planner_looks_for_a_way_to_where_the_arm_stands(trial, name):
     assert np.array_equal(found.waypoints, [trial.start, trial.start])
 
 
-@pytest.fixture
-def compiled_check_from_the_start():
-    """It is loaded when it pays (100 MB once): here before anything is measured."""
-    use_compiled("always")
-    yield
-    use_compiled("when it pays")
-
-
-@pytest.mark.usefixtures("compiled_check_from_the_start")
-@pytest.mark.parametrize("name", planner_names())
-def test_plans_are_freed(trial, name):
+def test_plans_are_freed():
     """A plan that OMPL keeps for good keeps its checker too: 5 MB each."""
-    after = []
-    for _ in range(3):  # what is kept grows each time, while the heap takes memory now and then
-        for seed in range(25):
-            trial.search(name, seed, 2000)
-        gc.collect()
-        after.append(_resident())
-    assert np.diff(after).min() < 1.2  # [MB]
+    code = (
+        "import json; from tests.planning.planner_memory import memory_kept_by_plans;"
+        "print(json.dumps(memory_kept_by_plans()))"
+    )
+    kept = json.loads(_fresh_process(code))
+    assert kept.keys() == {*planner_names()}
+    assert {name: grown for name, grown in kept.items() if grown > 1.2} == {}  # [MB]
 
 
-def _resident() -> float:
-    """Memory of this process [MB]."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * resource.getpagesize() / 2**20
+def _fresh_process(code: str) -> str:
+    """What another process prints, of another hash seed."""
+    environment = {**os.environ, "PYTHONHASHSEED": "123"}
+    command = [sys.executable, "-c", code]
+    return subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=300, check=True
+    ).stdout
