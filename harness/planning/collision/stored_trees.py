@@ -62,4 +62,4 @@ def _content(shape: Shape) -> bytes:
 
 @cache
 def _versions() -> tuple[str, ...]:
-    return np.__version__, version("coal"), version("trimesh")
+    return np.__version__, version("coal"), version("scipy"), version("trimesh")
