@@ -283,12 +283,13 @@ def _surface(vertices: FloatArray, faces: IntArray) -> ConvexTree:
         )
         used += len(points[-1])
     edges_at, edges = [np.zeros(used, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    edge_count = 0
     for place, hull in hulls:
         spheres[place], convexes[place] = hull.spheres[0], hull.convexes[0] + [used, used, 0]
-        edges_at.append(hull.edges_at[:-1] + sum(map(len, edges)))
+        edges_at.append(hull.edges_at[:-1] + edge_count)
         edges.append(hull.edges + used)
         points.append(hull.points)
-        used += len(hull.points)
+        used, edge_count = used + len(hull.points), edge_count + len(hull.edges)
     neighbours = np.concatenate(edges)
     return ConvexTree(
         spheres,
