@@ -1,25 +1,19 @@
-"""Shapes as trees of convex sets, with which the compiled check measures exact distances."""
+"""Trees of convex sets, with which the compiled check measures exact distances."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
 from harness.core.types import FloatArray, IntArray
-from harness.planning.collision.kernel.convex_kinds import CYLINDER, HALF_SPACE, POINTS, POLYTOPE
-from harness.robot.mesh_file import convex_hull, decomposition_of, hull_of, read_triangles
+from harness.planning.collision.kernel.convex_kinds import POINTS, POLYTOPE
+from harness.robot.mesh_file import hull_of
 
 FEW_POINTS = 32
 """Number of points up to which comparing all of them finds the farthest one the fastest."""
-
-
-_CUBE = np.array(np.meshgrid(*([-0.5, 0.5],) * 3)).reshape(3, -1).T
-"""The corners of the box with sides of 1 about the origin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,49 +60,6 @@ class ConvexTree:
         return None if self.sizes[convex, 0] > 0 else self.points[first:last]
 
 
-def shape_tree(shape: Shape) -> ConvexTree:
-    """The tree of a shape in the frame that it is placed in.
-
-    Raises:
-        RobotError: A mesh file cannot be read.
-    """
-    tree = geometry_tree(shape.geometry)
-    return tree.placed(shape.pose.rotation, shape.pose.translation)
-
-
-def shape_box(shape: Shape) -> FloatArray:
-    """The lower and the upper corner of the box about a shape, shape (6,), in its outer frame.
-
-    Raises:
-        RobotError: A mesh file cannot be read.
-    """
-    rotation, middle = shape.pose.rotation, shape.pose.translation
-    match shape.geometry:
-        case Box(size=size):
-            reach = np.abs(rotation) @ size / 2
-        case Sphere(radius=radius):
-            reach = np.full(3, radius)
-        case Capsule(radius=radius, length=length):
-            reach = np.abs(rotation[:, 2]) * length / 2 + radius
-        case Cylinder(radius=radius, length=length):
-            across = np.sqrt(np.maximum(1.0 - rotation[:, 2] ** 2, 0.0))
-            reach = np.abs(rotation[:, 2]) * length / 2 + across * radius
-        case Plane():
-            reach = np.full(3, np.inf)
-        case Mesh():
-            points = _points(shape.geometry) @ rotation.T + middle
-            return np.concatenate([points.min(axis=0), points.max(axis=0)])
-    return np.concatenate([middle - reach, middle + reach])
-
-
-def _points(geometry: Mesh) -> FloatArray:
-    """Points of a mesh whose convex hull contains all of it, shape (N, 3) [m]."""
-    if geometry.collision == "exact":
-        return read_triangles(geometry).vertices
-    found, part = decomposition_of(geometry), geometry.part
-    return found.hull if part is None else found.parts[part]
-
-
 def concatenate(trees: Sequence[ConvexTree]) -> ConvexTree:
     """Several trees one after another, their indices shifted."""
     trees = [_NOTHING, *trees]
@@ -149,51 +100,15 @@ _NOTHING = ConvexTree(
 )
 
 
-@lru_cache(maxsize=1024)
-def geometry_tree(geometry: Geometry) -> ConvexTree:
-    """The tree of a geometry in its own frame.
-
-    Raises:
-        RobotError: A mesh file cannot be read.
-    """
-    match geometry:
-        case Box(size=size):
-            reach = 0.5 * float(np.linalg.norm(size))
-            return _node([0.0, 0.0, 0.0, reach], POINTS, (0.0, 0.0, 0.0), _CUBE * size)
-        case Sphere(radius=radius):
-            return _leaf(np.zeros((1, 3)), rounding=radius)
-        case Capsule(radius=radius, length=length):
-            return _leaf(_along_z(-0.5 * length, 0.5 * length), rounding=radius)
-        case Cylinder(radius=radius, length=length):
-            sizes, reach = (0.0, radius, 0.5 * length), float(np.hypot(radius, 0.5 * length))
-            return _formula(CYLINDER, sizes, reach)
-        case Plane():
-            return _formula(HALF_SPACE, (0.0, 0.0, 0.0), np.inf)
-        case Mesh(collision="exact"):
-            mesh = read_triangles(geometry)
-            return _surface(mesh.vertices, mesh.faces)
-        case Mesh():
-            return _hull(geometry)
-
-
-def _along_z(*heights: float) -> FloatArray:
-    return np.column_stack([np.zeros((len(heights), 2)), heights])
-
-
-def _formula(kind: int, sizes: Sequence[float], reach: float) -> ConvexTree:
-    """A solid about the origin whose farthest points follow from a formula."""
-    return _node([0.0, 0.0, 0.0, reach], kind, sizes, _along_z(0.0, 1.0))
-
-
-def _leaf(points: FloatArray, faces: IntArray | None = None, rounding: float = 0.0) -> ConvexTree:
+def leaf(points: FloatArray, faces: IntArray | None = None, rounding: float = 0.0) -> ConvexTree:
     """A single node: a few points, or a polytope with its triangles, shape (F, 3)."""
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     radius = float(np.linalg.norm(points - middle, axis=1).max()) + rounding
     kind, edges = (POINTS, None) if faces is None else (POLYTOPE, _neighbours(faces, len(points)))
-    return _node([*middle, radius], kind, (rounding, 0.0, 0.0), points, edges)
+    return single_node([*middle, radius], kind, (rounding, 0.0, 0.0), points, edges)
 
 
-def _node(
+def single_node(
     sphere: Sequence[float],
     kind: int,
     sizes: Sequence[float],
@@ -214,145 +129,41 @@ def _neighbours(faces: IntArray, count: int) -> tuple[IntArray, IntArray]:
     return np.searchsorted(pairs[:, 0], np.arange(count + 1)), np.ascontiguousarray(pairs[:, 1])
 
 
-def _hull(geometry: Mesh) -> ConvexTree:
-    """The hull that Coal makes of a mesh's points."""
-    return _coal_hull(convex_hull(geometry))
-
-
-def _coal_hull(hull: Any) -> ConvexTree:
+def coal_hull(hull: Any) -> ConvexTree:
     """The node of a hull of Coal's."""
     points = np.array(hull.points(), dtype=float).reshape(-1, 3)
     if len(points) <= FEW_POINTS:
-        return _leaf(points)
+        return leaf(points)
     polygons = (hull.polygons(row) for row in range(hull.num_polygons))
     return _polytope(points, np.array([(face[0], face[1], face[2]) for face in polygons]))
 
 
-def _hull_of_solid(points: FloatArray) -> ConvexTree:
+def hull_of_solid(points: FloatArray) -> ConvexTree:
     """A node that contains the corners of solids, shape (N, 3)."""
     if len(points) <= FEW_POINTS:
-        return _leaf(points)
+        return leaf(points)
     try:
-        return _coal_hull(hull_of(points))
+        return coal_hull(hull_of(points))
     except RuntimeError:  # flat
-        return _leaf(points)
+        return leaf(points)
 
 
-def _hull_of_points(points: FloatArray) -> ConvexTree:
+def hull_of_points(points: FloatArray) -> ConvexTree:
     """A node that contains points, shape (N, 3)."""
     if len(points) <= FEW_POINTS:
-        return _leaf(points)
+        return leaf(points)
     from scipy.spatial import ConvexHull, QhullError  # Coal's Qhull can crash on flat points
 
     try:
         return _polytope(points, ConvexHull(points).simplices.astype(np.int64))
     except QhullError:  # flat
-        return _leaf(points)
+        return leaf(points)
 
 
 def _polytope(points: FloatArray, faces: IntArray) -> ConvexTree:
     """A node with the corners of triangles that enclose it, shape (F, 3)."""
     used, corners = np.unique(faces, return_inverse=True)
-    return _leaf(points[used], corners.reshape(-1, 3))
-
-
-def _surface(vertices: FloatArray, faces: IntArray) -> ConvexTree:
-    """The tree of a surface: hulls of ever fewer triangles, halved down to single ones."""
-    order, levels = _halved(vertices[faces].mean(axis=1))
-    count = 2 * len(faces) - 1
-    spheres, ends = np.empty((count, 4)), np.empty(count, dtype=np.int64)
-    convexes = np.empty((count, 3), dtype=np.int64)
-    points: list[FloatArray] = []
-    hulls: list[tuple[int, ConvexTree]] = []
-    used = 0
-    for places, first, last in levels:
-        ends[places] = places + 2 * (last - first) - 1
-        of_node, corner = _corners_of_ranges(faces[order], first, last)
-        starts = np.searchsorted(of_node, np.arange(len(places)))
-        sizes = np.diff(np.append(starts, len(of_node)))
-        corners = vertices[corner]
-        is_few = sizes <= FEW_POINTS
-        spheres[places] = _balls(corners, starts, sizes)
-        for row in np.flatnonzero(~is_few).tolist():
-            some = corners[starts[row] : starts[row] + sizes[row]]
-            hulls.append((int(places[row]), _hull_of_points(some)))
-        points.append(corners[np.repeat(is_few, sizes)])
-        begins = used + np.cumsum(sizes * is_few) - sizes * is_few
-        convexes[places] = np.column_stack(
-            [begins, begins + sizes, np.full(len(places), POINTS, dtype=np.int64)]
-        )
-        used += len(points[-1])
-    edges_at, edges = [np.zeros(used, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    edge_count = 0
-    for place, hull in hulls:
-        spheres[place], convexes[place] = hull.spheres[0], hull.convexes[0] + [used, used, 0]
-        edges_at.append(hull.edges_at[:-1] + edge_count)
-        edges.append(hull.edges + used)
-        points.append(hull.points)
-        used, edge_count = used + len(hull.points), edge_count + len(hull.edges)
-    neighbours = np.concatenate(edges)
-    return ConvexTree(
-        spheres,
-        np.column_stack([ends, np.arange(count)]),
-        convexes,
-        np.zeros((count, 3)),
-        np.concatenate(points),
-        np.append(np.concatenate(edges_at), len(neighbours)),
-        neighbours,
-    )
-
-
-def _halved(places: FloatArray) -> tuple[IntArray, list[tuple[IntArray, IntArray, IntArray]]]:
-    """Halve members along the axis on which their places differ most, down to single ones.
-
-    Returns:
-        The members in an order in which those of each node are adjacent; and for each level of the
-        tree the preorder indices of its nodes, and their first members and those after the last.
-    """
-    order = np.arange(len(places))
-    levels: list[tuple[IntArray, IntArray, IntArray]] = []
-    at, first, last = np.array([0]), np.array([0]), np.array([len(places)])
-    while len(at):
-        levels.append((at, first, last))
-        many = last - first > 1
-        at, first, last = at[many], first[many], last[many]
-        if not len(at):
-            break
-        sizes = last - first
-        rows, node = _ranges(first, sizes)
-        members = places[order[rows]]
-        starts = np.cumsum(sizes) - sizes
-        extents = np.maximum.reduceat(members, starts) - np.minimum.reduceat(members, starts)
-        along = members[np.arange(len(rows)), extents.argmax(axis=1)[node]]
-        order[rows] = order[rows[np.lexsort((along, node))]]
-        middle = first + sizes // 2
-        at = np.column_stack([at + 1, at + 2 * (middle - first)]).ravel()
-        first, last = (np.column_stack(ends).ravel() for ends in ([first, middle], [middle, last]))
-    return order, levels
-
-
-def _ranges(first: IntArray, sizes: IntArray) -> tuple[IntArray, IntArray]:
-    """The numbers in several ranges, and the range of each."""
-    starts = np.cumsum(sizes) - sizes
-    of_range = np.repeat(np.arange(len(sizes)), sizes)
-    return np.arange(len(of_range)) + (first - starts)[of_range], of_range
-
-
-def _corners_of_ranges(
-    faces: IntArray, first: IntArray, last: IntArray
-) -> tuple[IntArray, IntArray]:
-    """The corners of the triangles in each of several ranges, once each, as range and corner."""
-    rows, of_range = _ranges(first, last - first)
-    corners = faces[rows]
-    count = int(corners.max()) + 1
-    return np.divmod(np.unique((of_range[:, None] * count + corners).ravel()), count)
-
-
-def _balls(points: FloatArray, starts: IntArray, sizes: IntArray) -> FloatArray:
-    """Centre and radius of a ball around each of several runs of points, shape (n, 4)."""
-    middles = 0.5 * (np.minimum.reduceat(points, starts) + np.maximum.reduceat(points, starts))
-    away = np.linalg.norm(points - np.repeat(middles, sizes, axis=0), axis=1)
-    return np.column_stack([middles, np.maximum.reduceat(away, starts)])
+    return leaf(points[used], corners.reshape(-1, 3))
 
 
 def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
@@ -370,7 +181,7 @@ def joined(trees: Sequence[ConvexTree]) -> ConvexTree:
     below = concatenate(trees)
     solid = [corners for tree in trees if (corners := tree.root_corners()) is not None]
     if len(solid) == len(trees):
-        tree = concatenate([_hull_of_solid(np.concatenate(solid)), below])
+        tree = concatenate([hull_of_solid(np.concatenate(solid)), below])
         tree.nodes[0, 0] = len(tree.nodes)
         return tree
     top, nodes = np.array([[1 + len(below.nodes), -1]]), below.nodes + np.array([1, 0])

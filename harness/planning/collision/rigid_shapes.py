@@ -12,7 +12,8 @@ import numpy as np
 from harness.core.geometry import Mesh, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.collision.convex_tree import ConvexTree, shape_box, shape_tree
+from harness.planning.collision.convex_tree import ConvexTree
+from harness.planning.collision.shape_tree import shape_box, shape_tree
 from harness.planning.collision.stored_trees import stored_tree
 from harness.planning.model.robot_model import RobotModel
 from harness.robot.description import RobotDescription

@@ -12,7 +12,8 @@ import numpy as np
 
 from harness.core.geometry import Mesh, Shape
 from harness.core.user_cache import cached, store
-from harness.planning.collision.convex_tree import ConvexTree, joined, shape_tree
+from harness.planning.collision.convex_tree import ConvexTree, joined
+from harness.planning.collision.shape_tree import shape_tree
 from harness.robot.mesh_file import decomposition_of, metres_per_unit
 
 METHOD = 2
