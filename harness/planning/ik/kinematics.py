@@ -238,29 +238,21 @@ def into_limits(
     space: GroupSpace, positions: FloatArray, reference: FloatArray
 ) -> FloatArray | LimitedSolution:
     """Shift a solution by whole turns into the limits, nearest to a reference."""
-    turned = np.array(positions, dtype=float)
-    worst: tuple[float, int, float] | None = None  # excess, joint, limit
-    turn = 2 * np.pi
-    for index in range(space.dof):
-        lower, upper = space.lower[index] - _LIMIT_SLACK, space.upper[index] + _LIMIT_SLACK
-        value = turned[index]
-        if space.wraps[index]:
-            turns = np.round((reference[index] - value) / turn)
-            fewest, most = np.ceil((lower - value) / turn), np.floor((upper - value) / turn)
-            if fewest <= most:
-                value = value + turn * np.clip(turns, fewest, most)
-            else:
-                middle = 0.5 * (lower + upper)
-                value = value + turn * np.round((middle - value) / turn)
-        excess = max(lower - value, value - upper)
-        if excess > 0 and (worst is None or excess > worst[0]):
-            limit = space.lower[index] if value < lower else space.upper[index]
-            worst = (float(excess), index, float(limit))
-        turned[index] = value
-    if worst is not None:
-        _, index, limit = worst
-        return LimitedSolution(turned, space.joint_names[index], float(turned[index]), limit)
-    return np.clip(turned, space.lower, space.upper)
+    turn, lower, upper = 2 * np.pi, space.lower - _LIMIT_SLACK, space.upper + _LIMIT_SLACK
+    fewest, most = np.ceil((lower - positions) / turn), np.floor((upper - positions) / turn)
+    turns = np.clip(np.round((reference - positions) / turn), fewest, most)
+    apart = fewest > most  # no turn brings the joint inside
+    middle = 0.5 * (lower[apart] + upper[apart])
+    turns[apart] = np.round((middle - positions[apart]) / turn)
+    turned: FloatArray = positions + turn * turns * space.wraps
+    excess = np.maximum(lower - turned, turned - upper)
+    worst = int(excess.argmax())
+    if excess[worst] <= 0:
+        return np.clip(turned, space.lower, space.upper)
+    is_below = turned[worst] < lower[worst]
+    limit = space.lower[worst] if is_below else space.upper[worst]
+    name = space.joint_names[worst]
+    return LimitedSolution(turned, name, float(turned[worst]), float(limit))
 
 
 def meets_tolerance(goal: LinkGoal, pose: SE3) -> bool:

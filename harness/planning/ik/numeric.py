@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import sqrt
 
 import eigenpy
 import numpy as np
@@ -23,6 +24,7 @@ RESTARTS, MOST_RESTARTS = 18, 64
 """Searches from the pose table after the one from the seed, and the limit while none succeeds.
 Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."""
 
+_EXACT = 1e-13  # [m, rad] error at which Newton steps stop
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
 _MOST_ITERATIONS = 100
 _WINDOW = 6  # iterations over which progress is measured
@@ -130,16 +132,18 @@ class LinkTask:
         """Refine a near solution by Newton steps; returns positions and the remaining error."""
         positions = np.array(positions, dtype=float)
         error, jacobian = self.evaluate(positions)
+        squared = float(error.dot(error))
         for _ in range(iterations):
-            if np.linalg.norm(error) < 1e-13:
+            if squared < _EXACT**2:
                 break
             step = np.linalg.lstsq(jacobian, error, rcond=1e-8)[0]
             candidate = positions + step
             new_error, new_jacobian = self.evaluate(candidate)
-            if np.linalg.norm(new_error) >= np.linalg.norm(error):
+            new_squared = float(new_error.dot(new_error))
+            if new_squared >= squared:
                 break
-            positions, error, jacobian = candidate, new_error, new_jacobian
-        return positions, float(np.linalg.norm(error))
+            positions, error, jacobian, squared = candidate, new_error, new_jacobian, new_squared
+        return positions, sqrt(squared)
 
     def least_squares(
         self, seed: FloatArray, *, remaining: float = _MINIMUM
@@ -181,7 +185,7 @@ class LinkTask:
                 factor *= 10.0
                 if factor > 1e8:
                     break
-        return positions, float(np.sqrt(cost))
+        return positions, sqrt(cost)
 
 
 def _damped_step(

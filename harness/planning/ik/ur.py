@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import acos, atan2, cos, hypot, inf, pi, remainder, sin, sqrt
 from typing import NamedTuple
 
@@ -62,6 +63,7 @@ class UrAnswer:
     excess: float
 
 
+@lru_cache(maxsize=64)
 def is_ur_like(joints: tuple[Joint, ...]) -> bool:
     """Whether six joints are arranged like a UR's, up to the small angles of a calibration."""
     if len(joints) != 6 or any(joint.kind == "prismatic" for joint in joints):
