@@ -27,7 +27,8 @@ Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."
 _EXACT = 1e-13  # [m, rad] error at which Newton steps stop
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
 _MOST_ITERATIONS = 100
-_WINDOW = 6  # iterations over which progress is measured
+_HELD = 1e12  # damping with which a joint does not move
+_WINDOW = 4  # iterations over which progress is measured
 _CONVERGES, _CONVERGES_FAST = 0.8, 0.5
 """Shares of the squared error that remain after a window, above which a restart is cheaper: while
 no solution is known, and once there is one."""
@@ -199,16 +200,16 @@ def _damped_step(
     """The positions after a step of damped least squares; joints that exceed a limit stop there."""
     transposed = jacobian.T
     gradient, normal = transposed.dot(error), transposed.dot(jacobian)
-    normal.ravel()[:: len(gradient) + 1] += damping
+    diagonal = normal.ravel()[:: len(gradient) + 1]
+    diagonal += damping
     target = positions + _solved(normal, gradient)
-    inside = np.minimum(np.maximum(target, lower), upper)
-    beyond = inside - target
-    if not 0 < np.count_nonzero(beyond) < len(beyond):
+    inside: FloatArray = np.minimum(np.maximum(target, lower), upper)
+    beyond = inside != target
+    if not np.count_nonzero(beyond):
         return inside
-    free = beyond == 0.0
-    step = _solved(normal[free][:, free], gradient[free])
-    inside[free] = np.minimum(np.maximum(positions[free] + step, lower[free]), upper[free])
-    return inside
+    diagonal[beyond] = _HELD
+    target = positions + _solved(normal, gradient)
+    return np.where(beyond, inside, np.minimum(np.maximum(target, lower), upper))
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
