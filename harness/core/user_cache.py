@@ -5,7 +5,11 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
+from contextlib import suppress
 from pathlib import Path
+
+LARGEST = 1_000_000_000
+"""Size that the folder is kept within [bytes]: the files that were not read for longest go."""
 
 _CHECKSUM = hashlib.sha256().digest_size
 
@@ -19,10 +23,13 @@ def cache_folder() -> Path:
 
 def cached(name: str) -> bytes | None:
     """The content of a stored file; None where there is none, or it is damaged."""
+    path = cache_folder() / name
     try:
-        stored = (cache_folder() / name).read_bytes()
+        stored = path.read_bytes()
     except OSError:
         return None
+    with suppress(OSError):  # of another user
+        os.utime(path)
     checksum, content = stored[:_CHECKSUM], stored[_CHECKSUM:]
     return content if hashlib.sha256(content).digest() == checksum else None
 
@@ -47,6 +54,18 @@ def store(name: str, content: bytes) -> None:
         with os.fdopen(handle, "wb") as file:
             file.write(hashlib.sha256(content).digest() + content)
         Path(temporary).replace(path)
+        _remove_oldest()
     except OSError:
         if temporary:
             Path(temporary).unlink(missing_ok=True)
+
+
+def _remove_oldest() -> None:
+    """Keep the folder within `LARGEST`; processes that read a removed file read all of it."""
+    files = [(path.stat(), path) for path in cache_folder().rglob("*") if path.is_file()]
+    excess = sum(status.st_size for status, _ in files) - LARGEST
+    for status, path in sorted(files, key=lambda file: file[0].st_mtime_ns):
+        if excess <= 0:
+            break
+        path.unlink(missing_ok=True)
+        excess -= status.st_size
