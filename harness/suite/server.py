@@ -84,6 +84,8 @@ def receive(control: socket.socket) -> tuple[tuple[Any, ...], list[int]]:
         EOFError: The other side is gone.
     """
     first, fds, _flags, _address = socket.recv_fds(control, 1, FDS_PER_JOB)
+    for fd in fds:  # whoever reads them would wait for what the child leaves running
+        os.set_inheritable(fd, False)
     head = first + _exactly(control, FRAME_BYTES - len(first)) if first else b""
     if not head:
         raise EOFError

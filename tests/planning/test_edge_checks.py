@@ -10,8 +10,8 @@ import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 from harness.core.user_cache import cache_folder, cached
-from harness.planning.collision import compiled
 from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.compilation import code_file
 from harness.planning.collision.compiled import use_compiled
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
@@ -207,10 +207,10 @@ print("numba" in sys.modules)
 
 def test_damaged_machine_code_is_not_loaded(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    file = cache_folder() / compiled.code_file()
+    file = cache_folder() / code_file()
     file.parent.mkdir(parents=True)
     file.write_bytes(b"x" * 100)
-    assert cached(compiled.code_file()) is None
+    assert cached(code_file()) is None
 
 
 @pytest.mark.parametrize("kind", ["arm", "gripper"])

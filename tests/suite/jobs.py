@@ -55,6 +55,14 @@ def leaves_a_process_running(job, _notify):
     return CaseResult(str(job.file), "", "t", "passed")
 
 
+def leaves_a_session_running(job, _notify):
+    """Unlike a process of `subprocess`, it inherits every descriptor that may be inherited."""
+    command = [sys.executable, "-c", "import time; time.sleep(600)"]
+    child = os.posix_spawn(sys.executable, command, os.environ, setsid=True)
+    Path(job.file).write_text(str(child))
+    return CaseResult(str(job.file), "", "t", "passed")
+
+
 def reports_its_pid_and_sleeps(job, _notify):
     Path(job.file).write_text(str(os.getpid()))
     time.sleep(600)

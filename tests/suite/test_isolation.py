@@ -138,6 +138,14 @@ def test_what_a_case_leaves_running_ends_with_it(server, tmp_path):
     assert wait_until_gone(int(file.read_text()))
 
 
+def test_nobody_waits_for_what_a_case_leaves_running_in_a_session_of_its_own(server, tmp_path):
+    file = tmp_path / "pid"
+    assert outcome(server, jobs.leaves_a_session_running, file=file).outcome == "passed"
+    child = int(file.read_text())
+    assert is_alive(child)
+    os.kill(child, signal.SIGKILL)
+
+
 def test_what_a_case_prints_stays_out_of_this_process(server, capfd):
     result = outcome(server, jobs.prints)
     assert result.outcome == "passed"
