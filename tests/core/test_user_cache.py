@@ -38,7 +38,7 @@ def test_nothing_is_removed_within_the_limit(monkeypatch):
     assert all(cached(f"meshes/{number}") == bytes(1000) for number in range(5))
 
 
-def test_what_a_crashed_process_left_behind_is_removed_too(monkeypatch):
+def test_what_a_crashed_process_left_is_removed_too(monkeypatch):
     stored_before("meshes/tmp_of_a_crash", bytes(5000), 100)
     monkeypatch.setattr(user_cache, "LARGEST", 5000)
     store("meshes/new", bytes(1000))

@@ -1,4 +1,4 @@
-"""The check of motions is compiled once, by another process where nobody has to wait for it."""
+"""The check of motions is compiled once, by another process where no command has to wait for it."""
 
 import fcntl
 import os

@@ -138,7 +138,7 @@ def test_what_a_case_leaves_running_ends_with_it(server, tmp_path):
     assert wait_until_gone(int(file.read_text()))
 
 
-def test_nobody_waits_for_what_a_case_leaves_running_in_a_session_of_its_own(server, tmp_path):
+def test_a_case_does_not_wait_for_what_it_leaves_running_in_another_session(server, tmp_path):
     file = tmp_path / "pid"
     assert outcome(server, jobs.leaves_a_session_running, file=file).outcome == "passed"
     child = int(file.read_text())

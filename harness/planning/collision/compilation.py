@@ -95,8 +95,8 @@ def compile_in_background() -> None:
     """Start a process that compiles and stores the check, unless another one does already.
 
     It begins a little later, when most commands have ended, has the lowest priority, and outlives
-    this process. Nobody waits for it, not even who reads the output of this process, and nothing
-    but computing time depends on whether it succeeds.
+    this process. It is not waited for, not even by the reader of this process's output, and
+    nothing but computing time depends on whether it succeeds.
     """
     if not is_writable():
         return
