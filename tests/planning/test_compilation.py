@@ -108,6 +108,15 @@ def test_few_states_start_no_compiler(monkeypatch):
     assert started == [True]
 
 
+def test_without_a_lock_nothing_is_compiled():
+    lock_file().mkdir()
+    with process(COMPILING_PAYS_NOW, "waits") as one:
+        with pytest.raises(subprocess.TimeoutExpired):
+            one.wait(2.0)
+        one.kill()
+    assert cached(code_file()) is None
+
+
 @pytest.mark.parametrize("states", [COMPILING_PAYS_LATER, COMPILING_PAYS_NOW])
 def test_without_a_cache_nothing_is_compiled(states, tmp_path, monkeypatch):
     (tmp_path / "file").touch()
