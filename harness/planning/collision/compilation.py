@@ -103,7 +103,7 @@ def compile_in_background() -> None:
     command = [sys.executable, "-P", "-m", __name__, f"{DELAY:g}"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     streams = [(os.POSIX_SPAWN_OPEN, stream, os.devnull, os.O_RDWR, 0) for stream in range(3)]
-    with suppress(OSError):
+    with suppress(OSError, NotImplementedError):
         os.posix_spawn(command[0], command, environment, file_actions=streams, setsid=True)
 
 
