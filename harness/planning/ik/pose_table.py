@@ -34,6 +34,7 @@ class PoseTable:
         points = poses.translations[link]
         self._turn = float(points.std())  # [m] what a turn counts
         self._poses = np.hstack([points, self._turn * poses.rotations[link].reshape(SIZE, 9)])
+        self._squares = np.cumsum(self._poses**2, axis=1)  # of a point, and of a whole pose
 
     def nearest(self, goal: PoseGoal | PositionGoal, count: int) -> FloatArray:
         """The group positions whose poses come nearest to a goal, shape (count, dof)."""
@@ -42,8 +43,11 @@ class PoseTable:
             target = np.concatenate([goal.pose.translation, turn])
         else:
             target = goal.position
-        distances = ((self._poses[:, : len(target)] - target) ** 2).sum(axis=1)
-        return self._positions[np.argsort(distances, kind="stable")[:count]]
+        size = len(target)
+        # the squared distances less the square of the target, which is the same for all
+        away = self._squares[:, size - 1] - 2.0 * (self._poses[:, :size] @ target)
+        near = np.argpartition(away, min(count, SIZE - 1))[:count]
+        return self._positions[near[np.argsort(away[near], kind="stable")]]
 
 
 _tables: WeakKeyDictionary[RobotModel, dict[tuple[str, ...], PoseTable]] = WeakKeyDictionary()
