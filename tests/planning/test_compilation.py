@@ -111,6 +111,8 @@ def test_few_states_start_no_compiler(monkeypatch):
 def test_without_a_lock_nothing_is_compiled():
     lock_file().mkdir()
     with process(COMPILING_PAYS_NOW, "waits") as one:
+        assert one.stdout is not None
+        assert one.stdout.readline() == "begins\n"
         with pytest.raises(subprocess.TimeoutExpired):
             one.wait(2.0)
         one.kill()

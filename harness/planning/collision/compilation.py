@@ -86,7 +86,7 @@ def _compile() -> bytes:
     from harness.planning.collision.kernel.compiling import assembly
 
     name, text = assembly(certify, ARGUMENTS)
-    code = name.encode() + b"\0" + machine().emit_object(llvm.parse_assembly(text))
+    code = name.encode() + b"\0" + target_machine().emit_object(llvm.parse_assembly(text))
     store(code_file(), code)
     return code
 
@@ -107,7 +107,7 @@ def compile_in_background() -> None:
         os.posix_spawn(command[0], command, environment, file_actions=streams, setsid=True)
 
 
-def machine() -> Any:
+def target_machine() -> Any:
     """The processor of this machine as LLVM's target."""
     from llvmlite import binding as llvm
 

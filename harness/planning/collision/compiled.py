@@ -16,7 +16,7 @@ from harness.planning.collision.compilation import (
     code_file,
     compile_check,
     compile_in_background,
-    machine,
+    target_machine,
 )
 from harness.planning.collision.object_file import CannotLinkError, LinkedObject
 
@@ -94,7 +94,7 @@ def _placed(code: bytes, name: str) -> tuple[object, int]:
     except (CannotLinkError, OSError):
         from llvmlite import binding as llvm
 
-        engine: Any = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine())
+        engine: Any = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         return engine, engine.get_function_address(name)
