@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from harness.core.errors import RobotError
 from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.robot.description import (
+    WORLD,
     Gripper,
     Joint,
     Link,
@@ -26,11 +26,9 @@ from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
 from harness.robot.srdf.default_pairs import adjacent_pairs
 from harness.robot.srdf.srdf import EndEffector, Srdf, write_srdf
-from harness.robot.tree import in_tree_order
+from harness.robot.tree import free_name, in_tree_order
 from harness.robot.urdf.urdf import Urdf
 from harness.robot.urdf.write import write_urdf
-
-WORLD = "world"
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +70,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     source = " + ".join(part.name for part in parts)
     links: list[Link] = [Link(WORLD, None)]
     taken = {joint.name for part in parts for joint in part.urdf.joints}
-    held = next(name for name in _names("world_joint") if name not in taken)
+    held = free_name("world_joint", taken)
     joints: list[Joint] = [fixed_joint(held, WORLD, first.urdf.root, base)]
     for part in parts:
         links += part.urdf.links
@@ -118,12 +116,6 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         notes=tuple(note for part in parts for note in part.notes),
         rejected_grippers=tuple(why for part in parts for why in part.rejected_grippers),
     )
-
-
-def _names(first: str) -> Iterator[str]:
-    """A name, with a suffix if it is taken."""
-    yield first
-    yield from (f"{first}_{number}" for number in count(2))
 
 
 def _flange(arm: RobotPart, gripper: RobotPart) -> str:

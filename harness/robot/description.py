@@ -21,6 +21,9 @@ from harness.core.types import FloatArray
 
 JointKind = Literal["fixed", "revolute", "continuous", "prismatic"]
 
+WORLD = "world"
+"""Name of the root link of every composed robot, in which poses are in world coordinates."""
+
 
 @dataclass(frozen=True, eq=False)
 class Inertial:

@@ -7,54 +7,48 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.core.errors import Problem, RobotError, SpecError
 from harness.core.geometry import Mesh, Shape
 from harness.core.solids import point_inertia
 from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import hull_solid, shape_solid
 from harness.robot.tree import carriers
+from harness.robot.urdf.links import corrected_note, possible_moments
 from harness.robot.urdf.urdf import Urdf
 
 DENSITY = 1000.0
 """Density of links without a mass [kg/m^3]; hulls of arms of 5 to 30 kg have 600 to 1500."""
 
 BEAD, BEAD_RADIUS = 1e-3, 0.01
-"""Mass of an empty link between two joints, as a share of what it carries; its radius [m]."""
+"""Mass of an empty link that moves, as a share of what it carries; its radius [m]."""
 
-HINT = "give it an <inertial> with its mass [kg] and inertia [kg m^2]"
+LEAF = 1e-3
+"""Mass of an empty link that moves and carries nothing [kg]; as little as that of a frame."""
 
 
-def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
-    """The robot with a mass for every rigid group of links that moves and has no <inertial>.
+def with_estimated_masses(urdf: Urdf) -> Urdf:
+    """The robot with a mass for every rigid group of links that moves and has none.
 
-    Args:
-        urdf: The links and joints of the robot.
-        source: Its name in messages.
+    A mass without an inertia tensor gets that of the link's shapes.
 
     Raises:
-        SpecError: A group has neither a mass nor a shape and carries none, or a stated mass of
-            zero; every such group, at its `<mass>` or its link.
-        RobotError: The same, for a robot without elements.
+        RobotError: A mesh cannot be read, or is flat.
     """
+    notes: list[str] = []
+    urdf = replace(urdf, links=tuple(_with_tensor(link, notes) for link in urdf.links))
     carrier = carriers(urdf.joints, urdf.root)
     groups: dict[str, list[Link]] = {}
     for link in urdf.links:
         groups.setdefault(carrier[link.name], []).append(link)
-    massless = {
-        first: links
-        for first, links in groups.items()
-        if first != urdf.root and not any(link.inertial for link in links)
-    }
     estimated: dict[str, Link] = {}
     empty: list[str] = []
-    for first, links in massless.items():
+    for first, links in groups.items():
+        if first == urdf.root or any(link.inertial for link in links):
+            continue
         shaped = {link.name: _with_mass(link) for link in links if link.collisions or link.visuals}
-        if shaped and not any(_states_mass(urdf, link.name) for link in links):
-            estimated |= shaped
-        else:
+        estimated |= shaped
+        if not shaped:
             empty.append(first)
-    notes: list[str] = []
     if estimated:
         total = sum(link.inertial.mass for link in estimated.values() if link.inertial)
         notes.append(
@@ -62,21 +56,39 @@ def with_estimated_masses(urdf: Urdf, source: str) -> Urdf:
             f"of their shapes at {DENSITY:g} kg/m^3"
         )
     urdf = replace(urdf, links=tuple(estimated.get(link.name, link) for link in urdf.links))
-    carried = {
-        first: 0.0 if _states_mass(urdf, first) else _carried(urdf, first) for first in empty
-    }
-    if problems := [_problem(urdf, first, source) for first in empty if not carried[first]]:
-        raise SpecError(problems)
-    if empty:
-        notes.append(
-            f"moving links without a mass and a shape get {BEAD:.1%} of what they carry: "
-            f"{', '.join(empty)}"
-        )
+    carried = {first: _carried(urdf, first) for first in empty}
+    for names, mass in (
+        ([name for name, mass in carried.items() if mass], f"{BEAD:.1%} of what they carry"),
+        ([name for name, mass in carried.items() if not mass], f"{LEAF:g} kg, for they carry none"),
+    ):
+        if names:
+            notes.append(f"moving links without a mass and a shape get {mass}: {', '.join(names)}")
     links = tuple(
-        replace(link, inertial=_bead(carried[link.name])) if link.name in carried else link
+        replace(link, inertial=_bead(BEAD * carried[link.name] or LEAF))
+        if link.name in carried
+        else link
         for link in urdf.links
     )
     return replace(urdf, links=links, notes=(*urdf.notes, *notes))
+
+
+def _with_tensor(link: Link, notes: list[str]) -> Link:
+    """A link whose mass has an inertia tensor, which is that of its shapes if none is given."""
+    inertial = link.inertial
+    if inertial is None or inertial.inertia.any():
+        return link
+    if link.collisions or link.visuals:
+        shapes = _with_mass(link).inertial
+        assert shapes is not None
+        inertia = shapes.inertia * (inertial.mass / shapes.mass)
+        notes.append(
+            f"link '{link.name}': no inertia is given: that of its shapes at {inertial.mass:g} kg"
+        )
+    else:
+        moments = possible_moments(np.zeros(3), inertial.mass)
+        notes.append(corrected_note(link.name, np.zeros(3), moments))
+        inertia = np.diag(moments)
+    return replace(link, inertial=replace(inertial, inertia=inertia))
 
 
 def _carried(urdf: Urdf, link: str) -> float:
@@ -88,9 +100,8 @@ def _carried(urdf: Urdf, link: str) -> float:
     return sum(each.inertial.mass for each in urdf.links if each.inertial and each.name in distal)
 
 
-def _bead(carried: float) -> Inertial:
+def _bead(mass: float) -> Inertial:
     """A small solid sphere at a link's origin, which physics requires of a link that moves."""
-    mass = BEAD * carried
     return Inertial(mass, np.zeros(3), 0.4 * mass * BEAD_RADIUS**2 * np.eye(3))
 
 
@@ -121,18 +132,3 @@ def solid_inertial(shapes: Sequence[Shape]) -> Inertial:
     for volume, centroid in zip(volumes, centroids, strict=True):
         inertia = inertia + point_inertia(volume, centroid - center)
     return Inertial(DENSITY * float(np.sum(volumes)), center, DENSITY * inertia)
-
-
-def _states_mass(urdf: Urdf, link: str) -> bool:
-    element = urdf.elements.get(("link", link))
-    return element is not None and element.find("inertial") is not None
-
-
-def _problem(urdf: Urdf, first: str, source: str) -> Problem:
-    message = f"link '{first}' moves and weighs nothing"
-    element = urdf.elements.get(("link", first))
-    if element is None:
-        raise RobotError(f"{source}: {message}; {HINT}")
-    inertial = element.find("inertial")
-    mass = None if inertial is None else inertial.find("mass")
-    return (mass or element).problem(message, HINT, at="value" if mass else "name")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
-from harness.robot.compose import WORLD, RobotPart
-from harness.robot.description import NamedState
+from harness.robot.compose import RobotPart
+from harness.robot.description import WORLD, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import files_around, find_file, find_folder
 from harness.robot.imported_part import imported_part
@@ -51,13 +51,14 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> RobotPart:
         is_xacro = key == "xacro"
         text = render(path, spec.args, packages).encode() if is_xacro else read_bounded(path)
         urdf, states, excluded = parse_urdf(text, path.parent, str(path), packages), (), {}
-    urdf = with_estimated_masses(_without_world(urdf), str(path))
+    urdf = _without_world(urdf)
     if srdf_path is None:
         srdf = _default_srdf(spec, urdf, states)
     else:
         around = PackagePath.of_file(srdf_path, (*given, packages.home))
         parsed = read_srdf(srdf_path, read_bounded(srdf_path), spec.args, around)
         srdf = _srdf(parsed, urdf, states, str(srdf_path))
+    urdf = with_estimated_masses(urdf)
     part = imported_part(spec, urdf, srdf, path, str(srdf_path or path))
     allowed = {**excluded, **part.srdf.disabled}
     return replace(part, srdf=replace(part.srdf, disabled=allowed))
@@ -83,9 +84,8 @@ def _root_name(link: str) -> str:
 
 def _without_world(urdf: Urdf) -> Urdf:
     """The tree with a link named `world` renamed."""
-    if WORLD not in {link.name for link in urdf.links} or ("link", WORLD) not in urdf.elements:
+    if WORLD not in {link.name for link in urdf.links}:
         return urdf
-
     links = tuple(replace(link, name=_root_name(link.name)) for link in urdf.links)
     joints = tuple(
         replace(joint, parent=_root_name(joint.parent), child=_root_name(joint.child))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import combinations
+from collections.abc import Container, Iterable, Mapping, Sequence
+from itertools import combinations, count
 
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.language.files.xml_file import XmlElement
@@ -67,6 +67,13 @@ def in_tree_order(
         circle = _circle(next(name for name in by_name if name not in known), parents)
         refuse("link", circle[0], f"joints run in a circle: {' - '.join((*circle, circle[0]))}")
     return tuple(ordered_links), tuple(ordered_joints)
+
+
+def free_name(first: str, taken: Container[str]) -> str:
+    """A name, with a number after it if it is taken."""
+    if first not in taken:
+        return first
+    return next(name for n in count(2) if (name := f"{first}_{n}") not in taken)
 
 
 def _circle(start: str, parents: Mapping[str, str]) -> list[str]:

@@ -106,6 +106,9 @@ MJCF_ROWS = (
          BALL.replace("/>", ' contype="0" conaffinity="0"/>'),
          lambda arm: not link(arm, "finger").collisions),
     read("`<site>`", "a frame", SITE, SITE + '<site name="more"/>', has_more),
+    read("one with the name of a body or `world`", "has `_site` after its name, reported", SITE,
+         SITE + '<site name="world"/>', lambda arm: "world_site" in arm.link_names
+         and any("the site 'world' is called 'world_site'" in note for note in arm.notes)),
     read("`<equality>` of joints", "a mimic; of a curve the slope, reported", "0.4 0 0 0",
          "0.5 0 0 0",
          lambda arm: arm.joint_by_name["pinch"].mimic.multiplier == 0.5),

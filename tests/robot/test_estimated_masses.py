@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from harness.core.errors import SpecError
 from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, URDF, load_arm, write_arm
 from tests.robot.vessels import vessel, write_obj
@@ -77,24 +76,6 @@ def test_a_link_between_two_joints_that_is_only_a_frame_gets_a_bead(tmp_path):
     note = "moving links without a mass and a shape get 0.1% of what they carry: upper"
     assert note in arm.notes
     run(tmp_path, "- move_to: {joints: {turn: 0.3}}", robot="{urdf: arm.urdf, srdf: arm.srdf}")
-
-
-def test_every_link_that_weighs_nothing_is_in_one_message(tmp_path):
-    write_arm(tmp_path, BARE.replace(SHAPE, ""))
-    with pytest.raises(SpecError) as caught:
-        load_arm(tmp_path)
-    said = [problem.message for problem in caught.value.problems]
-    assert said == [
-        f"link '{name}' moves and weighs nothing" for name in ("upper", "lower", "wrist")
-    ]
-    assert len({problem.line for problem in caught.value.problems}) == 3
-
-
-def test_a_stated_mass_of_zero_is_still_a_mistake(tmp_path):
-    write_arm(tmp_path, URDF.replace('<mass value="1"/>', '<mass value="0"/>'))
-    with pytest.raises(SpecError) as caught:
-        load_arm(tmp_path)
-    assert len(caught.value.problems) == 3
 
 
 def test_an_arm_without_masses_moves(tmp_path):

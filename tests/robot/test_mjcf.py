@@ -54,6 +54,17 @@ def test_planner_physics_and_the_file_agree_on_every_body(tmp_path):
         )
 
 
+@pytest.mark.parametrize("name", ["world", "robot_world", "lower", "wrist"])
+def test_a_site_with_the_name_of_a_body_or_the_world_is_renamed(tmp_path, name):
+    """Sites and bodies have names of their own in MuJoCo, links have one name."""
+    site = f'<site name="{name}" pos="0 0 0.3"/>'
+    write(tmp_path, MJCF.replace('<body name="base">', f'<body name="base">{site}'))
+    arm = load(tmp_path)
+    assert any(f"the site '{name}' is called '{name}_site' here" in note for note in arm.notes)
+    frame = PinocchioKinematics(arm).link_pose(arm.start_positions(), f"{name}_site")
+    assert frame.translation == pytest.approx([0, 0, 0.3], abs=1e-12)
+
+
 def test_masses_are_those_that_mujoco_makes_of_the_geoms(tmp_path):
     write(tmp_path)
     arm = load(tmp_path)

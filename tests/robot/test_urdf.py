@@ -156,7 +156,7 @@ def test_all_empty_ranges_of_ros2_control_are_reported_with_both_sources():
     with pytest.raises(SpecError) as caught:
         parse_urdf(URDF.replace("</robot>", control), Path(), "arm.urdf")
     assert [problem.message for problem in caught.value.problems] == [
-        "joint 'turn': its `min` of 2.044 in ros2_control is not below its `max` of 0.54",
+        "joint 'turn': its `min` of 2.044 in ros2_control is above its `max` of 0.54",
         "joint 'bend': ros2_control allows 2.486 to 2.885, and its <limit> -2 to 2:"
         " nothing is in both",
     ]

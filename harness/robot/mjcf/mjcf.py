@@ -15,13 +15,13 @@ import numpy as np
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, Link, NamedState, fixed_joint
+from harness.robot.description import WORLD, Joint, Link, NamedState, fixed_joint
 from harness.robot.mjcf.files import missing_meshes, read_tree
 from harness.robot.mjcf.joints import body_chain, mjcf_pose, pulled_pairs, with_mimics
 from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
 from harness.robot.srdf.srdf import link_pair
-from harness.robot.tree import in_tree_order
+from harness.robot.tree import free_name, in_tree_order
 from harness.robot.urdf.urdf import Urdf
 
 ROOT = "robot_world"
@@ -181,15 +181,24 @@ class _Reader:
         return any(int(each) in carried for each in self.model.jnt_bodyid)
 
     def _sites(self, names: Mapping[int, str], links: list[Link], joints: list[Joint]) -> None:
-        """Add sites as frames, except those with the name of a body."""
-        model, taken = self.model, {link.name for link in links}
+        """Add sites as frames; one with the name of a body, or of the world, gets another."""
+        model, taken = self.model, {WORLD, *(link.name for link in links)}
+        joined = {joint.name for joint in joints}
         for number in range(model.nsite):
             name, body = model.site(number).name, int(model.site_bodyid[number])
-            if name and name not in taken and body in names:
-                pose = mjcf_pose(model.site_pos[number], model.site_quat[number])
-                links.append(Link(name, None))
-                joints.append(fixed_joint(f"{name}_site", names[body], name, pose))
-                taken.add(name)
+            if not name or body not in names:
+                continue
+            frame = name if name not in taken else free_name(f"{name}_site", taken)
+            if frame != name:
+                self.notes.append(
+                    f"the site '{name}' is called '{frame}' here: a body has its name"
+                )
+            pose = mjcf_pose(model.site_pos[number], model.site_quat[number])
+            joint = free_name(f"{frame}_site", joined)
+            links.append(Link(frame, None))
+            joints.append(fixed_joint(joint, names[body], frame, pose))
+            taken.add(frame)
+            joined.add(joint)
 
     def _count_ignored(self) -> None:
         model = self.model

@@ -38,7 +38,7 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     if tip_link in {joint.child for joint in urdf.joints}:
         tips = [tip_link]
     else:
-        chains = [joints_to(link.name, urdf.joints) for link in urdf.links]
+        chains = [_with_a_body(joints_to(link.name, urdf.joints), urdf) for link in urdf.links]
         tips = _tips([_without_fingers(each, urdf) for each in chains]) or _tips(chains)
     if not tips:
         return Srdf()
@@ -50,6 +50,17 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
         )
     group = SrdfGroup(DEFAULT_GROUP, chains=((urdf.root, tips[0]),))
     return Srdf((group,), notes=tuple(notes))
+
+
+def _with_a_body(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:
+    """The chain up to the last joint that moves a mass or a shape; all of it where none does.
+
+    Joints after it move empty frames, as those that only carry the number of a gripper's width.
+    """
+    bodies = {link.name for link in urdf.links if link.inertial or link.visuals or link.collisions}
+    moved = {joint.name for body in bodies for joint in joints_to(body, urdf.joints)}
+    empty = [n for n, joint in enumerate(chain) if joint.is_movable and joint.name not in moved]
+    return chain[: empty[0]] if empty and bodies else chain
 
 
 def _without_fingers(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:

@@ -95,6 +95,10 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
             "its groups, states and allowed pairs are in an SRDF; a URDF is named by `urdf`",
         )
     ignored = Counter(child.tag for child in root.children if child.tag not in READ)
+    notes = [
+        f"SRDF: {count} <{tag}> element{'s' if count > 1 else ''} ignored"
+        for tag, count in sorted(ignored.items())
+    ]
     return Srdf(
         tuple(_group(item) for item in root.findall("group")),
         tuple(
@@ -111,7 +115,7 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
         ),
         tuple(
             EndEffector(
-                item.need("name"),
+                _optional(item, "name", item.need("group"), notes),
                 item.need("parent_link"),
                 item.need("group"),
                 item.get("parent_group"),
@@ -125,19 +129,24 @@ def parse_srdf(text: str | bytes, source: str) -> Srdf:
         },
         tuple(
             VirtualJoint(
-                item.need("name"),
-                item.need("type"),
-                item.need("parent_frame"),
-                item.need("child_link"),
+                _optional(item, "name", "virtual_joint", notes),
+                _optional(item, "type", "fixed", notes),
+                _optional(item, "parent_frame", "world", notes),
+                _optional(item, "child_link", "", notes),
             )
             for item in root.findall("virtual_joint")
         ),
-        tuple(
-            f"SRDF: {count} <{tag}> element{'s' if count > 1 else ''} ignored"
-            for tag, count in sorted(ignored.items())
-        ),
+        tuple(notes),
         root,
     )
+
+
+def _optional(item: XmlElement, key: str, default: str, notes: list[str]) -> str:
+    """An attribute that nothing depends on; adds a note where it is missing."""
+    if key not in item.attributes:
+        line = item.place.line
+        notes.append(f"SRDF: <{item.tag}> in line {line} has no '{key}': '{default}' is assumed")
+    return item.get(key, default)
 
 
 def has_several_values(joint: XmlElement) -> bool:

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, JointKind, Mimic
+from harness.robot.description import Joint, JointKind, Mimic, fixed_joint
+from harness.robot.forward_kinematics import motion
 from harness.robot.urdf.values import number, pose, three
 from harness.robot.urdf.write import NO_LIMIT
 
@@ -24,22 +25,21 @@ MOST_TURNS = 4
 """Turns from zero that are no mistake in a revolute joint."""
 
 
-def zero_limits(joints: Sequence[XmlElement]) -> list[str]:
-    """A note on each kind of limit of 0 in joints that were read, with the joints that have it."""
-    notes: list[str] = []
-    for key in ("velocity", "effort"):
-        names = [
-            joint.get("name")
-            for joint in joints
-            if (limit := joint.find("limit")) is not None
-            and joint.get("type") != "fixed"
-            and key in limit.attributes
-            and float(limit.get(key)) == 0
-        ]
-        if names:
-            plural = "s" if len(names) > 1 else ""
-            notes.append(f"joint{plural} {', '.join(names)}: the {key} limit of 0 counts as none")
-    return notes
+def placeholder_limits(joints: Sequence[XmlElement]) -> list[str]:
+    """A note on each velocity or effort limit that is no limit, with the joints that have it."""
+    found: dict[tuple[str, float], list[str]] = {}
+    for joint in joints:
+        limit = joint.find("limit")
+        if limit is None or joint.get("type") == "fixed":
+            continue
+        for key in ("velocity", "effort"):
+            if key in limit.attributes and (value := float(limit.get(key))) <= 0:
+                found.setdefault((key, value), []).append(joint.get("name"))
+    return [
+        f"joint{'s' * (len(names) > 1)} {', '.join(names)}: the {key} limit of {value:g} counts as"
+        " none"
+        for (key, value), names in found.items()
+    ]
 
 
 def ranges_of_continuous(joints: Sequence[XmlElement]) -> list[str]:
@@ -72,7 +72,8 @@ def read_joint(element: XmlElement) -> Joint:
     """A joint.
 
     Soft limits of a `safety_controller` narrow the position limits, as in MoveIt. A velocity or
-    effort limit of zero is a placeholder, since such a joint could not move: it counts as missing.
+    effort limit of zero or less counts as none: with zero the joint could not move, and a negative
+    one means "no limit" in SDFormat.
 
     Raises:
         SpecError: It has a mistake.
@@ -102,8 +103,8 @@ def read_joint(element: XmlElement) -> Joint:
         axis / length if moves else axis,
         lower,
         upper,
-        _rate(limit, "velocity", name) if moves else np.inf,
-        effort=_rate(limit, "effort", name) if moves else np.inf,
+        _rate(limit, "velocity") if moves else np.inf,
+        effort=_rate(limit, "effort") if moves else np.inf,
         damping=max(damping, 0.0),
         friction=max(friction, 0.0),
         mimic=None
@@ -140,11 +141,6 @@ def _positions(element: XmlElement, name: str, kind: JointKind) -> tuple[float, 
         lower, upper = number(limit, "lower", 0.0), number(limit, "upper", 0.0)
         if lower > upper:
             limit.refuse(f"joint '{name}': lower {lower:g} is above upper {upper:g}", at="lower")
-        if lower == upper and element.find("mimic") is None:
-            limit.refuse(
-                f"joint '{name}' cannot move: lower and upper are both {lower:g}",
-                "give its range, or make it fixed or continuous",
-            )
     if safety is not None and kind != "fixed":
         soft = (
             max(lower, number(safety, "soft_lower_limit", -1e9)),
@@ -155,17 +151,48 @@ def _positions(element: XmlElement, name: str, kind: JointKind) -> tuple[float, 
     return lower, upper
 
 
-def _rate(limit: XmlElement | None, key: str, name: str) -> float:
+def _rate(limit: XmlElement | None, key: str) -> float:
     if limit is None or key not in limit.attributes:
         return np.inf
     if limit.get(key).strip() in ("inf", "+inf"):
         return np.inf
     value = number(limit, key)
-    if value >= NO_LIMIT:
-        return np.inf
-    if value < 0:
-        limit.refuse(f"joint '{name}': {key} is {value:g}; it has to be above zero", at=key)
-    return np.inf if value == 0 else value
+    return value if 0 < value < NO_LIMIT else np.inf
+
+
+def held_without_range(joints: Sequence[Joint], notes: list[str]) -> tuple[Joint, ...]:
+    """The joints, where those whose limits are one position are fixed there.
+
+    What follows such a joint is fixed as well.
+    """
+    held = {
+        joint.name: joint.lower
+        for joint in joints
+        if joint.is_movable and joint.mimic is None and joint.lower == joint.upper
+    }
+    if held:
+        places = ", ".join(f"{name} at {value:g}" for name, value in held.items())
+        notes.append(
+            f"joints whose `lower` and `upper` are equal cannot move and are fixed: {places}"
+        )
+    while following := [
+        joint
+        for joint in joints
+        if joint.name not in held and joint.mimic is not None and joint.mimic.joint in held
+    ]:
+        for joint in following:
+            assert joint.mimic is not None
+            followed = held[joint.mimic.joint]
+            held[joint.name] = joint.mimic.multiplier * followed + joint.mimic.offset
+        notes.append(f"they follow a fixed joint: {', '.join(joint.name for joint in following)}")
+    return tuple(
+        fixed_joint(
+            joint.name, joint.parent, joint.child, joint.pose @ motion(joint, held[joint.name])
+        )
+        if joint.name in held
+        else joint
+        for joint in joints
+    )
 
 
 def resolved_mimics(

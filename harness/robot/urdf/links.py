@@ -16,7 +16,7 @@ from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import KINDS, SUFFIXES, decomposition_of
 from harness.robot.packages import NotFoundError, PackagePath
-from harness.robot.urdf.values import number, pose, positive, rgba, three
+from harness.robot.urdf.values import lengths, number, pose, rgba, three
 
 DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
 SMALLEST_RADIUS = 0.005
@@ -57,6 +57,7 @@ class LinkReader:
         materials: Colours of the file's named materials.
         notes: Collects notes on corrected elements.
         undrawn: Collects the links of visuals that cannot be drawn, with the reason.
+        sizeless: Collects the links of shapes without a thickness, with the shape.
     """
 
     folder: Path
@@ -64,8 +65,19 @@ class LinkReader:
     materials: Mapping[str, Rgba]
     notes: list[str] = field(default_factory=list[str])
     undrawn: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+    sizeless: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
 
-    def undrawn_note(self) -> list[str]:
+    def left_out(self) -> list[str]:
+        """Notes on the shapes that are left out."""
+        return [
+            *(
+                f"link '{link}': the {shape} has no thickness and is left out"
+                for link, shape in dict.fromkeys(self.sizeless)
+            ),
+            *self._undrawn_note(),
+        ]
+
+    def _undrawn_note(self) -> list[str]:
         """One note on all visuals that are not drawn; empty where all are."""
         if not self.undrawn:
             return []
@@ -94,7 +106,10 @@ class LinkReader:
         )
 
     def _inertial(self, element: XmlElement, link: str) -> Inertial | None:
-        """Mass properties with the tensor in link axes; None for a mass of 0."""
+        """Mass properties with the tensor in link axes, of zeros where the file gives none.
+
+        None for a mass of 0.
+        """
         mass_element, tensor = element.find("mass"), element.find("inertia")
         if mass_element is None:
             element.refuse(f"link '{link}': <inertial> has no <mass>")
@@ -103,21 +118,22 @@ class LinkReader:
             mass_element.refuse(f"link '{link}' weighs {mass:g} kg", at="value")
         if mass == 0:
             return None
-        placed, inertia = pose(element), np.zeros((3, 3))
-        if tensor is not None:
-            xx, yy, zz = (number(tensor, key) for key in ("ixx", "iyy", "izz"))
-            xy, xz, yz = (number(tensor, key, 0.0) for key in ("ixy", "ixz", "iyz"))
-            inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        placed = pose(element)
+        if tensor is None:
+            return Inertial(mass, placed.translation, np.zeros((3, 3)))
+        xx, yy, zz = (number(tensor, key) for key in ("ixx", "iyy", "izz"))
+        xy, xz, yz = (number(tensor, key, 0.0) for key in ("ixy", "ixz", "iyz"))
+        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         if not np.array_equal(placed.rotation, np.eye(3)):
             inertia = placed.rotation @ inertia @ placed.rotation.T
-        return Inertial(
-            mass, placed.translation, self._of_a_body(inertia, mass, tensor or element, link)
-        )
+        return Inertial(mass, placed.translation, self._of_a_body(inertia, mass, tensor, link))
 
     def _of_a_body(
         self, inertia: np.ndarray, mass: float, tensor: XmlElement, link: str
     ) -> np.ndarray:
-        """The tensor, corrected to a physically possible one."""
+        """The tensor, corrected to a physically possible one; one of zeros stays."""
+        if not inertia.any():
+            return inertia
         moments, axes = np.linalg.eigh(inertia)
         if moments[0] < -1e-3 * abs(moments).max():
             tensor.refuse(
@@ -134,7 +150,7 @@ class LinkReader:
         geometry = element.find("geometry")
         if geometry is None or len(geometry.children) != 1:
             element.refuse(f"link '{link}': <{element.tag}> has one <geometry> with one shape")
-        found = self._geometry(geometry.children[0], link, is_visual=element.tag == "visual")
+        found = self._geometry(geometry.children[0], link, element.tag)
         if found is None:
             return None
         material, color = element.find("material"), None
@@ -145,31 +161,26 @@ class LinkReader:
             colour = known if color is None else rgba(color)
         return Shape(found, pose(element), colour, element.get("name"))
 
-    def _geometry(self, item: XmlElement, link: str, *, is_visual: bool) -> Geometry | None:
+    def _geometry(self, item: XmlElement, link: str, kind: str) -> Geometry | None:
         match item.tag:
-            case "box":
-                size = three(item, "size")
-                if min(size) <= 0:
-                    item.refuse(f"link '{link}': a box has a size above zero", at="size")
-                return Box(size)
-            case "cylinder":
-                return Cylinder(positive(item, "radius"), positive(item, "length"))
-            case "sphere":
-                return Sphere(positive(item, "radius"))
-            case "capsule":
-                return Capsule(positive(item, "radius"), positive(item, "length"))
+            case "box" | "cylinder" | "sphere" | "capsule":
+                found = _solid(item)
+                if found is None:
+                    self.sizeless.append((link, f"<{item.tag}> of a <{kind}>"))
+                return found
             case "mesh":
-                return self._mesh(item, link, is_visual=is_visual)
+                return self._mesh(item, link, kind)
             case _:
                 hint = "known are box, cylinder, sphere, capsule, mesh"
                 message = f"link '{link}': unknown geometry <{item.tag}>"
                 raise SpecError([item.problem(message, hint)])
 
-    def _mesh(self, item: XmlElement, link: str, *, is_visual: bool) -> Mesh | None:
-        name = item.need("filename")
+    def _mesh(self, item: XmlElement, link: str, kind: str) -> Mesh | None:
+        name, is_visual = item.need("filename"), kind == "visual"
         scale = three(item, "scale", (1.0, 1.0, 1.0))
         if 0 in scale:
-            item.refuse(f"link '{link}': a mesh's scale is not zero", at="scale")
+            self.sizeless.append((link, f"<mesh> of a <{kind}>"))
+            return None
         if Path(name).suffix.lower() not in SUFFIXES:
             if is_visual:
                 self.undrawn.append((link, f"'{name}' is not a {KINDS} file"))
@@ -189,3 +200,19 @@ class LinkReader:
         except RobotError as error:
             item.refuse(f"link '{link}': mesh {error}", at="filename")
         return mesh
+
+
+def _solid(item: XmlElement) -> Geometry | None:
+    """A primitive shape; None for one without a thickness."""
+    if item.tag == "box":
+        x, y, z = lengths(item, "size")
+        return Box((x, y, z)) if min(x, y, z) else None
+    if item.tag == "sphere":
+        (radius,) = lengths(item, "radius")
+        return Sphere(radius) if radius else None
+    radius, length = lengths(item, "radius", "length")
+    if item.tag == "cylinder":
+        return Cylinder(radius, length) if radius and length else None
+    if not radius:
+        return None
+    return Capsule(radius, length) if length else Sphere(radius)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +12,12 @@ from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
 from harness.robot.urdf.joints import (
+    held_without_range,
+    placeholder_limits,
     ranges_of_continuous,
     ranges_of_many_turns,
     read_joint,
     resolved_mimics,
-    zero_limits,
 )
 from harness.robot.urdf.links import LinkReader
 from harness.robot.urdf.ros2_control import with_interfaces
@@ -26,7 +26,25 @@ from harness.robot.xacro.file import xacro_parts
 
 MOST_LINKS = 500
 OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
-READ = frozenset({"link", "joint", "material", "ros2_control"})
+READ = {
+    "robot": ("link", "joint", "material", "ros2_control"),
+    "link": ("inertial", "visual", "collision"),
+    "inertial": ("origin", "mass", "inertia"),
+    "visual": ("origin", "geometry", "material"),
+    "collision": ("origin", "geometry", "material"),
+    "joint": (
+        "parent",
+        "child",
+        "origin",
+        "axis",
+        "limit",
+        "dynamics",
+        "mimic",
+        "safety_controller",
+        "calibration",
+    ),
+}
+"""The elements that are known, by the element that they are in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +105,8 @@ def parse_urdf(
     elements = _by_name(root)
     links = collected(reader.link, root.findall("link"))
     joints = collected(read_joint, root.findall("joint"))
-    notes += reader.undrawn_note()
-    notes += zero_limits(root.findall("joint"))
+    notes += reader.left_out()
+    notes += placeholder_limits(root.findall("joint"))
     notes += ranges_of_continuous(root.findall("joint"))
     notes += ranges_of_many_turns(joints)
     if not links and any(root.find(tag) is not None for tag in OF_SRDF):
@@ -99,10 +117,11 @@ def parse_urdf(
         root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:
         root.refuse(f"{len(links)} links; at most {MOST_LINKS} are read")
-    joints = with_interfaces(resolved_mimics(joints, elements), root, notes)
+    joints = held_without_range(with_interfaces(joints, root, notes), notes)
+    joints = resolved_mimics(joints, elements)
     notes += packages.notes
     ordered = in_tree_order(links, joints, source, elements)
-    return Urdf(root.get("name"), *ordered, (*_ignored(root.children), *notes), elements, root)
+    return Urdf(root.get("name"), *ordered, (*_ignored(root), *notes), elements, root)
 
 
 def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:
@@ -120,10 +139,28 @@ def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:
     return elements
 
 
-def _ignored(children: Sequence[XmlElement]) -> list[str]:
+def _ignored(root: XmlElement) -> list[str]:
     """A note for each kind of ignored element."""
-    counts = Counter(child.tag for child in children if child.tag not in READ)
-    return [
-        f"{count} <{tag}> element{'s' if count > 1 else ''} ignored"
-        for tag, count in sorted(counts.items())
-    ]
+    found: dict[tuple[str, str], list[XmlElement]] = {}
+
+    def look_into(element: XmlElement) -> None:
+        for child in element.children:
+            if child.tag not in READ[element.tag]:
+                found.setdefault((element.tag, child.tag), []).append(child)
+            elif child.tag in READ:
+                look_into(child)
+
+    look_into(root)
+    return [_ignored_note(parent, items) for (parent, _), items in sorted(found.items())]
+
+
+def _ignored_note(parent: str, items: Sequence[XmlElement]) -> str:
+    """The note on ignored elements of one kind; in a part of a robot, where the first one is."""
+    tag, place = items[0].tag, items[0].place
+    count = f"{len(items)} <{tag}> element{'s' if len(items) > 1 else ''}"
+    if parent == "robot":
+        return f"{count} ignored"
+    return (
+        f"{count} in <{parent}> ignored, the first in line {place.line} of"
+        f" {Path(place.source.path).name}; a macro of xacro is called as <xacro:{tag}>"
+    )

@@ -43,15 +43,21 @@ def three(element: XmlElement, name: str, default: Three | None = None) -> Three
     return values[0], values[1], values[2]
 
 
-def positive(element: XmlElement, name: str) -> float:
-    """A length above zero in an attribute."""
-    value = number(element, name)
-    if value <= 0:
-        element.refuse(f"{name} is {value:g}; it has to be above zero", at=name)
-    if value < SMALLEST_SIZE:
-        element.refuse(f"{name} is {value:g}; at least {SMALLEST_SIZE:g} m", at=name)
-    _refuse_beyond(element, name, value)
-    return value
+def lengths(element: XmlElement, *names: str) -> tuple[float, ...]:
+    """The lengths in attributes; zero for those too small to be a size.
+
+    Raises:
+        SpecError: One is missing, no finite number, negative or too large.
+    """
+    found: list[float] = []
+    for name in names:
+        values = three(element, name) if name == "size" else (number(element, name),)
+        for value in values:
+            if value < 0:
+                element.refuse(f"{name} is {value:g}; it has to be above zero", at=name)
+            _refuse_beyond(element, name, value)
+            found.append(0.0 if value < SMALLEST_SIZE else value)
+    return tuple(found)
 
 
 def _refuse_beyond(element: XmlElement, name: str, *values: float) -> None:
