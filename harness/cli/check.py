@@ -80,5 +80,6 @@ def _cases(
 ) -> Iterator[tuple[Path, str, dict[str, str]]]:
     """File, case and its values, of every parametrised case; random values are as the file says."""
     for file in files:
-        for case in islice(read_header(file).variation.parametrized(), MOST_CASES):
-            yield file, case.name, {**case.overrides, **dict(arguments.overrides)}
+        overrides = dict(arguments.overrides)
+        for case in islice(read_header(file, overrides).variation.parametrized(), MOST_CASES):
+            yield file, case.name, {**case.overrides, **overrides}

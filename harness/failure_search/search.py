@@ -77,7 +77,7 @@ class SearchRequest:
             UsageError: The case or the expectation does not exist.
             SpecError: The file is invalid.
         """
-        variation = read_header(file).variation
+        variation = read_header(file, overrides).variation
         scenario = load_scenario(
             file, {**_case_overrides(file, case, variation), **overrides}
         ).scenario
@@ -160,7 +160,7 @@ def search(
         SpecError: The file is invalid.
         HarnessError: The nominal scenario ends in an error.
     """
-    variation = read_header(request.file).variation
+    variation = read_header(request.file, request.overrides).variation
     overrides = {
         **_case_overrides(request.file, request.case, variation),
         **request.overrides,

@@ -7,9 +7,7 @@ from typing import Annotated, Any, cast
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.core.geometry import CollisionMode
-from harness.core.variation import MOST_SAMPLES, count_of
 from harness.language.base import (
-    Count,
     Flag,
     JointAcceleration,
     JointEffort,
@@ -27,7 +25,7 @@ from harness.language.planning import Planning
 from harness.language.plugin_field import PluginName
 from harness.language.poses import Pose
 from harness.language.step import AnyStep
-from harness.language.variation import Distribution, Parametrize, RequiredRate, Search
+from harness.language.variation import CaseKeys
 from harness.language.world import ObjectSpec
 
 
@@ -211,8 +209,8 @@ class WorldChoice(SpecModel):
     )
 
 
-class Scenario(SpecModel):
-    """A scenario: one test of an arm application."""
+class ScenarioContent(SpecModel):
+    """The keys of a scenario that every case of it has."""
 
     scenario: Annotated[str, Field(min_length=1, max_length=200)] = Field(
         description="The title of the scenario."
@@ -246,9 +244,6 @@ class Scenario(SpecModel):
     videos: tuple[VideoSpec, ...] = Field(
         default=(), description="Cameras that are recorded all through the run."
     )
-    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = Field(
-        default=0, description="The seed of everything random; each step's seed follows from it."
-    )
     params: dict[Name, Any] = Field(
         default_factory=dict, description="The values that ${name} in the file stands for."
     )
@@ -268,60 +263,12 @@ class Scenario(SpecModel):
     expect: tuple[AnyExpectation, ...] = Field(
         default=(), description="Expectations that are judged over the whole run."
     )
-    parametrize: Parametrize | None = Field(
-        default=None,
-        description="The cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named cases.",
-    )
-    randomize: dict[str, Distribution] | None = Field(
-        default=None,
-        description="Dotted path -> distribution of that value. Items of lists go by index or by"
-        " name: `objects.cube.pose.xyz.0`.",
-    )
-    samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
-        default=None,
-        description="The number of random cases; the default is 20 where something is random.",
-    )
-    redraw_overlaps: Flag | None = Field(
-        default=None,
-        description="Draws a sample again, up to 100 times, while objects overlap at the start.",
-    )
-    expect_rate: RequiredRate | None = Field(
-        default=None,
-        description="The required success rate of the samples; without it every sample must pass.",
-    )
-    search: Search | None = Field(
-        default=None,
-        description="Settings of `harness search`, which looks for failures in the ranges of "
-        "`randomize`.",
-    )
 
-    @model_validator(mode="after")
-    def _rate_of_samples(self) -> Scenario:
-        if self.expect_rate is not None and self.samples is None and self.randomize is None:
-            raise ValueError("`expect_rate` needs more than one run; add `samples` or `randomize`")
-        return self
 
-    @model_validator(mode="after")
-    def _redraws_of_random_values(self) -> Scenario:
-        if self.redraw_overlaps and self.randomize is None:
-            raise ValueError("`redraw_overlaps` redraws the values of `randomize`; add `randomize`")
-        return self
-
-    @model_validator(mode="after")
-    def _search_of_random_values(self) -> Scenario:
-        if self.search is not None and self.randomize is None:
-            raise ValueError("`search` looks within the ranges of `randomize`; add `randomize`")
-        return self
+class Scenario(CaseKeys, ScenarioContent):
+    """A scenario: one test of an arm application."""
 
     def expectation_names(self) -> list[str]:
         """The names of the expectations that have one."""
         found = [*self.expect, *(each for step in self.steps for each in step.expect)]
         return [each.name for each in found if each.name]
-
-    @model_validator(mode="after")
-    def _bounded_cases(self) -> Scenario:
-        if self.parametrize is not None and self.samples is not None:
-            count = count_of(self.parametrize) * self.samples
-            if count > MOST_SAMPLES:
-                raise ValueError(f"{count} samples of all cases; at most {MOST_SAMPLES} are run")
-        return self

@@ -9,13 +9,16 @@ from pydantic import AfterValidator, Field, model_validator
 
 from harness.core.quantity import common_unit, split_quantity
 from harness.core.variation import MOST_CASES, MOST_SAMPLES, count_of
-from harness.language.base import Count, Fraction, Share, SpecModel
+from harness.language.base import Count, Flag, Fraction, Share, SpecModel
 
 VARIATION_KEYS = (
     *("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate"),
     "search",
 )
 """Keys that say which cases there are; a case itself has none of them."""
+
+DEFAULT_SAMPLES = 20
+"""The number of samples of a file that draws random values and does not state their number."""
 
 
 def _is_finite_quantity(value: object) -> object:
@@ -132,6 +135,8 @@ def _grid_or_cases(value: object) -> object:
             raise ValueError(f"the grid has more than {MOST_CASES} cases")
         return grid
     cases = cast("list[Any]", value)
+    if len(cases) > MOST_CASES:
+        raise ValueError(f"there are more than {MOST_CASES} cases")
     for case in cases:
         if not isinstance(case, dict):
             raise ValueError(  # noqa: TRY004 - what pydantic collects
@@ -147,3 +152,59 @@ def _grid_or_cases(value: object) -> object:
 
 
 Parametrize = Annotated[dict[str, Any] | list[Any], AfterValidator(_grid_or_cases)]
+
+
+class CaseKeys(SpecModel):
+    """The keys of a scenario file that its cases, their seeds and their rate follow from."""
+
+    seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] = Field(
+        default=0, description="The seed of everything random; each step's seed follows from it."
+    )
+    parametrize: Parametrize | None = Field(
+        default=None,
+        description="The cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named cases.",
+    )
+    randomize: dict[str, Distribution] | None = Field(
+        default=None,
+        description="Dotted path -> distribution of that value. Items of lists go by index or by"
+        " name: `objects.cube.pose.xyz.0`.",
+    )
+    samples: Annotated[Count, Field(ge=1, le=MOST_SAMPLES)] | None = Field(
+        default=None,
+        description="The number of random cases; the default is 20 where something is random.",
+    )
+    redraw_overlaps: Flag | None = Field(
+        default=None,
+        description="Draws a sample again, up to 100 times, while objects overlap at the start.",
+    )
+    expect_rate: RequiredRate | None = Field(
+        default=None,
+        description="The required success rate of the samples; without it every sample must pass.",
+    )
+    search: Search | None = Field(
+        default=None,
+        description="Settings of `harness search`, which looks for failures in the ranges of "
+        "`randomize`.",
+    )
+
+    @property
+    def sample_count(self) -> int:
+        """The number of samples of each parametrised case; 0 where nothing is sampled."""
+        return self.samples or (DEFAULT_SAMPLES if self.randomize else 0)
+
+    @model_validator(mode="after")
+    def _random_values(self) -> CaseKeys:
+        if self.expect_rate is not None and not self.sample_count:
+            raise ValueError("`expect_rate` needs more than one run; add `samples` or `randomize`")
+        if self.redraw_overlaps and not self.randomize:
+            raise ValueError("`redraw_overlaps` redraws the values of `randomize`; add `randomize`")
+        if self.search is not None and not self.randomize:
+            raise ValueError("`search` looks within the ranges of `randomize`; add `randomize`")
+        return self
+
+    @model_validator(mode="after")
+    def _bounded_cases(self) -> CaseKeys:
+        count = count_of(self.parametrize) * self.sample_count
+        if count > MOST_SAMPLES:
+            raise ValueError(f"{count} samples of all cases; at most {MOST_SAMPLES} are run")
+        return self

@@ -151,12 +151,12 @@ def _job(
     scenario: str | Path | Scenario, overrides: dict[str, str], seed: int | None, case: str
 ) -> RunRequest:
     if isinstance(scenario, str | Path):
-        file, text, variation = Path(scenario), None, read_header(Path(scenario)).variation
+        file, text = Path(scenario), None
     else:
-        from harness.language.reading.written import as_written, scenario_text
+        from harness.language.reading.written import scenario_text
 
-        text = scenario_text(scenario)
-        file, variation = Path.cwd() / MODEL, Variation.of(as_written(scenario))
+        file, text = Path.cwd() / MODEL, scenario_text(scenario)
+    variation = read_header(file, overrides, text).variation
     name = str(scenario) if isinstance(scenario, str | Path) else scenario.scenario
     chosen = _case(variation, seed, case, name).with_overrides(overrides)
     return RunRequest(

@@ -1,25 +1,29 @@
-"""A scenario file's title, tags and cases, read without judging the file."""
+"""A scenario file's title, tags and cases, read without the rest of the file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.core.errors import SpecError
+from harness.core.errors import Problem, SpecError
 from harness.suite.discovery import SUFFIX
 from harness.suite.variation import ONE_CASE, Variation
 
 if TYPE_CHECKING:
     from harness.language.files.source import Located
 
-VARIED = ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate", "seed")
+TITLE, TAGS, VERIFIES, PARAMS = "scenario", "tags", "verifies", "params"
+CASE_KEYS = frozenset(
+    ("parametrize", "randomize", "samples", "redraw_overlaps", "expect_rate", "seed", "search")
+)
+"""Keys that the cases follow from; a file without any has one case, and is read without models."""
 
 
 @dataclass(frozen=True)
 class ScenarioHeader:
-    """What selects a scenario before it is read in earnest.
+    """What selects a scenario before the whole file is read.
 
     Attributes:
         title: Its `scenario`; the file's name where there is none.
@@ -27,7 +31,7 @@ class ScenarioHeader:
         line: The line of the title, from 1.
         variation: The variation of the file.
         verifies: Requirements that it names.
-        varied: The values in the file that its cases follow from.
+        varied: The values that its cases follow from, options applied.
     """
 
     title: str
@@ -46,31 +50,99 @@ def source_lines(file: Path) -> list[str]:
         return []
 
 
-def read_header(file: Path) -> ScenarioHeader:
-    """Read a file's header; for a broken file, whose run reports the problems, only the name."""
+def read_header(
+    file: Path, overrides: Mapping[str, str] | None = None, text: str | None = None
+) -> ScenarioHeader:
+    """Read a file's header; for a broken file, whose run reports the problems, only the name.
+
+    Args:
+        overrides: Dotted path -> value as YAML, as given with `--set`.
+        text: Content that is read in place of the file's.
+    """
     from harness.language.files.source import Source
     from harness.language.files.yaml_file import parse_yaml, read_text
+    from harness.language.reading.params import substitute
 
     nameless = ScenarioHeader(file.name.removesuffix(SUFFIX))
     try:
-        text = read_text(file)
-        entries = parse_yaml(text, Source.of_text(str(file), text)).mapping()
+        text = read_text(file) if text is None else text
+        written = parse_yaml(text, Source.of_text(str(file), text))
     except SpecError:
         return nameless
-    tags: tuple[str, ...] = ()
-    if "tags" in entries:
-        tags = _texts(entries["tags"].value)
-    verifies = _texts(entries["verifies"].value) if "verifies" in entries else ()
-    keys = (*VARIED, "planning") if "randomize" in entries else VARIED
-    varied = {key: entries[key].value.plain() for key in keys if key in entries}
-    variation = Variation.of(varied)
-    if "scenario" not in entries:
-        return ScenarioHeader(nameless.title, tags, 1, variation, verifies, varied)
-    key, title = entries["scenario"]
-    if not isinstance(title.value, str) or not title.value.strip():
-        return ScenarioHeader(nameless.title, tags, key.line, variation, verifies, varied)
-    plain_title = " ".join(title.value.split())
-    return ScenarioHeader(plain_title, tags, key.line, variation, verifies, varied)
+    root = _with_options(written, overrides or {})
+    heading = {k: e for k, e in root.mapping().items() if k in (TITLE, TAGS, VERIFIES, PARAMS)}
+    entries = substitute(type(root)(heading, root.place), []).mapping()
+    tags = _texts(entries[TAGS].value) if TAGS in entries else ()
+    verifies = _texts(entries[VERIFIES].value) if VERIFIES in entries else ()
+    varied, variation = _cases(written, root, overrides or {})
+    title, line = nameless.title, 1
+    if TITLE in entries:
+        key, stated = entries[TITLE]
+        line = max(1, key.line)
+        if isinstance(stated.value, str) and stated.value.strip():
+            title = " ".join(stated.value.split())
+    return ScenarioHeader(title, tags, line, variation, verifies, varied)
+
+
+def stated_variation(varied: Mapping[str, Any]) -> Variation:
+    """The variation that the values of a header say.
+
+    Raises:
+        ValueError, SpecError: They have a mistake.
+    """
+    from harness.language.files.source import Place, Source, located
+    from harness.language.reading.case_keys import read_case_keys
+
+    if not varied:
+        return ONE_CASE
+    entries = located(dict(varied), Place(Source(""))).mapping()
+    return Variation.of(read_case_keys(entries, []), _stated_planning(varied))
+
+
+def _with_options(root: Located, overrides: Mapping[str, str]) -> Located:
+    """The file's values with options in their place, where these can change the header."""
+    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+    of_header = {TITLE, TAGS, VERIFIES, PARAMS, "planning", *CASE_KEYS, *params}
+    if not any(path.split(".")[0] in of_header for path in overrides):
+        return root
+    from harness.language.reading.overrides import apply_overrides, from_options
+
+    problems: list[Problem] = []
+    return apply_overrides(root, from_options(overrides, problems), problems)
+
+
+def _cases(
+    written: Located, root: Located, overrides: Mapping[str, str]
+) -> tuple[dict[str, Any], Variation]:
+    """The values that a file's cases follow from, and the variation that they say.
+
+    Args:
+        written: The file's values.
+        root: The file's values, options applied.
+        overrides: The options.
+    """
+    if not CASE_KEYS & root.mapping().keys():
+        return {}, ONE_CASE
+    from harness.language.reading.case_keys import case_entries, fixed_values, read_case_keys
+    from harness.language.reading.overrides import from_options
+
+    problems: list[Problem] = []
+    entries, _ = case_entries(root, problems)
+    planning = {key: entry for key, entry in root.mapping().items() if key == "planning"}
+    varied: dict[str, Any] = {
+        key: entry.value.plain() for key, entry in (entries | planning).items()
+    }
+    try:
+        keys = read_case_keys(entries, problems)
+    except (ValueError, SpecError):
+        return varied, ONE_CASE
+    fixed = fixed_values(written, keys, from_options(overrides, [])) if overrides else {}
+    return varied, replace(Variation.of(keys, _stated_planning(varied)), fixed=fixed)
+
+
+def _stated_planning(varied: Mapping[str, Any]) -> frozenset[str]:
+    planning = varied.get("planning")
+    return frozenset(planning) if isinstance(planning, Mapping) else frozenset()
 
 
 def _texts(item: Located) -> tuple[str, ...]:

@@ -138,7 +138,8 @@ class PlannedCase:
     @property
     def values(self) -> Mapping[str, Any]:
         """What varies from case to case."""
-        return self.case.values
+        fixed = self.header.variation.fixed
+        return {path: fixed.get(path, value) for path, value in self.case.values.items()}
 
 
 class Plan(LazySequence[PlannedCase]):
@@ -188,7 +189,7 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
     """
     if request.conditions is not None:
         request.conditions.check(files)
-    found = cases_of([(file, read_header(file)) for file in files], request)
+    found = cases_of([(file, read_header(file, request.overrides)) for file in files], request)
     if not found:
         option = f"-k '{request.expression}'" if request.expression else "--case"
         if request.cases:
@@ -260,7 +261,8 @@ def _names(files: Sequence[Path], request: SuiteRequest) -> str:
     if not request.cases:
         return ""
     found = cases_of(
-        [(file, read_header(file)) for file in files], replace(request, cases=(), expression="")
+        [(file, read_header(file, request.overrides)) for file in files],
+        replace(request, cases=(), expression=""),
     )
     names = list(itertools.islice((each.name for each in found if each.name), 11))
     shown = ", ".join(names[:10]) + (", ..." if len(names) > 10 else "")
@@ -301,7 +303,7 @@ def record_of(
     """
     planned: list[PlannedFile] = []
     for file in files:
-        header = read_header(file)
+        header = read_header(file, request.overrides)
         planned.append(
             PlannedFile(
                 str(file),

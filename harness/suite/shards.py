@@ -15,8 +15,7 @@ from harness import __version__
 from harness.core.files import replaced, writing
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
-from harness.suite.header import ScenarioHeader
-from harness.suite.variation import Variation
+from harness.suite.header import ScenarioHeader, stated_variation
 
 FORMAT = "armharness-shard/1"
 FILE = "shard.json"
@@ -122,7 +121,7 @@ class PlannedFile:
     @property
     def header(self) -> ScenarioHeader:
         """The header that was read from the file."""
-        variation = Variation.of(self.varied)
+        variation = stated_variation(self.varied)
         return ScenarioHeader(self.title, self.tags, 1, variation, self.verifies, self.varied)
 
 

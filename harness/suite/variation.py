@@ -1,7 +1,7 @@
 """The cases of a scenario file: each value of a grid in turn, named ones, random samples.
 
-Read from the file's values alone, without judging them, so that collecting a thousand files takes
-a second; a file whose variation is wrong has one case, which reports the problems.
+They follow from a few keys of the file; a file in which these have a mistake has one case, which
+reports the problems.
 """
 
 from __future__ import annotations
@@ -11,16 +11,17 @@ import itertools
 import json
 import random
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any
 
 from harness.core.lazy import LazySequence
-from harness.core.quantity import share_of
-from harness.core.variation import MOST_CASES, MOST_SAMPLES, Parametrize, count_of
+from harness.core.variation import Parametrize, count_of
 from harness.suite.distribution import Distribution, read_distribution
 
-DEFAULT_SAMPLES = 20
+if TYPE_CHECKING:
+    from harness.language.variation import CaseKeys
+
 POSE_RESOLUTION = "1.0e-04"
 """Resolution [m] of measured poses in samples: with other friction objects differ less, at rest and
 in a hand. It is a twentieth of the default padding."""
@@ -49,6 +50,8 @@ class Case:
 
     def with_overrides(self, overrides: Mapping[str, str]) -> Case:
         """The case with values that take precedence over its own, in every draw."""
+        if self.sample is not None:  # the seed of all samples, which each draws its own from
+            overrides = {path: text for path, text in overrides.items() if path != "seed"}
         redraw = None if self.redraw is None else replace(self.redraw, fixed=overrides)
         return replace(self, overrides={**self.overrides, **overrides}, redraw=redraw)
 
@@ -67,6 +70,7 @@ class Variation:
         seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
         planning: The planning parameters that the file states.
+        fixed: Values that options give in place of a case's own, path -> value.
     """
 
     parametrize: Parametrize | None = None
@@ -78,40 +82,36 @@ class Variation:
     seed: int = 0
     redraw_overlaps: bool = False
     planning: frozenset[str] = frozenset()
+    fixed: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     @classmethod
-    def of(cls, values: Mapping[str, Any]) -> Variation:
-        """What the plain values of a file say; nothing where they make no sense."""
-        try:
-            return cls._of(values)
-        except (TypeError, ValueError, LookupError, AttributeError):
-            return cls()
+    def of(cls, keys: CaseKeys, planning: Iterable[str] = ()) -> Variation:
+        """The variation that the keys of a scenario file say.
 
-    @classmethod
-    def _of(cls, values: Mapping[str, Any]) -> Variation:
-        stated = values.get("randomize") or {}
-        randomize = {path: read_distribution(each) for path, each in stated.items()}
-        stated = values.get("expect_rate")
-        rate = cast("dict[str, Any]", stated) if isinstance(stated, dict) else {"at_least": stated}
-        at_least = rate.get("at_least")
-        default = DEFAULT_SAMPLES if randomize else 0
+        Args:
+            keys: The keys of the cases.
+            planning: The planning parameters that the file states.
+        """
+        from harness.language.reading.written import as_written
+
+        rate = keys.expect_rate
+        stated = dict(keys.randomize or {})
         variation = cls(
-            parametrize=values.get("parametrize"),
-            randomize=randomize,
-            samples=int(values.get("samples") or default),
-            at_least=None if at_least is None else share_of(at_least),
-            confidence=share_of(rate.get("confidence", 0.95)),
-            stop_early=bool(rate.get("stop_early", True)),
-            seed=int(values.get("seed") or 0),
-            redraw_overlaps=values.get("redraw_overlaps") is True,
-            planning=frozenset(values.get("planning") or ()),
+            parametrize=keys.parametrize,
+            randomize={path: read_distribution(as_written(each)) for path, each in stated.items()},
+            samples=keys.sample_count,
+            seed=keys.seed,
+            redraw_overlaps=keys.redraw_overlaps is True,
+            planning=frozenset(planning),
         )
-        if not count_of(variation.parametrize):
-            raise ValueError("no case")
-        if count_of(variation.parametrize) > MOST_CASES or variation.count > MOST_SAMPLES:
-            raise ValueError("more cases than a file may have")
-        list(itertools.islice(variation.cases(), 3))
-        return variation
+        if rate is None:
+            return variation
+        return replace(
+            variation,
+            at_least=rate.at_least,
+            confidence=rate.confidence,
+            stop_early=rate.stop_early,
+        )
 
     @property
     def count(self) -> int:
@@ -138,7 +138,7 @@ class Variation:
             for combination in itertools.product(*(range(len(v)) for v in grid.values())):
                 picked = list(zip(grid.items(), labels, combination, strict=True))
                 chosen = {path: values[place] for (path, values), _, place in picked}
-                yield _case("-".join(names[place] for _, names, place in picked), chosen)
+                yield self._case("-".join(names[place] for _, names, place in picked), chosen)
         else:
             taken: set[str] = set()
             for index, named in enumerate(self.parametrize):
@@ -147,7 +147,11 @@ class Variation:
                 name = _plain_name(str(named.get("id") or "-".join(labels)))
                 name = name if name and name not in taken else f"case{index}"
                 taken.add(name)
-                yield _case(name, chosen)
+                yield self._case(name, chosen)
+
+    def _case(self, name: str, chosen: Mapping[str, Any]) -> Case:
+        shown = {path: self.fixed.get(path, value) for path, value in chosen.items()}
+        return Case(name, as_yaml(chosen), shown, name)
 
     def _sample(self, case: Case, index: int, base: int, draw: int = 0) -> Case:
         """A case with random values, and a seed of its own that everything random follows from."""
@@ -162,7 +166,7 @@ class Variation:
                 **as_yaml(drawn),
                 "seed": str(seed),
             },
-            values={**case.values, **drawn},
+            values={**case.values, **{path: self.fixed.get(path, v) for path, v in drawn.items()}},
             group=case.name,
             sample=index,
             redraw=Redraw(self, case, index, base) if self.redraw_overlaps and not draw else None,
@@ -261,10 +265,6 @@ ONE_CASE = Variation()
 
 def _sample_name(case: Case, index: int) -> str:
     return f"{case.name}-sample{index}" if case.name else f"sample{index}"
-
-
-def _case(name: str, values: Mapping[str, Any]) -> Case:
-    return Case(name, as_yaml(values), dict(values), name)
 
 
 def as_yaml(values: Mapping[str, Any]) -> dict[str, str]:

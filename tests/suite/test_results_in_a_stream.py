@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase
+from harness.suite.header import stated_variation
 from harness.suite.results import Results
 from harness.suite.stream import Stream, StreamEntry
-from harness.suite.variation import Variation
 from tests.reporting.suites import failed, passed
 
 COUNT = 3000
@@ -57,4 +57,4 @@ def test_a_result_takes_few_bytes_of_memory(tmp_path):
         for i in range(COUNT)
     )
     assert kept_in_memory(lambda: Columns(made, most_listed=100)) < 150
-    assert kept_in_memory(lambda: Variation.of({"samples": COUNT}).cases()) < 5
+    assert kept_in_memory(lambda: stated_variation({"samples": COUNT}).cases()) < 5

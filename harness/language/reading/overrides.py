@@ -132,7 +132,7 @@ class _Setter:
 
     def _in_mapping(self, item: Located, kind: Any, parts: list[str]) -> Located:
         entries = item.mapping()
-        part, rest = _alias(parts[0], item, kind), parts[1:]
+        part, rest = _key(parts, item, kind)
         annotation, default = _field(kind, part)
         place = self.override.value.place
         old = entries.get(part)
@@ -198,10 +198,18 @@ def _opened(item: Located, model: type[SpecModel]) -> Located:
     return item if is_ready else expanded(item, model)
 
 
-def _alias(part: str, item: Located, kind: Any) -> str:
-    """The key that the part means: the course's `ur_type` is `model`."""
-    is_alias = kind is RobotSpec and part == "ur_type" and part not in item.mapping()
-    return "model" if is_alias else part
+def _key(parts: list[str], item: Located, kind: Any) -> tuple[str, list[str]]:
+    """The key that a path continues with, and the rest of the path.
+
+    A key of the file may have dots, as those of `randomize` have: `randomize.params.w.choice`. The
+    course's `ur_type` is `model`.
+    """
+    entries = item.mapping()
+    for taken in range(len(parts), 1, -1):
+        if (key := ".".join(parts[:taken])) in entries:
+            return key, parts[taken:]
+    is_alias = kind is RobotSpec and parts[0] == "ur_type" and "ur_type" not in entries
+    return "model" if is_alias else parts[0], parts[1:]
 
 
 def _field(kind: Any, key: str) -> tuple[Any, Any]:

@@ -36,14 +36,14 @@ def escaped(item: Located) -> Located:
     """The inverse for a file that is written again: text that looks like a reference, escaped."""
     if isinstance(item.value, str):
         return Located(REFERENCE.sub(r"$\g<0>", item.value), item.place)
-    return _mapped(item, escaped)
+    return mapped(item, escaped)
 
 
 def filled(item: Located, params: Mapping[str, Entry], problems: list[Problem]) -> Located:
     """A value with every `${name}` in it replaced by the parameter of that name."""
     text = item.value
     if not isinstance(text, str):
-        return _mapped(item, lambda child: filled(child, params, problems))
+        return mapped(item, lambda child: filled(child, params, problems))
     whole = REFERENCE.fullmatch(text)
     if whole and not whole["escape"]:
         value = _value(whole["name"], params, item.place, problems)
@@ -74,7 +74,8 @@ def _value(
     return None
 
 
-def _mapped(item: Located, change: Callable[[Located], Located]) -> Located:
+def mapped(item: Located, change: Callable[[Located], Located]) -> Located:
+    """A mapping or a list with each of its values changed; another value as it is."""
     if isinstance(item.value, dict):
         entries = {key: Entry(entry.key, change(entry.value)) for key, entry in item.value.items()}
         return Located(entries, item.place, item.tag)

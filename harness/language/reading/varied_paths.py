@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 
 from pydantic import ValidationError
 
@@ -11,7 +11,9 @@ from harness.core.errors import Problem
 from harness.core.quantity import split_quantity
 from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, located
+from harness.language.reading.case_keys import case_entries
 from harness.language.reading.overrides import Override, apply_overrides
+from harness.language.reading.params import PARAMS
 from harness.language.variation import VARIATION_KEYS, Distribution
 
 MOST_ROUNDS = 100
@@ -33,10 +35,13 @@ def check_variation(
         problems: Gets the mistakes, each at its line of `parametrize` or `randomize`.
     """
     drawn: dict[str, list[Override]] = {}
+    _, decisive = case_entries(root, [])
     for paths, is_random in ((_parametrized(root), False), (_randomized(root), True)):
         for path, entry in paths:
             if path.partition(".")[0] in VARIATION_KEYS:
                 problems.append(entry.key.problem(f"`{path}` itself cannot be varied"))
+            elif why := _why_constant(root, path, decisive):
+                problems.append(entry.key.problem(f"`{path}` cannot be varied: {why}"))
             elif path not in given:
                 wrong: list[Problem] = []
                 apply_overrides(root, [Override(path, Located(None, entry.key), entry.key)], wrong)
@@ -45,6 +50,26 @@ def check_variation(
                 if is_random and not wrong and not is_known:
                     drawn[path] = _corners(path, entry)
     _check_values(root, {path: values for path, values in drawn.items() if values}, judge, problems)
+
+
+def _why_constant(root: Located, path: str, decisive: Set[str]) -> str:
+    """Why a path must have one value in all cases; empty where it need not.
+
+    Args:
+        decisive: Names of the parameters that the cases follow from.
+    """
+    first, *rest = path.split(".")
+    if path == "seed" and {"samples", "randomize"} & root.mapping().keys():
+        return "each sample has a seed of its own, which follows from the file's"
+    if path == PARAMS and decisive:
+        return (
+            f"the cases follow from `${{{min(decisive)}}}`, which must be the same in all of them"
+        )
+    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+    name = rest[0] if first == PARAMS and rest else first
+    if name in decisive and (first == PARAMS or first in params):
+        return f"the cases follow from `${{{name}}}`, which must be the same in all of them"
+    return ""
 
 
 def _corners(path: str, entry: Entry) -> list[Override]:
