@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.iktest.calls import CallOutcome, OutcomeKind
 from harness.iktest.trial import Flaw, SolverTrial
 from harness.robot.chain import Chain
@@ -132,7 +132,11 @@ def _follows(trial: SolverTrial, line: StraightLine) -> list[Flaw]:
     before = line.joint_positions[0]
     for positions in line.joint_positions:
         answer = _nearest(trial, positions, before if last is None else last)
-        if last is not None and answer is not None and np.abs(answer - last).max() > JUMP:
+        if (
+            last is not None
+            and answer is not None
+            and _changes(trial.chain, last, answer).max() > JUMP
+        ):
             flaw = _jump(trial, before, positions, last, answer)
             if flaw is not None:
                 return [flaw]
@@ -150,11 +154,12 @@ def _jump(
         answer = _nearest(trial, middle, left)
         if answer is None:
             return None
-        if np.abs(answer - left).max() > np.abs(right - answer).max():
+        halves = (_changes(trial.chain, *each).max() for each in ((left, answer), (answer, right)))
+        if next(halves) > next(halves):
             after, right = middle, answer
         else:
             before, left = middle, answer
-    change = np.abs(right - left)
+    change = _changes(trial.chain, left, right)
     index = int(np.argmax(change))
     if change[index] < JUMP:
         return None
@@ -172,7 +177,19 @@ def _nearest(trial: SolverTrial, positions: FloatArray, near: FloatArray) -> Flo
     """The answer nearest to positions, for the pose of others; None where there is none."""
     target = Target(trial.chain.link_pose(positions), positions)
     answers = [each for each in trial.query(target, near).answers if np.all(np.isfinite(each))]
-    return min(answers, key=lambda each: float(np.abs(each - near).max()), default=None)
+    return min(answers, key=lambda each: _changes(trial.chain, near, each).max(), default=None)
+
+
+def _changes(chain: Chain, before: FloatArray, after: FloatArray) -> FloatArray:
+    """How far each joint moves [rad or m]; a joint without limits, up to whole turns."""
+    lower, upper = chain.limits
+    return _without_turns(after - before, np.isinf(lower) & np.isinf(upper) & chain.is_turning)
+
+
+def _without_turns(changes: FloatArray, turns: BoolArray) -> FloatArray:
+    """Sizes of changes, without the whole turns of the joints that turn."""
+    whole = 2 * np.pi * np.round(changes / (2 * np.pi))
+    return np.abs(np.where(turns, changes - whole, changes))
 
 
 def _all_ways(trial: SolverTrial, target: Target) -> list[Flaw]:
@@ -190,9 +207,7 @@ def _all_ways(trial: SolverTrial, target: Target) -> list[Flaw]:
 
 def is_same_way(chain: Chain, first: FloatArray, second: FloatArray) -> bool:
     """Whether positions are the same up to whole turns."""
-    change = first - second
-    turns = 2 * np.pi * np.round(change / (2 * np.pi))
-    return bool(np.all(np.abs(np.where(chain.is_turning, change - turns, change)) < SAME_WAY))
+    return bool(_without_turns(first - second, chain.is_turning).max() < SAME_WAY)
 
 
 def _target_size(trial: SolverTrial, target: Target) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.printable import counted
 from harness.core.types import FloatArray
-from harness.iktest.report import IkFinding, IkReport, Speed
+from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed
 
 NAME_WIDTH = 13
 
@@ -19,25 +19,32 @@ def report_lines(report: IkReport, folder: Path = Path()) -> list[str]:
         f"{report.solver} on {report.robot}: {report.task} of {report.link}, "
         f"{len(report.joint_names)} joints, seed {report.seed}"
     ]
-    for each in report.properties:
-        if each.note:
-            outcome = each.note
-        elif each.flawed:
-            numbers = ", ".join(map(str, each.findings))
-            outcome = f"FAILED in {each.flawed} of {each.tried}: finding {numbers}"
-        elif not each.observed:
-            outcome = f"NOT OBSERVED, {each.tried} tried"
-        elif each.observed < each.tried:
-            outcome = f"ok, {each.observed} of {each.tried} observed"
-        else:
-            outcome = f"ok, {each.tried} tried"
-        lines.append(f"  {each.name:<{NAME_WIDTH}}{outcome:<36}{'' if each.note else each.says}")
+    outcomes = [_outcome(each) for each in report.properties]
+    width = max(map(len, outcomes), default=0)
+    for each, outcome in zip(report.properties, outcomes, strict=True):
+        says = "" if each.note else f"   {each.says}"
+        lines.append(f"  {each.name:<{NAME_WIDTH}}{outcome:<{width}}{says}")
     lines.append(f"  {'speed':<{NAME_WIDTH}}{_speed_text(report.speed)}")
     for finding in report.findings:
         lines += ["", *finding_lines(report, finding, folder)]
     count = len(report.findings)
     count_text = counted(count, "finding") if count else "nothing found"
     return [*lines, "", f"{count_text} in {report.seconds:.1f} s"]
+
+
+def _outcome(result: PropertyResult) -> str:
+    """The outcome of a property in one column."""
+    if result.note:
+        return result.note
+    if result.flawed:
+        noun = "finding" if len(result.findings) == 1 else "findings"
+        numbers = ", ".join(map(str, result.findings))
+        return f"FAILED in {result.flawed} of {result.tried}: {noun} {numbers}"
+    if not result.observed:
+        return f"NOT OBSERVED, {result.tried} tried"
+    if result.observed < result.tried:
+        return f"ok, {result.observed} of {result.tried} observed"
+    return f"ok, {result.tried} tried"
 
 
 def finding_lines(report: IkReport, finding: IkFinding, folder: Path = Path()) -> list[str]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from harness.core.quantity import distinct
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.iktest.calls import CallOutcome
@@ -107,16 +108,18 @@ class SolverTrial:
 
     def outside(self, target: Target, answer: FloatArray) -> Flaw | None:
         """Which limits an answer breaks, if any."""
-        chain = self.chain
-        excess = np.maximum(chain.lower - answer, answer - chain.upper)
+        lower, upper = self.chain.limits
+        excess = np.maximum(lower - answer, answer - upper)
         if not np.any(excess > LIMIT_SLACK):
             return None
         index = int(np.argmax(excess))
-        low, high, value = chain.lower[index], chain.upper[index], answer[index]
-        unit = "rad" if chain.is_turning[index] else "m"
+        value, limit = (float(each[index]) for each in (answer, np.clip(answer, lower, upper)))
+        unit = "rad" if self.chain.is_turning[index] else "m"
+        at, bound = distinct(value, limit, lambda number, more: f"{number:.{5 + more}g}")
+        ends = [bound if each[index] == limit else f"{each[index]:.5g}" for each in (lower, upper)]
         return self.flaw(
             "leaves the joint limits",
-            f"{chain.joint_names[index]} at {value:.5g} {unit}, limits {low:.5g} to {high:.5g}",
+            f"{self.chain.joint_names[index]} at {at} {unit}, limits {' to '.join(ends)}",
             target,
             answer,
         )

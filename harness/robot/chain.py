@@ -25,8 +25,9 @@ class Chain:
         description: The description of the robot.
         link: The link at the chain's end.
         joint_names: Joints of the group, from base to tip.
-        lower: Lower position limits, shape (dof,) [rad or m]; -pi for a continuous joint.
-        upper: Upper position limits, shape (dof,) [rad or m]; pi for a continuous joint.
+        lower: Smallest positions to draw, shape (dof,) [rad or m]: the joint's limit; -pi for a
+            continuous joint, which has none.
+        upper: Largest positions to draw, likewise.
         is_turning: False for prismatic joints, shape (dof,).
         home: Named state `home`, or the start positions of runs, shape (dof,).
         way: All joints between the world and the link, fixed ones included.
@@ -100,6 +101,12 @@ class Chain:
     def dof(self) -> int:
         """Number of joints."""
         return len(self.joint_names)
+
+    @property
+    def limits(self) -> FloatArray:
+        """Position limits, shape (2, dof) [rad or m]; infinite for a continuous joint."""
+        joints = [self.description.joint_by_name[name] for name in self.joint_names]
+        return np.array([[each.lower, each.upper] for each in joints]).T
 
     def link_pose(self, joint_positions: FloatArray) -> SE3:
         """T_world_link at the group's positions, shape (dof,)."""
