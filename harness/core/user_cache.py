@@ -34,13 +34,6 @@ def cached(name: str) -> bytes | None:
     return content if hashlib.sha256(content).digest() == checksum else None
 
 
-def is_writable() -> bool:
-    """Whether `store` can keep files."""
-    folder = cache_folder()
-    there = next(each for each in (folder, *folder.parents) if each.exists())
-    return os.access(there, os.W_OK)
-
-
 def store(name: str, content: bytes) -> None:
     """Store under a temporary name, then rename: a reader never sees half a file.
 

@@ -6,14 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.planning.collision.compiled import use_compiled
 from harness.planning.search.planner_names import planner_names
 from tests.planning.planner_trial import Trial
 
 
 def memory_kept_by_plans() -> dict[str, float]:
     """By how much 25 plans of each planner enlarge this process, at the least of two times [MB]."""
-    use_compiled("always")  # loaded when it pays: 100 MB once
     trial = Trial()
     return {name: _kept(trial, name) for name in planner_names()}
 

@@ -1,7 +1,5 @@
 """The compiled check of motions gives the verdicts of Coal's check of every state."""
 
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,10 +7,8 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
-from harness.core.user_cache import cache_folder, cached
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.collision.compilation import code_file
-from harness.planning.collision.compiled import use_compiled
+from harness.planning.collision.native import library
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
@@ -26,10 +22,15 @@ from tests.second_opinion.runs import SRDF, URDF
 
 
 @pytest.fixture
-def stages():
-    """Switches the compiled check on and off; as it was afterwards."""
-    yield use_compiled
-    use_compiled("when it pays")
+def stages(monkeypatch):
+    """Switches the compiled check on and off."""
+    compiled = library.certify
+    assert compiled is not None, f"compile it: python {library.BUILD}"
+
+    def choose(when):
+        monkeypatch.setattr(library, "certify", compiled if when == "always" else None)
+
+    return choose
 
 
 def write_mesh(folder: Path) -> Path:
@@ -174,43 +175,6 @@ def test_plans_are_the_same_with_and_without_the_compiled_check(stages):
         )
     assert plans[0].statistics == plans[1].statistics
     assert np.array_equal(plans[0].trajectory.positions, plans[1].trajectory.positions)
-
-
-def test_a_plan_loads_neither_numba_nor_its_compiler():
-    program = """
-import sys
-from tests.planning.lesson import Cell, ARM, ur
-from harness.ports.goals import JointGoal
-from harness.ports.motion_planning import MotionRequest, PlanningOptions
-from harness.ports.motions import FreeMotion
-cell = Cell(ur("ur3e"))
-goal = FreeMotion(JointGoal(cell.named("up")))
-cell.planner.plan(MotionRequest(ARM, cell.state, goal, PlanningOptions()))
-assert not {"llvmlite", "numba"} & {*sys.modules}
-"""
-    subprocess.run([sys.executable, "-c", program], check=True, cwd=Path(__file__).parents[2])
-
-
-def test_machine_code_of_an_earlier_process_is_loaded_without_numba():
-    program = """
-import sys
-from harness.planning.collision.compiled import compiled_check, use_compiled
-use_compiled("always")
-assert compiled_check(1) is not None
-print("numba" in sys.modules)
-"""
-    command = [sys.executable, "-c", program]
-    for _ in range(2):
-        done = subprocess.run(command, check=True, cwd=Path(__file__).parents[2], stdout=-1)
-    assert done.stdout == b"False\n"
-
-
-def test_damaged_machine_code_is_not_loaded(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    file = cache_folder() / code_file()
-    file.parent.mkdir(parents=True)
-    file.write_bytes(b"x" * 100)
-    assert cached(code_file()) is None
 
 
 @pytest.mark.parametrize("kind", ["arm", "gripper"])

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-NEVER_USED = ("matplotlib", "scipy", "glfw", "OpenGL", "numba", "PIL", "rosbags", "pandas")
+NEVER_USED = ("matplotlib", "scipy", "glfw", "OpenGL", "PIL", "rosbags", "pandas")
 USED_BY_REPORTS = ("cv2", "jinja2", "numpy.ma")
 
 

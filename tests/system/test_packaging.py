@@ -2,11 +2,14 @@ import json
 import os
 import subprocess
 import sys
+import sysconfig
 import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
+
+from harness.planning.collision.native.sources import library_path
 
 ROOT = Path(__file__).parents[2]
 TEST_COMMAND = (
@@ -64,6 +67,9 @@ def test_the_wheel_holds_package_data_and_licence_and_nothing_else(wheel):
     inside = zipfile.ZipFile(wheel).namelist()
     tops = {name.split("/")[0] for name in inside}
     assert tops == {"harness", f"{wheel.name.split('-py3')[0]}.dist-info"}
+    assert library_path().relative_to(ROOT).as_posix() in inside
+    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    assert wheel.name.endswith(f"-py3-none-{platform}.whl")
     assert any(name.endswith("licenses/LICENSE") for name in inside)
     assert {"harness/cli/templates/new.scenario.yaml", "harness/py.typed"} <= set(inside)
     assert not [name for name in inside if "__pycache__" in name or "/reports/" in name]

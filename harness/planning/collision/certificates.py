@@ -14,9 +14,8 @@ import pinocchio as pin
 from harness.core.geometry import Plane
 from harness.core.types import FloatArray, IntArray
 from harness.planning.collision.collision_model import Body, CollisionModel
-from harness.planning.collision.compiled import Certify
 from harness.planning.collision.convex_tree import concatenate
-from harness.planning.collision.kernel.results import FULL
+from harness.planning.collision.native.library import FULL, Certify
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
@@ -28,10 +27,6 @@ ROUNDING = 1e-5
 MOST_LEFT = 64 * 1024
 """Size of the memory for the pairs that are left in the intervals of a motion; where it is full,
 all pairs of the whole interval are compared again."""
-
-MOST_WAITING, SCRATCH = 1024, 17
-"""Largest number of pairs of nodes that wait for comparison, and rows of working memory."""
-
 
 Array = np.ndarray[Any, Any]
 Arrays = tuple[Array, ...]
@@ -50,7 +45,7 @@ class MotionArrays:
 
     Attributes:
         table: The address of each array and its shape, filled up with ones, in the order in which
-            `certify` names them, shape (arrays, 4).
+            native/arrays.h names them, shape (arrays, 4).
     """
 
     def __init__(self, rest: FloatArray, drive: FloatArray, arrays: Arrays) -> None:
@@ -152,10 +147,7 @@ def _tree_arrays(bodies: tuple[RigidShapes, ...]) -> Arrays:
 
 
 def _indices(array: Array) -> Array:
-    """Indices that are not negative, as numbers without a sign.
-
-    The compiled code does not look for indices that count from the end then: a tenth of its time.
-    """
+    """Indices as the compiled code reads them, in half the memory."""
     return array.astype(np.uint32)
 
 
@@ -166,9 +158,7 @@ def _working_memory(layout: _Layout, width: int) -> Arrays:
     return (
         *(np.zeros(shape) for shape in floats),
         np.zeros((pairs, 3)),
-        np.empty((SCRATCH, 13)),
         np.empty(bodies, dtype=np.int64),
-        np.empty((MOST_WAITING, 2), dtype=np.uint32),
         np.arange(max(MOST_LEFT, 2 * pairs), dtype=np.uint32),
     )
 

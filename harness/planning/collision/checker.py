@@ -19,8 +19,8 @@ from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.approximation import approximation_note
 from harness.planning.collision.certificates import ROUNDING, MotionArrays, motion_arrays
-from harness.planning.collision.compiled import compiled_check
 from harness.planning.collision.motion_rates import motion_rates
+from harness.planning.collision.native import library
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
@@ -52,8 +52,8 @@ class MotionChecker:
     A motion is free when all its states at the requested spacing are free. Most of them are not
     checked one by one: where every pair is farther apart than a stretch of the motion can bring it
     nearer, the whole stretch is free (conservative advancement). The compiled check does so with
-    exact distances on the same shapes; Coal decides what is left, and everything while the compiled
-    check is not loaded. Results, counts and plans do not depend on which of them decides.
+    exact distances on the same shapes; Coal decides what is left, and everything in a source tree
+    without the compiled check. Results, counts and plans do not depend on which of them decides.
 
     Attributes:
         checks: The number of states checked, as `SampledMotion.counted` has it.
@@ -151,10 +151,9 @@ class MotionChecker:
         The compiled check decides all states but those within `ROUNDING` of a margin and those in
         contact, which Coal checks.
         """
-        certify = compiled_check(min(high - low + 1, motion.counted))
-        if certify is None:
+        if library.certify is None:
             return self._blocked_by_coal(motion, low, high)
-        blocked, undecided = self._arrays.certify(certify, motion, low, high)
+        blocked, undecided = self._arrays.certify(library.certify, motion, low, high)
         if blocked >= 0:
             return blocked
         if not len(undecided):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.planning.collision.kernel.convex_kinds import POINTS, POLYTOPE
+from harness.planning.collision.convex_kinds import POINTS, POLYTOPE
 from harness.robot.mesh_file import hull_of
 
 FEW_POINTS = 32

@@ -9,8 +9,8 @@ import numpy as np
 
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
 from harness.core.types import FloatArray
+from harness.planning.collision.convex_kinds import CYLINDER, HALF_SPACE, POINTS
 from harness.planning.collision.convex_tree import ConvexTree, coal_hull, leaf, single_node
-from harness.planning.collision.kernel.convex_kinds import CYLINDER, HALF_SPACE, POINTS
 from harness.planning.collision.surface_tree import surface_tree
 from harness.robot.mesh_file import convex_hull, decomposition_of, read_triangles
 

@@ -12,7 +12,6 @@ import ompl.geometric as og
 import ompl.util as ou
 
 from harness.core.types import FloatArray
-from harness.planning.collision.compiled import use_compiled
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
@@ -52,8 +51,7 @@ class Outcome:
 
 
 def ours(problem: Problem, seed: int = 1) -> Outcome:
-    """Plan, verify and shorten as `move_to` does, with the code that is compiled."""
-    use_compiled("always")
+    """Plan, verify and shorten as `move_to` does."""
     problem.forget()
     before = time.process_time()
     checker, effort = problem.checker(), Effort()

@@ -10,7 +10,6 @@ from harness.core.geometry import Box, Cylinder, Shape
 from harness.core.spatial import SE3
 from harness.planning.backend import make_planning
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.collision.compiled import use_compiled
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from tests.benchmarks.planning.arms import Arm
@@ -34,7 +33,6 @@ class SceneTimes:
 
 def scene_times(arm: Arm, count: int, seed: int) -> SceneTimes:
     """Set up scenes with boxes and cylinders at random places in front of an arm."""
-    use_compiled("always")
     rng = np.random.default_rng([seed, count])
     timed = [_timed(arm, count, rng) for _ in range(REPETITIONS)]
     return SceneTimes(*(statistics.median(column) for column in zip(*timed, strict=True)))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.collision.compiled import use_compiled
+from harness.planning.collision.native import library
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
@@ -32,8 +32,9 @@ WHEN = ("never", "always")
 @pytest.mark.benchmark
 @pytest.mark.parametrize("when", WHEN)
 @pytest.mark.parametrize("model", list(HOMES))
-def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, print_row):
-    use_compiled(when)
+def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, print_row, monkeypatch):
+    if when == "never":
+        monkeypatch.setattr(library, "certify", None)
     cell = Cell(description_of(model))
     cell.add(boxes(*FIRST_BOXES))
     ends = list(_free_positions(cell, np.array(HOMES[model])))
@@ -42,7 +43,6 @@ def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, print_row):
     for start, end in pairwise(ends):
         seconds, how = _motion(cell, start, end)
         spent[how].append(seconds)
-    use_compiled("when it pays")
     every = [seconds for part in spent.values() for seconds in part]
     heading = (
         "bundled arms on the lesson's tables: number of motions, median ms to plan and shorten "

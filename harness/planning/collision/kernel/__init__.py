@@ -1,1 +1,0 @@
-"""The compiled check of motions, in the subset of Python that numba compiles."""
