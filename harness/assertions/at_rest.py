@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from harness.assertions.body_motion import STILL, body_speeds, calm, fastest_time
 from harness.assertions.contacts import TOUCH_FORCE, robot_contact
 from harness.assertions.margins import Part
-from harness.assertions.poses import STILL, observed_for
+from harness.assertions.poses import object_poses, observed_for
 from harness.assertions.window import NotReached, Window
-from harness.core.types import BoolArray
+from harness.core.types import BoolArray, FloatArray
 from harness.language.expectation import Quantity
 
 SPEED = Quantity(
@@ -17,6 +20,49 @@ TURNING = Quantity(
 )
 CONTACT = Quantity("contact with the robot", "N", "at most 0.001 N", "contact")
 ATTACHED = Quantity("attached in the planning scene", "1", "not attached")
+
+
+def still_part(
+    window: Window,
+    quantity: Quantity,
+    speed: FloatArray,
+    limit: float,
+    here: BoolArray | None = None,
+    **more: Any,
+) -> Part:
+    """A speed of the whole run that was at most `limit` in the last `STILL` seconds too.
+
+    Args:
+        window: The window that is judged.
+        quantity: The speed.
+        speed: The speed at each sample of the run, shape (N,).
+        limit: The largest speed.
+        here: Samples at which its body is in the scene, as of `calm`.
+        more: Further fields of the part.
+    """
+    return Part(
+        quantity,
+        window.cut(calm(window.run, speed, here)),
+        limit,
+        "<=",
+        time_of=lambda index: fastest_time(window.run, speed, window.start + index),
+        **more,
+    )
+
+
+def resting_parts(
+    window: Window,
+    name: str,
+    limits: tuple[float, float],
+    here: BoolArray | None = None,
+    **more: Any,
+) -> list[Part]:
+    """The speeds of an object, at most the limits of speed [m/s] and of turning speed [rad/s]."""
+    speeds = body_speeds(window.run, name, object_poses(window.run, name), here)
+    return [
+        still_part(window, quantity, speed, limit, here, **more)
+        for quantity, speed, limit in zip((SPEED, TURNING), speeds, limits, strict=True)
+    ]
 
 
 def released_parts(window: Window, name: str) -> tuple[Part, Part]:

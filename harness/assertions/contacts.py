@@ -10,13 +10,13 @@ from collections.abc import Collection
 
 import numpy as np
 
+from harness.assertions.body_motion import balls_of
 from harness.assertions.facts import fact
-from harness.assertions.poses import present
+from harness.assertions.poses import present, put_samples
 from harness.assertions.temporal import trailing_max, without_gaps
 from harness.assertions.window import NotObservable
 from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
-from harness.language.step import step_class
 from harness.recording.robot_record import GripperRecord
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
@@ -208,8 +208,8 @@ def _skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Ver
         width = _least_known_width(run, name)
         if poses is None or not width:
             continue
-        moved = np.nan_to_num(np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1))
-        moved[_jumps(run, len(moved))] = 0.0
+        moved = np.nan_to_num(balls_of(run, name).moved(poses[:-1], poses[1:]))
+        moved[put_samples(run, name) - 1] = 0.0
         others = [first if second == name else second for first, second in pairs
                   if name in (first, second)]  # fmt: skip
         thinnest = min((_least_known_width(run, other) for other in others), default=0.0)
@@ -230,15 +230,6 @@ def _least_known_width(run: Run, name: str) -> float:
     """The least width of an object [m]; 0 of a link, and of a mesh."""
     shapes = [record.shapes for record in run.objects if record.name == name]
     return least_thickness(shapes[0]) if shapes else 0.0
-
-
-def _jumps(run: Run, count: int) -> BoolArray:
-    """Intervals between samples in which a step may put objects somewhere, shape (N - 1,)."""
-    mask = np.zeros(count, dtype=bool)
-    for step in run.steps:
-        if step_class(step.verb).moves_objects:
-            mask[max(step.start_index - 1, 0) : step.end_index + 1] = True
-    return mask
 
 
 def is_there(run: Run, name: str) -> BoolArray:

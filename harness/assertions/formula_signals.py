@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.assertions.body_motion import frame_speeds
 from harness.assertions.contacts import bodies, could_touch, force_between, pairs_of
 from harness.assertions.distances import recorded_distances
 from harness.assertions.joints import joint_column
-from harness.assertions.poses import UP, frame_poses, frame_present, physical_poses, speeds
+from harness.assertions.poses import UP, frame_poses, frame_present, physical_poses
 from harness.assertions.window import NotObservable, Window
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
@@ -87,8 +88,8 @@ def _recorded(node: Signal, window: Window) -> Values:
             return Values(angle_between(rotate(poses[:, 3:], UP), UP), "rad")
         case "speed", (name,):
             there = frame_present(window.run, name)
-            linear, _ = speeds(window.run, _poses(window, name), there)
-            return Values(window.cut(linear), "m/s")
+            speed = frame_speeds(window.run, name, _poses(window, name), there)
+            return Values(window.cut(speed), "m/s")
         case "force", (first, second):
             run = window.run
             firsts, seconds = bodies(run, first), bodies(run, second)

@@ -29,6 +29,7 @@ class Evidence:
         margin: The margin in `unit`, where it says more than the signal's value; else None.
         unit: The unit of `margin`.
         is_moment: Whether the text is about the sample, rather than of all the time judged.
+        time: When what the text says was measured, where it was before the sample; else None [s].
     """
 
     text: str
@@ -36,6 +37,7 @@ class Evidence:
     margin: float | None = None
     unit: str = ""
     is_moment: bool = True
+    time: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +93,7 @@ class Part:
             margin of a value that must be large is a share of what lies between limit and ceiling.
         measured_name: The name of the measure where it holds more than the quantity's.
         measured_unit: The unit where the quantity has several.
+        time_of: When the value at an index was measured, where that was before its sample [s].
     """
 
     quantity: Quantity
@@ -104,6 +107,7 @@ class Part:
     ceiling: float = math.inf
     measured_name: str = ""
     measured_unit: str = ""
+    time_of: Callable[[int], float] | None = None
 
     @property
     def name(self) -> str:
@@ -118,6 +122,7 @@ class Part:
     def measure(self, index: int, time: float) -> Measure:
         """The part at a sample, for a verdict."""
         value, (expected, actual) = float(self.values[index]), self.points_at(index)
+        time = time if self.time_of is None else self.time_of(index)
         measure = measured(
             self.quantity, value, self.limit, self.comparison, time, self.detail, self.name
         )
@@ -222,7 +227,8 @@ def all_of(
         measures = tuple(part.measure(index, window.time(index)) for part in chosen)
         unit = "1" if chosen[0].comparison == "==" else chosen[0].unit
         margin = float(chosen[0].margins()[index])
-        return Evidence(text(index, measures[0]), measures, margin, unit, is_moment)
+        before = None if chosen[0].time_of is None else measures[0].time
+        return Evidence(text(index, measures[0]), measures, margin, unit, is_moment, before)
 
     unit = parts[0].unit if len(parts) == 1 else "1"
     return MarginSignal(values, unit, evidence, applies, present=present)

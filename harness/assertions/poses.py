@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from harness.assertions.temporal import TIME_RESOLUTION, episodes, trailing_max
+from harness.assertions.temporal import TIME_RESOLUTION, episodes
 from harness.assertions.window import NotObservable, object_record
-from harness.core.geometry import bounding_radius
-from harness.core.pose_arrays import IDENTITY, rotate
-from harness.core.spatial import SE3
+from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.language.step import step_class
 from harness.recording.run import Run
 from harness.recording.step_results import SceneChange
 
 UP = np.array([0.0, 0.0, 1.0])
-STILL = 0.05
-"""What moves at no time during so long is still; a turning point of a swing is not [s]."""
 JUMP = 0.005
 """An object that a scene step moves further than this between two samples was put there [m]."""
 
@@ -99,6 +93,16 @@ def frame_present(run: Run, frame: str) -> BoolArray:
     return np.ones(len(run.signals.times), dtype=bool)
 
 
+def put_samples(run: Run, name: str) -> IntArray:
+    """Samples at which a step has put an object somewhere else, ascending; none of a link.
+
+    Nothing moved from the pose before to this one: between the two there is no speed and no
+    distance.
+    """
+    records = [record for record in run.objects if record.name == name]
+    return records[0].put_samples(run.signals.times) if records else np.zeros(0, dtype=np.int64)
+
+
 def start_samples(run: Run, name: str) -> IntArray:
     """When the object last appeared or was put somewhere at each sample, -1 before, shape (N,).
 
@@ -108,6 +112,7 @@ def start_samples(run: Run, name: str) -> IntArray:
     poses = object_poses(run, name)
     here = present(run, name)
     starts = here & ~np.concatenate([[False], here[:-1]])
+    starts[put_samples(run, name)] = True
     jumps = np.zeros(len(poses))
     jumps[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
     for step in run.steps:
@@ -123,70 +128,6 @@ def start_poses(run: Run, name: str) -> FloatArray:
     """The pose of an object at its last start, NaN before the first one, shape (N, 7)."""
     poses, latest = object_poses(run, name), start_samples(run, name)
     return np.where((latest >= 0)[:, None], poses[np.maximum(latest, 0)], np.nan)
-
-
-def speeds(
-    run: Run, poses: FloatArray, here: BoolArray | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Linear [m/s] and angular [rad/s] speed since the sample before, shape (N,) each.
-
-    The first sample, and that at which an object appears, is at rest by definition. Where this pose
-    or the one before is not known the speed is NaN.
-
-    Args:
-        run: The run, whose times count.
-        poses: T_world_body at each sample, NaN where it is absent or not known, shape (N, 7).
-        here: Samples at which it is in the scene; by default those with a pose.
-    """
-    linear, angular = np.zeros(len(poses)), np.zeros(len(poses))
-    missing = np.isnan(poses).any(axis=1)
-    if len(poses) > 1:
-        step = np.diff(run.signals.times)
-        linear[1:] = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) / step
-        # chord between quaternions: exact for small turns, and free of the sign
-        a, b = poses[:-1, 3:], poses[1:, 3:]
-        chord = np.minimum(np.linalg.norm(b - a, axis=1), np.linalg.norm(b + a, axis=1))
-        angular[1:] = 4 * np.arcsin(np.minimum(chord / 2, 1.0)) / step
-    appeared = np.isnan(linear) & ~missing
-    if here is not None:
-        appeared &= ~np.append(False, here[:-1])
-    linear[appeared] = angular[appeared] = 0.0
-    linear[missing] = angular[missing] = np.nan
-    return linear, angular
-
-
-def body_speeds(
-    run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Linear speed of an object's fastest point [m/s] and its angular speed [rad/s], (N,) each.
-
-    A point of a shape moves at most as fast as the shape's middle, and its distance from there
-    times the angular speed. Of a mesh the origin counts.
-    """
-    linear, angular = speeds(run, poses, here)
-    for shape in object_record(run, name).shapes:
-        radius = bounding_radius(replace(shape, pose=SE3.identity()))
-        if np.isfinite(radius):
-            middle = poses.copy()
-            middle[:, :3] += rotate(poses[:, 3:], shape.pose.translation)
-            linear = np.maximum(linear, speeds(run, middle, here)[0] + angular * radius)
-    return linear, angular
-
-
-def calm(run: Run, speed: FloatArray, here: BoolArray | None = None) -> FloatArray:
-    """The largest speed of the last `STILL` seconds at each sample; NaN where it is not known.
-
-    It looks beyond the start of a step, whose window may begin at a turning point.
-
-    Args:
-        run: The run, whose times count.
-        speed: The speed at each sample, NaN where it is absent or not known, shape (N,).
-        here: Samples at which it is in the scene, so that NaN means not known.
-    """
-    times, unknown = run.signals.times, np.isnan(speed)
-    if here is not None:
-        unknown = unknown | (trailing_max((unknown & here).astype(np.float64), times, STILL) > 0)
-    return np.where(unknown, np.nan, trailing_max(np.nan_to_num(speed, nan=0.0), times, STILL))
 
 
 def observed_for(run: Run, here: BoolArray, span: float) -> BoolArray:

@@ -13,10 +13,7 @@ import numpy as np
 
 from harness.assertions.facts import of_times
 from harness.core.types import BoolArray, FloatArray, IntArray
-
-TIME_RESOLUTION = 1e-9
-"""Times nearer than this are the same [s]."""
-
+from harness.recording.run import TIME_RESOLUTION
 
 BRIDGE = 0.1
 """Gaps under this time end neither a contact between objects nor a hold [s]."""

@@ -208,7 +208,8 @@ def _verdict(
         return Verdict("", status, time=time, reason=f"not known, or not there, at t={time:.3f} s")
     if terms.word == "eventually" and terms.hold is not None and not (values >= 0).any():
         index = _nearest(values, times, margins.progress)
-    time, evidence = window.time(index), margins.evidence(index)
+    evidence = margins.evidence(index)
+    time = window.time(index) if evidence.time is None else evidence.time
     margin, unit = decision.value, margins.unit
     if evidence.margin is not None:
         margin = -evidence.margin if terms.word == "never" else evidence.margin

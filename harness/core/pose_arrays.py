@@ -36,6 +36,33 @@ def rotate(quat: FloatArray, vector: FloatArray) -> FloatArray:
     return vector + scalar * twice + np.cross(imaginary, twice)
 
 
+def rotations_of(quats: FloatArray) -> FloatArray:
+    """Rotation matrices of unit quaternions (N, 4), shape (N, 3, 3)."""
+    w, x, y, z = np.moveaxis(quats, 1, 0)
+    rotations = np.empty((len(quats), 3, 3))
+    rotations[:, 0] = np.column_stack(
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)]
+    )
+    rotations[:, 1] = np.column_stack(
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)]
+    )
+    rotations[:, 2] = np.column_stack(
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
+    )
+    return rotations
+
+
+def turn_between(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Angles from unit quaternions to others [rad], in [0, pi], shape (...,).
+
+    By the chord between them: accurate for small angles, and the same for both signs of each.
+    """
+    chord = np.minimum(
+        np.linalg.norm(after - before, axis=-1), np.linalg.norm(after + before, axis=-1)
+    )
+    return 4 * np.arcsin(np.minimum(chord / 2, 1.0))
+
+
 def times_each(rotations: FloatArray, fixed: FloatArray) -> FloatArray:
     """Products of rotations (N, 3, 3) and one matrix (3, k) or vector (3,), (N, 3, k) or (N, 3).
 

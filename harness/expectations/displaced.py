@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from harness.assertions.body_motion import middles
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.poses import physical_poses, start_poses
 from harness.assertions.text import amount
-from harness.assertions.window import Window
+from harness.assertions.window import Window, object_record
 from harness.language.base import PositiveLength
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
@@ -18,9 +19,9 @@ DISTANCE = Quantity("distance from the start", "m", "at least `at_least`")
 
 
 class Displaced(ObjectPredicate):
-    """The object is away from where it started, by the place of its origin.
+    """The object is away from where it started, by the place of its centre of mass.
 
-    A turn about the origin is none: `upright` and the formula `tilt` measure it.
+    A turn about that point is none: `upright` and the formula `tilt` measure it.
     """
 
     quantities = (DISTANCE,)
@@ -32,10 +33,11 @@ class Displaced(ObjectPredicate):
     )
 
     def signal(self, window: Window) -> MarginSignal:
-        """Distance from where it started [m]."""
+        """Distance of its middle from where that started [m]."""
         run, name = window.run, self.object
-        way = physical_poses(run, name)[:, :3] - start_poses(run, name)[:, :3]
-        away = np.linalg.norm(way, axis=1)
+        record = object_record(run, name)
+        now = middles(record, physical_poses(run, name))
+        away = np.linalg.norm(now - middles(record, start_poses(run, name)), axis=1)
         part = Part(DISTANCE, window.cut(away), self.at_least, ">=", detail=name)
 
         def text(_: int, measure: Measure) -> str:

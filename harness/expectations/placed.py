@@ -14,7 +14,9 @@ from harness.assertions.at_rest import (
     TURNING,
     released_parts,
     rest_is_known,
+    resting_parts,
 )
+from harness.assertions.body_motion import middles
 from harness.assertions.contacts import TOUCH_FORCE, was_in_robot
 from harness.assertions.expectation import ObjectPredicate
 from harness.assertions.margins import MarginSignal, Part, all_of
@@ -22,8 +24,6 @@ from harness.assertions.observations import Observations
 from harness.assertions.poses import (
     JUMP,
     UP,
-    body_speeds,
-    calm,
     frame_poses,
     object_poses,
     present,
@@ -123,14 +123,10 @@ class Placed(ObjectPredicate):
             body: force for body, force in standing(run, name).items() if self.on in (None, body)
         }
         support = np.sum([np.zeros(len(run.signals.times)), *carried.values()], axis=0)
-        speed, turning = (
-            window.cut(calm(run, rate)) for rate in body_speeds(run, name, object_poses(run, name))
-        )
         by = f"support by {self.on or 'anything but the robot'}"
         parts = [
             *self._at_pose(window),
-            Part(SPEED, speed, self.max_velocity, "<="),
-            Part(TURNING, turning, self.max_angular_velocity, "<="),
+            *resting_parts(window, name, (self.max_velocity, self.max_angular_velocity)),
             Part(SUPPORT, window.cut(support), required_support(run, name), ">=", measured_name=by),
             *released_parts(window, name),
         ]
@@ -196,9 +192,9 @@ class Placed(ObjectPredicate):
 
 
 def _moved(run: Run, name: str, base: str, samples: slice) -> float:
-    """The largest distance of an object from its first place in a frame, at some samples [m]."""
-    places = relative(frame_poses(run, base), object_poses(run, name))[samples, :3]
-    known = places[~np.isnan(places).any(axis=1)]
+    """How far the middle of an object was from its first place in a frame, at some samples [m]."""
+    seen = relative(frame_poses(run, base), object_poses(run, name))[samples]
+    known = middles(object_record(run, name), seen[~np.isnan(seen).any(axis=1)])
     return float(np.linalg.norm(known - known[0], axis=1).max()) if len(known) else 0.0
 
 

@@ -7,10 +7,16 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from harness.assertions.at_rest import SPEED, TURNING, rest_is_known
+from harness.assertions.at_rest import (
+    SPEED,
+    TURNING,
+    rest_is_known,
+    resting_parts,
+    still_part,
+)
 from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
-from harness.assertions.poses import body_speeds, calm, physical_poses, present
+from harness.assertions.poses import physical_poses, present
 from harness.assertions.text import amount
 from harness.assertions.window import Window, lasting
 from harness.cell.scope import At
@@ -71,16 +77,10 @@ class Static(Predicate):
         names = [self.object] if self.object is not None else _dynamic(run)
         for name in names:
             there = present(run, name)
-            here = None if self.object is not None else window.cut(there)
-            linear, angular = (
-                window.cut(calm(run, speed, there))
-                for speed in body_speeds(run, name, physical_poses(run, name), there)
-            )
-            turning = self.max_angular_velocity
-            parts += [
-                Part(SPEED, linear, self.max_velocity, "<=", relevant=here, detail=name),
-                Part(TURNING, angular, turning, "<=", relevant=here, detail=name),
-            ]
+            physical_poses(run, name)  # not observable of what the planner alone knows
+            relevant = None if self.object is not None else window.cut(there)
+            limits = (self.max_velocity, self.max_angular_velocity)
+            parts += resting_parts(window, name, limits, there, relevant=relevant, detail=name)
         if self.object is None:
             parts += self._of_joints(window)
 
@@ -97,10 +97,9 @@ class Static(Predicate):
             slides = joint.kind == "prismatic"
             limit = self.max_velocity if slides else self.max_angular_velocity
             unit = "m/s" if slides else "rad/s"
-            still = window.cut(calm(window.run, speed, np.ones(len(speed), dtype=bool)))
-            parts.append(
-                Part(JOINT_SPEED, still, limit, "<=", detail=joint.name, measured_unit=unit)
-            )
+            always = np.ones(len(speed), dtype=bool)
+            more = {"detail": joint.name, "measured_unit": unit}
+            parts.append(still_part(window, JOINT_SPEED, speed, limit, always, **more))
         return parts
 
 

@@ -12,7 +12,7 @@ import coal
 import numpy as np
 
 from harness.core.geometry import Shape
-from harness.core.pose_arrays import times_each
+from harness.core.pose_arrays import rotations_of, times_each
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.motion import Motion
@@ -57,18 +57,7 @@ class BodyTrack:
 
 def track_of_poses(poses: FloatArray) -> BodyTrack:
     """A track from recorded poses (N, 7), xyz and quat wxyz, NaN while absent."""
-    w, x, y, z = np.moveaxis(poses[:, 3:], 1, 0)
-    rotations = np.empty((len(poses), 3, 3))
-    rotations[:, 0] = np.column_stack(
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)]
-    )
-    rotations[:, 1] = np.column_stack(
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)]
-    )
-    rotations[:, 2] = np.column_stack(
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
-    )
-    return BodyTrack(rotations, np.array(poses[:, :3]))
+    return BodyTrack(rotations_of(poses[:, 3:]), np.array(poses[:, :3]))
 
 
 def link_track(poses: LinkPoses, link: str) -> BodyTrack:

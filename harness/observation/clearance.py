@@ -142,9 +142,12 @@ def _look_between(
         return
     owners, shares = parts_of(samples[fast], dips[fast])
     finer = replace(scene, only=distances.keys()).measured(motion.between(owners, shares))
+    put = {record.name: record.put_samples(motion.times) - 1 for record in scene.objects}
     for key, values in finer.distances.items():
-        absent = np.isnan(distances[key][owners])
-        np.fmin.at(distances[key], owners, np.where(absent, np.nan, values))
+        unknown = np.isnan(distances[key][owners])
+        for name in key:  # what a step puts somewhere was nowhere in between
+            unknown |= np.isin(owners, put.get(name, ()))
+        np.fmin.at(distances[key], owners, np.where(unknown, np.nan, values))
 
 
 class _Robot:

@@ -6,9 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+import numpy as np
+
 from harness.core.camera import Camera
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.recording.commands import CommandRecord
 from harness.recording.robot_record import (
@@ -18,6 +21,8 @@ from harness.recording.robot_record import (
 from harness.recording.signals import CaptureRecord, ContactRecord, Signals, VideoRecord
 from harness.recording.step_record import StepRecord
 
+TIME_RESOLUTION = 1e-9
+"""Times nearer than this are the same [s]."""
 Outcome = Literal["passed", "failed", "invalid", "error"]
 
 
@@ -32,6 +37,7 @@ class ObjectRecord:
             unknown.
         mass: The mass [kg]; NaN when unknown.
         visuals: Shapes that pictures show, where they differ from `shapes`.
+        center_of_mass: In the object's frame [m]; empty when unknown.
     """
 
     name: str
@@ -43,6 +49,7 @@ class ObjectRecord:
     pose: tuple[float, ...] = ()
     mass: float = float("nan")
     visuals: tuple[Shape, ...] = ()
+    center_of_mass: tuple[float, ...] = ()
 
     @classmethod
     def of(
@@ -59,7 +66,23 @@ class ObjectRecord:
             pose=() if pose is None else tuple(map(float, pose.as_vector())),
             mass=obj.mass,
             visuals=obj.visuals,
+            center_of_mass=() if obj.is_static else tuple(map(float, obj.center_of_mass)),
         )
+
+    def put_samples(self, times: FloatArray) -> IntArray:
+        """Samples at which a step has put it somewhere else, ascending.
+
+        An interval of `present` then begins where another one ends: at the sample before, which
+        still shows the old pose.
+        """
+        ends = [end for _, end in self.present]
+        moments = [
+            begin
+            for (begin, _), end in zip(self.present[1:], ends, strict=False)
+            if abs(begin - end) <= TIME_RESOLUTION
+        ]
+        samples = np.searchsorted(times, np.array(moments) + TIME_RESOLUTION, side="right")
+        return samples[samples < len(times)].astype(np.int64)
 
     @property
     def looks(self) -> tuple[Shape, ...]:

@@ -108,9 +108,10 @@ RULES = (
         f" shapes. [`static`]({EXPECTATIONS}#static) and `placed`: the speed is that of the fastest"
         " point. [`grasped`]"
         f"({EXPECTATIONS}#grasped): the object slips as its point between the fingers does, and"
-        " what is fixed in the world is not held. Where a designer put the origin says nothing;"
-        " `displaced` and the signals x(), y(), z() and speed() of a formula are those of the"
-        " origin, and say so.",
+        " what is fixed in the world is not held. `displaced`: the way of the centre of mass. Where"
+        " a designer put the origin says nothing; the signals x(), y(), z() and speed() of a"
+        " formula are those of the origin, and say so. What a step puts somewhere has no speed and"
+        " no distance on the way.",
         (
             "hoop on the floor around a bin",
             "cover over a block",
@@ -214,7 +215,9 @@ RULES = (
         "A window does not cut a definition short",
         f"[`static`]({EXPECTATIONS}#static) and `placed` look 50 ms back, beyond the start of the"
         " step; where less was recorded of an object they are `not reached`. At the turning point"
-        " of a throw an object is slower than 5 mm/s for 1 ms.",
+        " of a throw an object is slower than 5 mm/s for 1 ms. In the first 50 ms of an object, and"
+        " after a step has put it somewhere, its speed is what it has moved since, over 50 ms: what"
+        " is put exactly on its support falls for one step of the physics before they touch.",
         ("turning point of a throw", "let go in the air", "can that rolls through the tray"),
         ("box that stands still during a step of 2 ms", "can that stays in the tray"),
     ),

@@ -109,8 +109,8 @@ LIMITS = """
 - **force()** is a sum of normal forces: on a slope it is less than the weight, in a vice more than
   the resultant, and friction is no part of it.
 - **Supports by friction** carry nothing for `placed` and `on`: what a vice clamps rests on nothing.
-- **Origins**: `displaced` and a formula's x(), y(), z() and speed() are those of the object's
-  origin, `in` counts shapes by their middles, and of meshes nothing but the origin is known.
+- **Origins**: a formula's x(), y(), z() and speed() are those of the object's origin. `in` counts
+  shapes by their middles, and of meshes nothing but the centre of mass and the origin is known.
 - **Forces below 0.001 N** are no contact: what weighs less than 0.2 g rests on nothing, and touches
   nothing where it lies.
 - **Two objects in one grip** touch one finger each: neither is between the fingers, so that neither

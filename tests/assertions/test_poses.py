@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.assertions.body_motion import body_speeds, calm, frame_speeds
 from harness.assertions.poses import (
     JUMP,
-    calm,
     frame_poses,
     frame_present,
     link_poses,
@@ -15,7 +15,6 @@ from harness.assertions.poses import (
     observed_for,
     physical_poses,
     present,
-    speeds,
     start_poses,
 )
 from harness.assertions.window import NotObservable
@@ -120,7 +119,8 @@ def test_speeds_are_those_since_the_sample_before():
     poses[25:, 3:] *= -1
     poses[:3] = np.nan
     poses[30:32] = np.nan
-    linear, angular = speeds(make_run(N), poses)
+    run = make_run(N)
+    linear, angular = frame_speeds(run, "box", poses), body_speeds(run, "box", poses)[1]
     unknown = [0, 1, 2, 30, 31]
     assert where(np.isnan(linear)) == where(np.isnan(angular)) == unknown
     expected = np.zeros(N)
@@ -129,10 +129,11 @@ def test_speeds_are_those_since_the_sample_before():
     expected[[10, 20]] = 0.0, 0.02 / DT
     assert np.delete(angular, unknown) == pytest.approx(np.delete(expected, unknown), abs=1e-9)
     one = make_run(1)
-    assert [values.tolist() for values in speeds(one, at(1))] == [[0.0], [0.0]]
-    half = at(2)
-    half[1, 3:] = (0.0, 1.0, 0.0, 0.0)
-    assert speeds(make_run(2), half)[1][1] == pytest.approx(np.pi / DT)
+    assert frame_speeds(one, "box", at(1)).tolist() == [0.0]
+    assert [values.tolist() for values in body_speeds(one, "box", at(1))] == [[0.0], [0.0]]
+    half = at(N)
+    half[20:, 3:] = (0.0, 1.0, 0.0, 0.0)
+    assert body_speeds(run, "box", half)[1][20] == pytest.approx(np.pi / DT)
 
 
 def test_what_is_calm_has_been_slow_for_fifty_milliseconds():

@@ -1,0 +1,188 @@
+"""How far bodies move, and how fast: by the points of their shapes, wherever their frames are.
+
+A body has moved as far as the point of it that moved furthest. Where it is, is its middle: the
+centre of its mass, which is the point that counts of a mesh. How high it is, is its lowest point
+(`support.lowest_points`). The origin of a frame is where a designer put it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.assertions.poses import put_samples
+from harness.assertions.temporal import first_within, trailing_max
+from harness.assertions.window import object_record
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
+from harness.core.pose_arrays import rotate, rotations_of, times_each, turn_between
+from harness.core.types import BoolArray, FloatArray
+from harness.recording.run import TIME_RESOLUTION, ObjectRecord, Run
+
+STILL = 0.05
+"""What moves at no time during so long is still; a turning point of a swing is not [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Balls:
+    """Balls whose convex hull holds the shapes of a body, and is no larger where it can be.
+
+    Attributes:
+        centers: Their centres in the body's frame [m], shape (k, 3).
+        radii: Their radii [m], shape (k,).
+    """
+
+    centers: FloatArray
+    radii: FloatArray
+
+    def moved(self, before: FloatArray, after: FloatArray) -> FloatArray:
+        """How far the point that moves furthest is from where it was [m], shape (N,).
+
+        Exact for the corners of boxes; of other shapes an upper bound, which is exact without turn.
+
+        Args:
+            before: T_world_body, shape (N, 7), or (7,) for all.
+            after: T_world_body, shape (N, 7).
+        """
+        before = np.broadcast_to(before, after.shape)
+        turned = rotations_of(after[:, 3:]) - rotations_of(before[:, 3:])
+        shift = after[:, :3] - before[:, :3]
+        chord = 2 * np.sin(turn_between(before[:, 3:], after[:, 3:]) / 2)
+        ways = times_each(turned, self.centers.T) + shift[:, :, None]
+        return (np.linalg.norm(ways, axis=1) + chord[:, None] * self.radii).max(axis=1)
+
+
+def balls_of(run: Run, name: str) -> Balls:
+    """The balls of an object; its middle where it has no shape that is known, as of a mesh."""
+    record = object_record(run, name)
+    found: list[tuple[FloatArray, float]] = []
+    for shape in record.shapes:
+        centers, radius = _balls(shape.geometry)
+        placed = [(shape.pose.apply(center), radius) for center in centers]
+        found += placed or [(middle_of(record), 0.0)]
+    found = found or [(middle_of(record), 0.0)]
+    return Balls(np.array([center for center, _ in found]), np.array([r for _, r in found]))
+
+
+def _balls(geometry: Geometry) -> tuple[FloatArray, float]:
+    """Centres of balls of one radius whose hull holds a shape; none of planes and meshes."""
+    match geometry:
+        case Box(size=size):
+            signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
+            return signs * np.array(size), 0.0
+        case Cylinder(radius=radius, length=length) | Capsule(radius=radius, length=length):
+            return np.array([[0, 0, -length / 2], [0, 0, length / 2]]), radius
+        case Sphere(radius=radius):
+            return np.zeros((1, 3)), radius
+        case _:
+            return np.zeros((0, 3)), 0.0
+
+
+def middle_of(record: ObjectRecord) -> FloatArray:
+    """The middle of a body in its frame [m], shape (3,): the centre of its mass.
+
+    Where that was not recorded it is the mean of the middles of its shapes.
+    """
+    if record.center_of_mass:
+        return np.array(record.center_of_mass)
+    middles = [shape.pose.translation for shape in record.shapes]
+    return np.mean(middles, axis=0) if middles else np.zeros(3)
+
+
+def middles(record: ObjectRecord, poses: FloatArray) -> FloatArray:
+    """Where the middle of a body is [m], shape (N, 3)."""
+    return poses[:, :3] + rotate(poses[:, 3:], middle_of(record))
+
+
+def frame_speeds(
+    run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
+) -> FloatArray:
+    """Speed of the origin of a frame since the sample before [m/s], shape (N,); see `_rates`."""
+
+    def moved(before: FloatArray, after: FloatArray) -> FloatArray:
+        return np.linalg.norm(after[:, :3] - before[:, :3], axis=1)
+
+    return _rates(run, name, poses, here, moved)
+
+
+def body_speeds(
+    run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Speed of a body's fastest point [m/s] and its turning speed [rad/s], shape (N,) each.
+
+    In the first `STILL` seconds after it appeared or was put somewhere the speeds are what it has
+    moved since, divided by `STILL`: a body that stands exactly on its support falls for one step of
+    the physics, until a contact begins, and what begins is no motion that lasts.
+
+    Args:
+        run: The run, whose times count.
+        name: The name of the object.
+        poses: T_world_body at each sample, NaN where it is absent or not known, shape (N, 7).
+        here: Samples at which it is in the scene; by default those with a pose.
+    """
+    moved, turned = balls_of(run, name).moved, _turned
+    found: list[FloatArray] = []
+    there: BoolArray = ~np.isnan(poses).any(axis=1) if here is None else here
+    appears = np.flatnonzero(there & ~np.append(False, there[:-1]))
+    times = run.signals.times
+    for way in (moved, turned):
+        speeds = _rates(run, name, poses, here, way)
+        for first in np.union1d(appears, put_samples(run, name)).tolist():
+            last = int(np.searchsorted(times, times[first] + STILL + TIME_RESOLUTION))
+            settled = way(poses[first : first + 1], poses[first + 1 : last]) / STILL
+            speeds[first + 1 : last] = np.where(np.isnan(speeds[first + 1 : last]), np.nan, settled)
+        found.append(speeds)
+    return found[0], found[1]
+
+
+def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
+    return turn_between(before[:, 3:], after[:, 3:])
+
+
+def _rates(
+    run: Run,
+    name: str,
+    poses: FloatArray,
+    here: BoolArray | None,
+    moved: Callable[[FloatArray, FloatArray], FloatArray],
+) -> FloatArray:
+    """What moves between two samples, divided by the time between them, shape (N,).
+
+    The first sample, and that at which an object appears or shows where a step put it, is at rest
+    by definition. Where this pose or the one before is not known the speed is NaN.
+    """
+    rates, missing = np.zeros(len(poses)), np.isnan(poses).any(axis=1)
+    rates[1:] = moved(poses[:-1], poses[1:]) / np.diff(run.signals.times)
+    appeared = np.isnan(rates) & ~missing
+    if here is not None:
+        appeared &= ~np.append(False, here[:-1])
+    appeared[put_samples(run, name)] = True
+    rates[appeared] = 0.0
+    rates[missing] = np.nan
+    return rates
+
+
+def calm(run: Run, speed: FloatArray, here: BoolArray | None = None) -> FloatArray:
+    """The largest speed of the last `STILL` seconds at each sample; NaN where it is not known.
+
+    It looks beyond the start of a step, whose window may begin at a turning point.
+
+    Args:
+        run: The run, whose times count.
+        speed: The speed at each sample, NaN where it is absent or not known, shape (N,).
+        here: Samples at which it is in the scene, so that NaN means not known.
+    """
+    times, unknown = run.signals.times, np.isnan(speed)
+    if here is not None:
+        unknown = unknown | (trailing_max((unknown & here).astype(np.float64), times, STILL) > 0)
+    return np.where(unknown, np.nan, trailing_max(np.nan_to_num(speed, nan=0.0), times, STILL))
+
+
+def fastest_time(run: Run, speed: FloatArray, sample: int) -> float:
+    """When the speed that `calm` gives at a sample was last measured [s]."""
+    times = run.signals.times
+    first = int(first_within(times, STILL)[sample])
+    recent = np.nan_to_num(speed[first : sample + 1])
+    is_largest = recent >= recent.max() * (1 - 1e-6)  # a constant speed, but for rounding
+    return float(times[first + int(np.flatnonzero(is_largest)[-1])])
