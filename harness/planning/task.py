@@ -16,7 +16,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.efforts import InverseDynamics
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.planning.timing.limits import Limits
-from harness.planning.timing.profiles import SAMPLE_PERIOD
+from harness.planning.timing.profiles import SAMPLE_PERIOD, resting
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import Defect, find_defect
 from harness.ports.goals import PathConstraints
@@ -79,6 +79,13 @@ class PlanningTask:
         times = np.array([0.0, SAMPLE_PERIOD])
         trajectory = JointTrajectory(self.space.joint_names, times, ends, still, still)
         return MotionPlan(trajectory, Details(), explanation, result)
+
+    def stay(self, planner_id: str, explanation: Details, result: Details) -> MotionPlan:
+        """The plan of a motion that ends where it starts."""
+        trajectory = resting(self.space.joint_names, self.start)
+        self.accept(trajectory, self.start, "standing still")
+        statistics = self.statistics(planner_id, trajectory, trajectory.positions)
+        return MotionPlan(trajectory, Details.of(statistics), explanation, result)
 
     def statistics(
         self,

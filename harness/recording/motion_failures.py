@@ -106,8 +106,17 @@ class SearchFailure(Detail):
     straight_way: BlockedWay | None = None
 
 
+class AdvisedFailure(Detail):
+    """A failure that no obstacle causes, and that has an advice of its own."""
+
+    @property
+    def advice(self) -> str:
+        """What the user can do about it."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class PipelineFailure(Detail):
+class PipelineFailure(AdvisedFailure):
     """The third-party planning pipeline whose search or path fails."""
 
     planner: str
@@ -158,26 +167,64 @@ class DistanceFailure(Detail):
 
 
 @dataclass(frozen=True)
-class DeviationFailure(Detail):
+class DeviationFailure(AdvisedFailure):
     """A timed motion whose link leaves its way too far [m, rad]."""
 
     position_deviation: float
     orientation_deviation: float
 
+    @property
+    def advice(self) -> str:
+        """Another posture, or another kind of motion."""
+        return (
+            "begin the motion in another posture (a `move_to` with `joints` before it), or use "
+            "`move_to`, which need not keep to a line"
+        )
+
 
 @dataclass(frozen=True)
-class BlendFailure(Detail):
+class BlendFailure(AdvisedFailure):
     """A blend that cannot be made with its radius [m]."""
 
     blend_radius: float
 
+    @property
+    def advice(self) -> str:
+        """A smaller radius, or a stop."""
+        return "make the `blend_radius` smaller, or leave it out: then the motion stops there"
+
 
 @dataclass(frozen=True)
-class CircleFailure(Detail):
-    """A start and a goal that are not on one circle about the centre [m]."""
+class CircleFailure(AdvisedFailure):
+    """Three points that define no arc.
 
-    start_radius: float
-    goal_radius: float
+    Attributes:
+        reason: Start and goal are one point; two others of the points are one, or all three are on
+            one line; the distances of start and goal from the centre differ.
+        start_radius: The start's distance from the centre [m].
+        goal_radius: The goal's [m].
+    """
+
+    reason: Literal["whole turn", "one line", "radii"]
+    start_radius: float | None = None
+    goal_radius: float | None = None
+
+    @property
+    def advice(self) -> str:
+        """Points that define an arc."""
+        match self.reason:
+            case "whole turn":
+                return (
+                    "leave the step out where the arm is to stay; for a whole turn write two "
+                    "`circ`, the first of them to the opposite point of the circle"
+                )
+            case "one line":
+                return "give an `interim` point off the line, or use `lin` for a straight motion"
+            case "radii":
+                return (
+                    "choose a `center` that is as far from the start as from the goal, or give an "
+                    "`interim` point instead"
+                )
 
 
 @dataclass(frozen=True)

@@ -126,7 +126,7 @@ def _check_blends(step: Sequence, group: str, at: At) -> None:
     for index, (first, second) in enumerate(pairwise(step.items)):
         radii = first.blend_radius, second.blend_radius if index + 1 < last else 0.0
         distance = _distance(places[index], places[index + 1])
-        if first.blend_radius <= 0 or distance is None or sum(radii) < distance:
+        if first.blend_radius <= 0 or not distance or sum(radii) < distance:
             continue
         scope.problems.add(
             at.key("items", index, "blend_radius"),

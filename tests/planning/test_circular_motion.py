@@ -8,6 +8,7 @@ from harness.core.spatial import SE3
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import ArcPoint, CartesianLimits, CircularMotion, LinearMotion
+from harness.recording.explanation import Explanation
 from tests.planning.lesson import ARM, TCP, Cell, grasp_goal, open_manipulator, ur
 
 ABOVE = [-0.858, -1.187, 0.474, -0.858, -1.5708, -1.643]
@@ -143,7 +144,9 @@ def no_circle(cell, goal, point):
             MotionRequest(ARM, cell.state, CircularMotion(PositionGoal(TCP, goal), point), FAST)
         )
     assert caught.value.code == "INVALID_MOTION_PLAN"
-    return caught.value.message
+    advice = caught.value.details.find(Explanation).advice
+    assert "in the way" not in advice
+    return f"{caught.value.message}; {advice}"
 
 
 def test_points_that_make_no_circle_are_refused(cell):
@@ -156,7 +159,14 @@ def test_points_that_make_no_circle_are_refused(cell):
     uneven = no_circle(cell, moved(start, 0.05, 0.03, 0), ArcPoint("center", start + 0.05 * x))
     assert "the start is 50.0 mm from the centre, the goal 30.0 mm" in uneven
     full = no_circle(cell, start, ArcPoint("interim", moved(start, 0.03, 0.03, 0)))
-    assert "on one line" in full
+    assert "start and goal are the same point" in full
+    assert "two `circ` steps" in full
+    about = no_circle(cell, start, ArcPoint("center", moved(start, 0.03, 0.03, 0)))
+    assert "start and goal are the same point" in about
+    twice = no_circle(cell, start + 0.06 * x, ArcPoint("interim", start + 0.06 * x))
+    assert "goal and interim point are the same point" in twice
+    central = no_circle(cell, start + 1e-3 * x, ArcPoint("center", start))
+    assert "start and centre are the same point" in central
 
 
 def test_an_arc_out_of_reach_says_how_far_it_goes(cell):

@@ -20,6 +20,7 @@ from harness.ports.motions import (
     SequenceItem,
     WaypointMotion,
 )
+from harness.recording.explanation import Explanation
 from harness.recording.plan_statistics import WayStatistics
 from tests.planning.lesson import ARM, TCP, Cell, grasp_goal, open_manipulator, ur
 
@@ -270,3 +271,85 @@ def attempt(cell, goal):
         )
     except PlanningFailed as failed:
         return failed
+
+
+TINY = 1e-8  # [m] the error of a pose that inverse kinematics solved
+
+
+@pytest.mark.parametrize("off", [0.0, TINY])
+@pytest.mark.parametrize("repeated", [0, 1, 2])
+def test_repeated_waypoints_change_nothing(cell, repeated, off):
+    """The first waypoint is the present pose; another one is repeated."""
+    corners = [(0, 0, 0), (0.05, 0, 0), (0.05, 0.05, 0)]
+    again = [*corners[: repeated + 1], *corners[repeated:]]
+    shifted = [near(cell, x + off * index, y, z) for index, (x, y, z) in enumerate(again)]
+    plain = [near(cell, *corner) for corner in corners[1:]]
+    plans = [
+        cell.planner.plan(MotionRequest(ARM, cell.state, WaypointMotion(goals, PATH), HALF))
+        for goals in (plain, shifted)
+    ]
+    first, second = (plan.result.plain() for plan in plans)
+    assert second["fraction"] == 1
+    assert second["deviation"] == pytest.approx(first["deviation"], abs=1e-5)
+    assert places(cell, plans[1])[-1] == pytest.approx(plain[-1].position, abs=1e-6)
+    assert plans[1].trajectory.duration == pytest.approx(plans[0].trajectory.duration, abs=0.01)
+
+
+@pytest.mark.parametrize("off", [0.0, TINY])
+def test_a_path_to_where_the_link_is_moves_nothing(cell, off):
+    goals = [near(cell, off, 0, 0), near(cell, 0, 0, 0)]
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, WaypointMotion(goals, PATH), HALF))
+    still = {"fraction": 1.0, "largest_joint_step": 0.0, "deviation": 0.0}
+    assert plan.result.plain() == still
+    assert np.all(plan.trajectory.positions == plan.trajectory.positions[0])
+
+
+def test_a_path_that_is_blocked_at_once_fails_unless_nothing_of_it_is_required(cell):
+    goals, state = [near(cell, 0, 0, 9)], cell.with_arm([0, -np.pi / 2, 0, 0, 0, 0])
+    request = MotionRequest(ARM, state, WaypointMotion(goals, PATH), HALF)
+    blocked = failure(cell.planner.plan, request)
+    assert "can follow 0.0 % of its path" in blocked.message
+    none = CartesianPathOptions(0.005, 0.001, 0.0, JumpThreshold(0.5, 0.1))
+    plan = cell.planner.plan(MotionRequest(ARM, state, WaypointMotion(goals, none), HALF))
+    assert plan.result.plain()["fraction"] == 0
+    assert np.all(plan.trajectory.positions == plan.trajectory.positions[0])
+
+
+@pytest.mark.parametrize("off", [0.0, TINY])
+@pytest.mark.parametrize("radius", [0.0, 0.01])
+def test_items_that_stay_neither_stop_nor_blend(cell, radius, off):
+    def line(x, y, blend=0.0):
+        return SequenceItem("lin", near(cell, x, y, 0), None, blend)
+
+    stay = SequenceItem("ptp", near(cell, 0.05, off, 0), None, 0.02)
+    items = [line(off, 0, 0.02), line(0.05, 0, radius), stay, line(0.05, off, 0.02)]
+    items.append(line(0.05, 0.05))
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, MotionSequence(items), HALF))
+    corner = {"stops": int(radius == 0), "blends": int(radius > 0)}
+    assert plan.result.plain() == {"items": 5, **corner}
+    end = near(cell, 0.05, 0.05, 0).position
+    assert places(cell, plan)[-1] == pytest.approx(end, abs=1e-6)
+
+
+def test_a_sequence_of_items_that_stay_moves_nothing(cell):
+    items = [SequenceItem("ptp", near(cell, 0, 0, 0), None, 0.02)]
+    items.append(SequenceItem("lin", near(cell, 0, 0, 0)))
+    plan = cell.planner.plan(MotionRequest(ARM, cell.state, MotionSequence(items), HALF))
+    assert plan.result.plain() == {"items": 2, "stops": 0, "blends": 0}
+    assert np.all(plan.trajectory.positions == plan.trajectory.positions[0])
+
+
+@pytest.mark.parametrize("item", ["circ", "lin"])
+def test_geometry_is_not_blamed_on_obstacles(cell, item):
+    """An arc of a whole turn, and a blend that is larger than its line."""
+    here = near(cell, 0, 0, 0)
+    items = {
+        "circ": [SequenceItem("circ", here, ArcPoint("interim", near(cell, 0.03, 0, 0).position))],
+        "lin": [SequenceItem("lin", near(cell, 0.01, 0, 0), None, 0.05)],
+    }[item]
+    items.append(SequenceItem("lin", near(cell, 0, 0.1, 0)))
+    request = MotionRequest(ARM, cell.state, MotionSequence(items), HALF)
+    refused = failure(cell.planner.plan, request)
+    advice = refused.details.find(Explanation).advice
+    assert {"circ": "two `circ`", "lin": "`blend_radius` smaller"}[item] in advice
+    assert "in the way" not in advice

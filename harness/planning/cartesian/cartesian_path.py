@@ -28,8 +28,6 @@ from harness.recording.step_results import CartesianPathResult
 CORNER_SHARE = 0.45
 """Largest part of the shorter adjacent line that the rounding of a corner may use."""
 
-_NO_MOTION = 1e-9  # [m, rad]
-
 
 def plan_waypoints(
     motions: LinkMotions, goals: Sequence[Goal], path_options: CartesianPathOptions
@@ -47,7 +45,7 @@ def plan_waypoints(
     done = sum(_amount(leg.path) for leg in legs if isinstance(leg.path, LinearPath))
     fraction = 1.0 if stopped is None else done / whole
     result = CartesianPathResult(fraction, max(steps, default=0.0))
-    if fraction < path_options.min_fraction or not legs:
+    if fraction < path_options.min_fraction:
         why = "" if stopped is None else f": {stopped.stop}"
         least = f"{100 * path_options.min_fraction:.0f} %"
         raise PlanningFailed(
@@ -57,10 +55,12 @@ def plan_waypoints(
             replace(result, min_fraction=path_options.min_fraction),
             *Details.of(None if stopped is None else stopped.failure),
         )
-    runs = runs_of(legs, _radii(legs, path_options.precision), motions)
     explanation = task.lowered_margins + Details.of(
         StraightResult("" if stopped is None else stopped.stop)
     )
+    if not legs:
+        return task.stay("cartesian_path", explanation, Details.of(replace(result, deviation=0.0)))
+    runs = runs_of(legs, _radii(legs, path_options.precision), motions)
     end = legs[-1].positions[-1]
     if task.options.path_only:
         return task.jump(end, explanation, Details.of(result))
@@ -97,7 +97,7 @@ def _follow(
         pose = pose or motions.pose(start, target.link)
         line = LinearPath.between(target.link, pose, target.pose)
         pose = target.pose
-        if line.length < _NO_MOTION and line.angle < _NO_MOTION:
+        if line.is_point:
             continue
         lines.append(line)
         if stopped is not None:

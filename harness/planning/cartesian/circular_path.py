@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from itertools import combinations
+
 import numpy as np
 import pinocchio as pin
 
@@ -37,6 +40,7 @@ class CircularPath:
     """
 
     name = "arc"
+    is_point = False
 
     def __init__(
         self, link: str, start: SE3, end: SE3, center: FloatArray, axis: FloatArray, sweep: float
@@ -57,12 +61,13 @@ class CircularPath:
             PlanningFailed: INVALID_MOTION_PLAN, when the points are collinear or two coincide.
         """
         first, last = start.translation, end.translation
+        _check_distinct({"start": first, "goal": last, "interim point": interim})
         u, t = interim - first, last - first
         normal = np.cross(u, t)
         size = float(np.linalg.norm(normal))
         v = interim - last
         if size <= FLATTEST * _longest(u, v, t):
-            raise _no_plane("start, interim point and goal are on one line")
+            raise _no_circle("start, interim point and goal are on one line")
         center = first + (u * (t @ t) * (u @ v) - t * (u @ u) * (t @ v)) * 0.5 / size**2
         axis = normal / size
         return cls(link, start, end, center, axis, _angle(first - center, last - center, axis))
@@ -75,23 +80,20 @@ class CircularPath:
             PlanningFailed: INVALID_MOTION_PLAN, when start and goal have different radii, are
                 opposite to each other, or coincide.
         """
+        _check_distinct({"start": start.translation, "goal": end.translation, "centre": center})
         first, last = start.translation - center, end.translation - center
         radii = float(np.linalg.norm(first)), float(np.linalg.norm(last))
         if abs(radii[0] - radii[1]) > LARGEST_RADIUS_DIFFERENCE:
-            raise PlanningFailed(
-                "INVALID_MOTION_PLAN",
-                f"no circle: the start is {1000 * radii[0]:.1f} mm from the centre, the goal "
+            raise _no_circle(
+                f"the start is {1000 * radii[0]:.1f} mm from the centre, the goal "
                 f"{1000 * radii[1]:.1f} mm",
-                CircleFailure(radii[0], radii[1]),
+                CircleFailure("radii", *radii),
             )
         normal = np.cross(first, last)
         size = float(np.linalg.norm(normal))
         flattest = FLATTEST * _longest(first, last, last - first)
         if size <= max(flattest, _STRAIGHT_ANGLE * radii[0] * radii[1]):
-            raise _no_plane(
-                "start, centre and goal are on one line, so there is no shorter arc; "
-                "give an `interim` point"
-            )
+            raise _no_circle("start, centre and goal are on one line: there is no shorter arc")
         axis = normal / size
         center = _equidistant(center, start.translation, end.translation)
         first, last = start.translation - center, end.translation - center
@@ -148,5 +150,19 @@ def _longest(*sides: FloatArray) -> float:
     return max(float(np.linalg.norm(side)) for side in sides)
 
 
-def _no_plane(why: str) -> PlanningFailed:
-    return PlanningFailed("INVALID_MOTION_PLAN", f"no circle: {why}")
+def _check_distinct(points: Mapping[str, FloatArray]) -> None:
+    """Check that no two of an arc's points coincide; the first two are its start and its goal."""
+    for (first, place), (second, other) in combinations(points.items(), 2):
+        if np.linalg.norm(other - place) > FLATTEST:
+            continue
+        if (first, second) == ("start", "goal"):
+            raise _no_circle(
+                "start and goal are the same point: an arc of a whole turn needs two `circ` steps",
+                CircleFailure("whole turn"),
+            )
+        raise _no_circle(f"{first} and {second} are the same point")
+
+
+def _no_circle(why: str, failure: CircleFailure | None = None) -> PlanningFailed:
+    failure = failure or CircleFailure("one line")
+    return PlanningFailed("INVALID_MOTION_PLAN", f"no circle: {why}", failure)

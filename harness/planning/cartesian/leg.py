@@ -13,6 +13,7 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.planning.cartesian.linear_path import POINT
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.cartesian.tracing import SOLVED, LinkPath, link_goal
@@ -65,6 +66,13 @@ class Leg:
         count = max(_FEWEST, int(np.ceil(space.distance(start, end) / JOINT_STEP)))
         shares = np.linspace(0.0, 1.0, count + 1)[:, None]
         return cls(link, checker, start + shares * (end - start))
+
+    @property
+    def is_still(self) -> bool:
+        """Whether the leg ends where it starts."""
+        if self.path is not None:
+            return self.path.is_point
+        return bool(np.all(np.abs(self.positions[-1] - self.positions[0]) < POINT))
 
     def at(self, parameters: FloatArray) -> FloatArray:
         """Group positions at parameters (N,), shape (N, dof)."""

@@ -10,7 +10,10 @@ import pinocchio as pin
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
-_NOWHERE = 1e-9  # [m, rad]
+POINT = 1e-6
+"""A shorter line is a point [m, rad]: a pose that the arm reached is exact within 1e-8."""
+
+_NOWHERE = 1e-9  # [m, rad] no division by less
 
 
 class LinearPath:
@@ -47,6 +50,11 @@ class LinearPath:
     def angle(self) -> float:
         """Angle of the rotation [rad]."""
         return float(np.linalg.norm(self.turn))
+
+    @property
+    def is_point(self) -> bool:
+        """Whether the link neither moves nor turns."""
+        return self.length < POINT and self.angle < POINT
 
     def pose(self, parameter: float) -> SE3:
         """T_world_link at a parameter from 0 to 1."""

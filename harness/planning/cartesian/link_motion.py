@@ -161,7 +161,7 @@ class LinkMotions:
             PlanningFailed: INVALID_MOTION_PLAN, when the limits cannot be kept.
         """
         names = self.task.space.joint_names
-        if path.length < 1e-9 and path.angle < 1e-9:
+        if path.is_point:
             return resting(names, traced.positions[0])
         try:
             return time_on_path(path, traced, names, self.task.limits, rates)

@@ -46,9 +46,13 @@ def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPla
         leg.name = name
         legs.append(leg)
         start = leg.positions[-1]
-    runs = runs_of(legs, [item.blend_radius for item in items[:-1]], motions)
-    result = Details.of(SequenceResult(len(items), len(runs) - 1, len(items) - len(runs)))
     explanation = task.lowered_margins
+    legs, radii = _moving(legs, [item.blend_radius for item in items[:-1]])
+    if not legs:
+        result = Details.of(SequenceResult(len(items), 0, 0))
+        return task.stay("sequence", explanation, result)
+    runs = runs_of(legs, radii, motions)
+    result = Details.of(SequenceResult(len(items), len(runs) - 1, len(legs) - len(runs)))
     end = legs[-1].positions[-1]
     if task.options.path_only:
         return task.jump(end, explanation, result)
@@ -61,6 +65,21 @@ def plan_items(motions: LinkMotions, items: Sequence[SequenceItem]) -> MotionPla
         explanation,
         result,
     )
+
+
+def _moving(legs: Sequence[Leg], radii: Sequence[float]) -> tuple[list[Leg], list[float]]:
+    """The legs that move, and the smallest of the blend radii given between each two of them."""
+    moving: list[Leg] = []
+    corners: list[float] = []
+    radius = np.inf
+    for leg, after in zip(legs, [*radii, 0.0], strict=True):
+        if not leg.is_still:
+            if moving:
+                corners.append(radius)
+            moving.append(leg)
+            radius = np.inf
+        radius = min(radius, after)
+    return moving, corners
 
 
 def _leg(motions: LinkMotions, item: SequenceItem, start: FloatArray) -> Leg:

@@ -74,6 +74,11 @@ class LinkPath(Protocol):
         """Radius of the curvature [m]."""
         ...
 
+    @property
+    def is_point(self) -> bool:
+        """Whether the link neither moves nor turns."""
+        ...
+
     def pose(self, parameter: float) -> SE3:
         """T_world_link at a parameter."""
         ...
@@ -142,6 +147,9 @@ def trace(
         step_length: Between the poses that are solved [m].
         jump: What no joint may exceed from one pose to the next.
     """
+    if path.is_point:
+        parameters = np.linspace(0.0, 1.0, _FEWEST_STEPS + 1)
+        return Trace(parameters, np.tile(start, (len(parameters), 1)))
     space = checker.space
     steps = max(path.length / min(step_length, STEP_SWEEP * path.radius), path.angle / STEP_ANGLE)
     count = max(_FEWEST_STEPS, int(np.ceil(steps)))

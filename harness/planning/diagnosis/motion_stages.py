@@ -12,10 +12,10 @@ from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.recording.explanation import NearestState, Stage
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import (
+    AdvisedFailure,
     DurationFailure,
     OverloadFailure,
     PathCollision,
-    PipelineFailure,
     SearchFailure,
     TraceFailure,
     TrajectoryFailure,
@@ -141,7 +141,7 @@ def _blocked(
     if traced is not None and traced.joint_positions is not None:
         joints = request.joints(np.array(traced.joint_positions))
         shown = NearestState("as far as it goes", joints, touches=traced.touches or ())
-    elif request.checker is not None and target is not None:
+    elif _advised(request) is None and request.checker is not None and target is not None:
         start = request.space.part(request.start)
         straight = np.array([start, target])
         blocked = request.checker.first_block(straight, RESOLUTION)
@@ -170,12 +170,18 @@ def _blocked(
     return details, shown
 
 
+def _advised(request: StageRequest) -> AdvisedFailure | None:
+    """What failed apart from obstacles: the motion's own geometry, or a plug-in."""
+    details = request.failure.details
+    return None if details.find(SearchFailure) is not None else details.find(AdvisedFailure)
+
+
 def _path_advice(request: StageRequest, shown: NearestState | None) -> str:
     """Advice for a path that was not found, with the state that is drawn."""
     failure = request.failure
-    plugin = failure.details.find(PipelineFailure)
-    if failure.code == "INVALID_MOTION_PLAN" and plugin is not None:
-        return plugin.advice
+    advised = _advised(request)
+    if advised is not None:
+        return advised.advice
     if failure.code == "PLANNING_FAILED" and failure.details.find(SearchFailure) is not None:
         return (
             "raise `max_state_checks` or `planning_attempts` in `planning`, put a `move_to` in "
@@ -186,7 +192,7 @@ def _path_advice(request: StageRequest, shown: NearestState | None) -> str:
     distances = [touch.distance for part in shows_touches for touch in part.touches or ()]
     if distances and min(distances) >= 0:
         return padding_advice(min(distances), request.options.padding)
-    if failure.code == "INVALID_MOTION_PLAN":
+    if distances:
         return "`move_to` goes around what is in the way; or put a step in between that leads past"
     if traced is not None and traced.reason in ("unreachable", "limit", "jump"):
         return (
