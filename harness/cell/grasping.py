@@ -18,12 +18,15 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.execution_failures import WidthFailure
 from harness.recording.explanation import Explanation
+from harness.robot.description import Gripper
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 CLEARANCE = 0.005
 """Distance of the palm from a grasped object's top, and of the fingertips from its bottom [m]."""
 JAW_CLEARANCE = 0.004
 """Distance between an object and the palm on which a single jaw closes, before it does [m]."""
+CLOSING_STATES = 5
+"""States of a closing hand at which its fingertips are measured: they swing on arcs."""
 GAP_SLACK = 0.001
 """How much a gap between the pads may differ from what the robot's table says [m]."""
 MAX_LEAN = 10.0  # [degrees]
@@ -102,23 +105,34 @@ def _in_tcp(cell: Cell, position: float) -> tuple[SE3, SE3, SE3]:
     return palm, first, second
 
 
-def grasp_depth(cell: Cell, height: float) -> float:
-    """How far below the top of an object of a height the TCP grasps it [m].
+def grasp_depth(cell: Cell, height: float, width: float) -> float:
+    """How far below the top of an object the TCP grasps it [m].
 
-    The palm stays above the top, and the fingertips above the bottom, where both are possible. A
-    palm that is a pad itself, next to a single jaw, touches the object anyway.
+    The palm stays above the top, and the fingertips above the bottom from where they are open to
+    where they close on the object, where both are possible. A palm that is a pad itself, next to a
+    single jaw, touches the object anyway.
+
+    Args:
+        cell: The cell with the gripper.
+        height: The height of the object [m].
+        width: Its width between the fingers [m].
     """
-    palm, first, second = _in_tcp(cell, cell.gripper.open_position)
-    approach = gripper_axes(cell)[0]
-    room, tips = (
-        max(float((pose.apply(cell.scene.corners(link)) @ approach).max()) for link, pose in placed)
-        for placed in (
-            [(cell.gripper.palm_link, palm)],
-            zip(cell.gripper.pads.values(), (first, second), strict=True),
-        )
+    gripper, approach = cell.gripper, gripper_axes(cell)[0]
+
+    def extent(link: str, pose: SE3) -> float:
+        return float((pose.apply(cell.scene.corners(link)) @ approach).max())
+
+    positions = gripper.open_position, position_for_width(gripper, width)
+    tips = max(
+        extent(link, pose)
+        for position in np.linspace(*positions, CLOSING_STATES)
+        for link, pose in zip(gripper.pads.values(), _in_tcp(cell, position)[1:], strict=True)
     )
-    depth = min(GRASP_DEPTH, height / 2, height - tips - CLEARANCE)
-    return depth if cell.gripper.has_single_jaw else min(depth, -room - CLEARANCE)
+    depth = min(GRASP_DEPTH, height / 2, height - tips - min(CLEARANCE, height / 4))
+    if gripper.has_single_jaw:
+        return depth
+    room = extent(gripper.palm_link, _in_tcp(cell, gripper.open_position)[0])
+    return min(depth, -room - CLEARANCE)
 
 
 def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
@@ -139,11 +153,12 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     side[2] = 0.0
     side /= np.linalg.norm(side)
     height = size[vertical]
-    point = at.translation + np.array([0.0, 0.0, height / 2 - grasp_depth(cell, height)])
     fits = [_fits(size[axis], cell) for axis in level]
+    widths = [size[axis] for axis, does_fit in zip(level, fits, strict=True) if does_fit]
+    depth = grasp_depth(cell, height, min(widths))
+    point = at.translation + np.array([0.0, 0.0, height / 2 - depth])
     turns = _equal_turns(shape.geometry, vertical, fits)
-    width = max(size[axis] for axis, does_fit in zip(level, fits, strict=True) if does_fit)
-    shift = _room_for_width(cell, width)
+    shift = _room_for_width(cell, max(widths))
     return [
         SE3(grasp.rotation, grasp.translation - grasp.rotation @ shift)
         for grasp in _from_above(point, side, turns, cell)
@@ -267,6 +282,12 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
 def _opening(cell: Cell) -> float:
     """Largest gap between the pads [m]."""
     return float(cell.gripper.widths[:, 1].max())
+
+
+def position_for_width(hand: Gripper, width: float) -> float:
+    """Position of the gripper's joint at which the pads are `width` apart [m]."""
+    rows = hand.widths[np.argsort(hand.widths[:, 1])]
+    return float(np.interp(width, rows[:, 1], rows[:, 0]))
 
 
 def least_gap(cell: Cell) -> float:

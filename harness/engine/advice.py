@@ -9,6 +9,7 @@ from harness.cell.grasping import least_gap
 from harness.core.errors import StepFailed
 from harness.core.registry import OWN_PACKAGE, registry
 from harness.recording.execution_failures import ControlFailure, GraspFailure, UnrestFailure
+from harness.recording.explanation import Explanation
 
 
 def advice(failure: StepFailed, cell: Cell) -> str:
@@ -18,6 +19,8 @@ def advice(failure: StepFailed, cell: Cell) -> str:
     if (control is not None or is_grasp) and cell.faults:
         injected = ", ".join(f"{name} (line {line})" for name, line in cell.faults.items())
         return f"look first at the faults that were injected: {injected}"
+    if failure.details.find(Explanation) is not None:
+        return ""
     if is_grasp:
         return (
             "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"

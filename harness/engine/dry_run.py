@@ -19,7 +19,7 @@ from harness.core.types import FloatArray
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
 from harness.ports.motions import FreeMotion, JointMotion
-from harness.ports.simulation import GripperResult
+from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
@@ -97,7 +97,12 @@ class DrySimulator:
         self._positions = self._description.with_mimics(self._positions)
 
     def command_gripper(
-        self, position: float, max_effort: float, *, timeout: float
+        self,
+        position: float,
+        max_effort: float,
+        *,
+        timeout: float,
+        expected: ExpectedGrasp | None = None,
     ) -> GripperResult:
         del max_effort, timeout
         gripper = self._description.gripper
@@ -105,13 +110,17 @@ class DrySimulator:
             raise RuntimeError("the robot has no gripper")
         index = self._description.joint_index[gripper.joint]
         before = self._positions[index]
-        self._positions[index] = position
-        self._positions = self._description.with_mimics(self._positions)
         span = gripper.closed_position - gripper.open_position
         is_closing = (position - before) * span > 0
         touched = self._movable if is_closing and not self._missing else ()
+        end = position
+        if expected is not None and touched:
+            end = sorted((before, position, expected.position))[1]
+            touched = touched if expected.is_free else ()
+        self._positions[index] = end
+        self._positions = self._description.with_mimics(self._positions)
         return GripperResult(
-            position=position,
+            position=end,
             effort=0.0,
             stalled=False,
             reached_goal=True,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from harness.core.spatial import SE3
@@ -26,6 +26,8 @@ class GripperResult:
         reached_goal: Whether it is at the commanded position within tolerance.
         contacts: Object names in contact with each finger side at the end, by side name.
         between: Names of objects that two finger sides press from opposite sides at the end.
+        forces: Normal force with which each finger side presses other bodies at the end, by side
+            name and body [N]; empty where it is not measured.
     """
 
     position: float
@@ -34,6 +36,22 @@ class GripperResult:
     reached_goal: bool
     contacts: Mapping[str, tuple[str, ...]]
     between: tuple[str, ...]
+    forces: Mapping[str, Mapping[str, float]] = field(
+        default_factory=dict[str, Mapping[str, float]]
+    )
+
+
+@dataclass(frozen=True)
+class ExpectedGrasp:
+    """Where fingers that close are expected to meet an object, for adapters without physics.
+
+    Attributes:
+        position: The position of the gripper's joint there.
+        is_free: Whether they meet nothing else before.
+    """
+
+    position: float
+    is_free: bool
 
 
 class Faults(Protocol):
@@ -111,9 +129,21 @@ class Simulator(Protocol):
         ...
 
     def command_gripper(
-        self, position: float, max_effort: float, *, timeout: float
+        self,
+        position: float,
+        max_effort: float,
+        *,
+        timeout: float,
+        expected: ExpectedGrasp | None = None,
     ) -> GripperResult:
-        """Drive the gripper's joint under an effort limit until it arrives or stalls."""
+        """Drive the gripper's joint under an effort limit until it arrives or stalls.
+
+        Args:
+            position: The goal of the gripper's joint.
+            max_effort: The limit of its effort.
+            timeout: The longest time that it may take [s].
+            expected: Where the fingers should meet an object; only what has no physics reads it.
+        """
         ...
 
     def start_gripper(self, position: float, max_effort: float) -> None:

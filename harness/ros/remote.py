@@ -12,7 +12,7 @@ from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.ports.simulation import GripperResult
+from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import UNPUBLISHED, Signals
 from harness.reporting.result import CaseResult
@@ -158,9 +158,15 @@ class RemoteArm:
         self._refuse_failure(goal, client)
 
     def command_gripper(
-        self, position: float, max_effort: float, *, timeout: float
+        self,
+        position: float,
+        max_effort: float,
+        *,
+        timeout: float,
+        expected: ExpectedGrasp | None = None,
     ) -> GripperResult:
         """Send a GripperCommand; what it holds is not measured, a stall is taken for an object."""
+        del expected
         client, gripper = self._gripper, self.description.gripper
         if client is None or gripper is None or not self._wait(lambda: client.is_ready, PATIENCE):
             _unreachable("no server of GripperCommand answers in this domain")

@@ -7,7 +7,7 @@ from typing import Any
 
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.ports.simulation import GripperResult
+from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints
@@ -44,10 +44,15 @@ class TimedSimulator(MujocoSimulator):
             super().track(trajectory)
 
     def command_gripper(
-        self, position: float, max_effort: float, *, timeout: float
+        self,
+        position: float,
+        max_effort: float,
+        *,
+        timeout: float,
+        expected: ExpectedGrasp | None = None,
     ) -> GripperResult:
         with self._clock.part("simulate"):
-            return super().command_gripper(position, max_effort, timeout=timeout)
+            return super().command_gripper(position, max_effort, timeout=timeout, expected=expected)
 
     def hold(self, duration: float) -> None:
         with self._clock.part("simulate"):

@@ -121,6 +121,7 @@ class GripperDrive:
             reached_goal=reached,
             contacts=self._contacts(),
             between=self._between(),
+            forces=self._forces(),
         )
 
     def _ramp(self, position: float) -> SetPoints:
@@ -149,6 +150,17 @@ class GripperDrive:
             )
             for side, links in self._gripper.sides.items()
         }
+
+    def _forces(self) -> dict[str, dict[str, float]]:
+        last = self._recording.count
+        touching = self._recording.contacts(last - 1, last)
+        robot = set(self._simulator.description.link_names)
+        forces: dict[str, dict[str, float]] = {side: {} for side in self._gripper.sides}
+        for side, links in self._gripper.sides.items():
+            for (first, second), force in touching.items():
+                if first in links and second not in robot and force[0] > 0:
+                    forces[side][second] = forces[side].get(second, 0.0) + float(force[0])
+        return forces
 
     def _between(self) -> tuple[str, ...]:
         """Objects that two finger sides have pressed from opposite sides in the last samples."""

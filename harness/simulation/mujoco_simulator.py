@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
-from harness.ports.simulation import GripperResult
+from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import ContactForce, ControlFailure, UnrestFailure
 from harness.recording.motion import Motion
 from harness.recording.signals import Signals
@@ -184,9 +184,15 @@ class MujocoSimulator:
         self._wait_for_goal(whole.positions[-1, columns], columns)
 
     def command_gripper(
-        self, position: float, max_effort: float, *, timeout: float
+        self,
+        position: float,
+        max_effort: float,
+        *,
+        timeout: float,
+        expected: ExpectedGrasp | None = None,
     ) -> GripperResult:
         """Drive the gripper's joint under an effort limit until it reaches its goal or stalls."""
+        del expected  # the physics shows what the fingers meet
         if self._gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
         return self._gripper.drive(position, max_effort, timeout)

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from harness.cell.cell import Cell
+from harness.cell.closing import closing_obstacles, higher_grasp, position_around
 from harness.cell.scope import At
+from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
 from harness.language.step import Step
+from harness.ports.scene import Touch
+from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import GraspFailure, GripperOutcome
+from harness.recording.explanation import Explanation
 from harness.recording.step_results import GraspMode
 from harness.steps.gripper import DEFAULT_TIMEOUT, check_gripper_position, note_result
 
@@ -70,18 +76,23 @@ class Grasp(Step):
         """
         hand = cell.gripper
         target = hand.closed_position if self.position is None else self.position
+        cell.sync_scene()
+        state = cell.planning_start()
+        obstacles = closing_obstacles(self.object, state, cell)
         result = cell.simulator.command_gripper(
-            target, self.max_effort or hand.grip_effort, timeout=self.timeout or DEFAULT_TIMEOUT
+            target,
+            self.max_effort or hand.grip_effort,
+            timeout=self.timeout or DEFAULT_TIMEOUT,
+            expected=ExpectedGrasp(position_around(self.object, state, cell), not obstacles),
         )
         outcome = note_result(cell, target, result)
         cell.report(GraspMode(self.mode))
         empty = [side for side, names in result.contacts.items() if self.object not in names]
-        if empty:
-            message = _missed(self.object, empty, cell)
-            raise StepFailed("CONTROL_FAILED", message, outcome, GraspFailure(self.mode))
-        if self.object not in result.between:
-            message = _not_between(self.object, cell)
-            raise StepFailed("CONTROL_FAILED", message, outcome, GraspFailure(self.mode))
+        if empty or self.object not in result.between:
+            missed = _missed(self.object, empty) if empty else _not_between(self.object)
+            cause, advice = _cause(self.object, result, obstacles, cell)
+            message, failure = f"{missed}; {cause}", GraspFailure(self.mode)
+            raise StepFailed("CONTROL_FAILED", message, outcome, failure, *advice)
         cell.sync_scene()
         cell.attach(self.object, cell.description.tcp_link, hand.links)
         if self.mode == "weld":
@@ -106,18 +117,46 @@ def check_graspable(name: str, at: At) -> None:
         )
 
 
-def _missed(name: str, empty: list[str], cell: Cell) -> str:
-    """Which side misses, and how the object stands to the TCP."""
+def _missed(name: str, empty: list[str]) -> str:
+    """Which side misses."""
     sides = " and ".join(f"the {side} finger" for side in empty)
-    return f"{sides} did not touch '{name}' when the gripper closed; {_offset(name, cell)}"
+    return f"{sides} did not touch '{name}' when the gripper closed"
 
 
-def _not_between(name: str, cell: Cell) -> str:
+def _not_between(name: str) -> str:
     """Fingers that touch an object and do not have it between them."""
     return (
         f"both fingers touch '{name}', but do not press it from opposite sides: it is not between"
-        f" them; {_offset(name, cell)}"
+        " them"
     )
+
+
+def _cause(
+    name: str, result: GripperResult, obstacles: Sequence[Touch], cell: Cell
+) -> tuple[str, Details]:
+    """What the fingers met instead, with advice, or else how the object stands to the TCP."""
+    pressed: dict[str, list[str]] = {}
+    for forces in result.forces.values():
+        for body, force in forces.items():
+            if body != name:
+                pressed.setdefault(body, []).append(f"{force:.3g} N")
+    if pressed:
+        where = ", ".join(f"{body} with {' and '.join(each)}" for body, each in pressed.items())
+        cause = f"the fingers press {where}"
+    elif obstacles and not result.forces:  # without physics
+        depths = "; ".join(map(_depth, obstacles))
+        cause = f"fingers that close to its width meet something else before: {depths}"
+    else:
+        return _offset(name, cell), Details()
+    advice = (
+        f"grasp it {higher_grasp(obstacles, cell)}: with the `grasp_pose` of `pick`, or with the"
+        " motion before `grasp`"
+    )
+    return cause, Details.of(Explanation(advice=advice))
+
+
+def _depth(touch: Touch) -> str:
+    return f"{touch.first} reaches {-1e3 * touch.distance:.1f} mm into {touch.second}"
 
 
 def _offset(name: str, cell: Cell) -> str:

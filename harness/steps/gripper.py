@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
-from harness.cell.grasping import GAP_SLACK
+from harness.cell.grasping import GAP_SLACK, position_for_width
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
 from harness.language.step import Step
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import GripperOutcome
-from harness.robot.description import Gripper as GripperDescription
 
 DEFAULT_TIMEOUT = 10.0  # [s] of simulation
 
@@ -95,7 +93,7 @@ class Gripper(Step):
             return states[self.named_target].positions[hand.joint], effort
         if self.position is not None:
             return self.position, effort
-        return _position_for_width(hand, self.width or 0.0), effort
+        return position_for_width(hand, self.width or 0.0), effort
 
 
 def check_gripper_position(position: float | None, at: At) -> None:
@@ -138,9 +136,3 @@ def note_result(cell: Cell, target: float, result: GripperResult) -> GripperOutc
     )
     cell.report(outcome)
     return outcome
-
-
-def _position_for_width(hand: GripperDescription, width: float) -> float:
-    """Joint position at which the pads are `width` apart [m]."""
-    rows = hand.widths[np.argsort(hand.widths[:, 1])]
-    return float(np.interp(width, rows[:, 1], rows[:, 0]))

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
+from harness.cell.closing import closing_obstacles
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
 from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import (
@@ -186,7 +187,9 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         group,
         cell.with_open_gripper(cell.planning_start()),
         cell.current.options,
-        then=lambda state: _can_lift(lift, state, cell),
+        then=lambda state: (
+            not closing_obstacles(step.object, state, cell) and _can_lift(lift, state, cell)
+        ),
     )
     try:
         chosen = choose_approach(approaches, search, cell)

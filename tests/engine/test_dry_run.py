@@ -8,6 +8,7 @@ import pytest
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.engine.dry_run import DryFaults, DrySimulator
+from harness.ports.simulation import ExpectedGrasp
 
 GRIPPER = SimpleNamespace(
     joint="finger", open_position=0.03, closed_position=0.0, sides={"left": (), "right": ()}
@@ -111,3 +112,15 @@ def test_faults_without_physics_are_what_was_set_before():
     assert faults.stall_joint("arm") is False
     assert faults.disturb_sensors(0.1, 3) == 0.1
     assert faults.delay_commands(0.2) == 0.2
+
+
+@pytest.mark.parametrize(
+    ("expected", "is_free", "end"),
+    [(0.012, True, 0.012), (0.012, False, 0.012), (0.05, True, 0.02)],
+)
+def test_fingers_end_where_they_are_expected_to_meet_an_object(expected, is_free, end):
+    """A hand that is closed farther than the object's width stays where it is."""
+    hand = simulator(open_position=0.03, closed_position=0.0)
+    answer = hand.command_gripper(0.0, 5.0, timeout=1.0, expected=ExpectedGrasp(expected, is_free))
+    assert answer.position == end
+    assert answer.between == (("box",) if is_free else ())

@@ -8,6 +8,7 @@ from harness.recording.explanation import recorded_explanation
 from tests.engine.front_door import UR, check, failures, problems, run
 
 OM = "open_manipulator_x"
+UR3E = "{model: ur3e, gripper: rh_p12_rn_a}"
 UR5E = "{model: ur5e, gripper: rh_p12_rn_a}"
 
 
@@ -375,3 +376,47 @@ def test_a_place_before_its_pick_names_the_step_to_put_before_it(tmp_path, robot
     found = check(tmp_path, steps, robot=robot, rest=objects(cube("cube", 3, 0.3, 0.0)))
     assert "INVALID_OBJECT_NAME" in found.predicted[0].message
     assert "before: `- pick: cube`" in "\n".join(found.explanations[0])
+
+
+def part(shape, height):
+    """A part of a height [m] on the floor, where a UR3e takes it from above."""
+    return objects(
+        f"- {{name: part, {shape}, mass: 0.03, pose: {{xyz: [0.35, 0.1, {height / 2}]}}}}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("shape", "height"),
+    [
+        ("box: {size: [2 cm, 2 cm, 2 cm]}", 0.02),
+        ("box: {size: [25 mm, 3 cm, 1 cm]}", 0.01),
+        ("cylinder: {radius: 15 mm, length: 25 mm}", 0.025),
+        ("box: {size: [9 cm, 12 cm, 2 cm]}", 0.02),
+    ],
+)
+def test_fingertips_that_swing_down_stay_above_what_a_small_part_stands_on(tmp_path, shape, height):
+    """The tips of the RH-P12-RN(A) reach 28 mm farther out when they are closed."""
+    words = {"robot": UR3E, "rest": part(shape, height)}
+    assert not check(tmp_path, "- pick: part", **words).predicted
+    steps = "- pick: part\n  expect: [{lifted: {object: part, above: 7 cm}}]"
+    result, _ = run(tmp_path, steps, **words)
+    assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
+
+
+@pytest.mark.parametrize("size", [2, 3])
+def test_fingers_that_press_the_floor_are_named_and_the_advice_to_grasp_higher_helps(
+    tmp_path, size
+):
+    step = "- pick: {object: part, grasp_pose: {frame: part, xyz: [0, 0, %s]}}"
+    words = {"robot": UR3E, "rest": objects(cube("part", size, 0.35, 0.1))}
+    result, record = run(tmp_path, step % 0, **words)
+    [failed] = [step for step in result.steps if step.verb == "grasp"]
+    assert failed.error_code == "CONTROL_FAILED"
+    assert re.search(r"the fingers press ground_plane with [\d.]+ N and [\d.]+ N", failed.message)
+    given = advice(record, failed.path)
+    found = check(tmp_path, step % 0, **words)
+    assert "mm into ground_plane" in found.predicted[0].message
+    assert given in "\n".join(found.explanations[0])
+    higher = int(re.search(r"grasp it (\d+) mm higher", given)[1])
+    result, _ = run(tmp_path, step % (higher / 1000), **words)
+    assert result.outcome == "passed", [s.message for s in result.steps]
