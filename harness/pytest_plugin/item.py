@@ -1,4 +1,4 @@
-"""A scenario as a pytest item; collecting thousands of files imports nothing native."""
+"""A scenario as a pytest item; collecting files imports no planner and no physics."""
 
 from __future__ import annotations
 
@@ -50,8 +50,19 @@ class ScenarioItem(pytest.Item):
         number: Position of the case in its file, from 0.
     """
 
-    def __init__(self, *, header: ScenarioHeader, case: str, number: int, **keywords: Any) -> None:
-        super().__init__(**keywords)
+    def __init__(
+        self,
+        *,
+        name: str,
+        parent: pytest.Collector,
+        header: ScenarioHeader,
+        case: str,
+        number: int,
+        **keywords: Any,
+    ) -> None:
+        # as a text, which pytest takes apart in the same way as the ids in its cache
+        nodeid = f"{parent.nodeid}::{name}"
+        super().__init__(name=name, parent=parent, nodeid=nodeid, **keywords)
         self.header = header
         self.case = case
         self.number = number

@@ -117,9 +117,9 @@ def _cases(
     """The values that a file's cases follow from, and the variation that they say.
 
     Args:
-        written: The file's values.
+        written: The file's values, options not applied.
         root: The file's values, options applied.
-        overrides: The options.
+        overrides: Values that were given with `--set`.
     """
     if not CASE_KEYS & root.mapping().keys():
         return {}, ONE_CASE

@@ -288,8 +288,15 @@ def test_margins_are_in_junit_and_reported_when_they_get_small(pytester, write):
     assert ("worst_margin", "duration, at most 0.1 s") in found
 
 
-def test_collecting_scenarios_imports_nothing_native(write):
-    write(holds=HOLDS + "parametrize: {seed: [1, 2, 3]}\n")
+@pytest.mark.parametrize(
+    ("keys", "item", "imported"),
+    [
+        ("", "Hold still", []),
+        ("parametrize: {seed: [1, 2, 3]}\n", "Hold still[3]", ["numpy", "pydantic"]),
+    ],
+)
+def test_collecting_scenarios_imports_no_planner_and_no_physics(write, keys, item, imported):
+    write(holds=HOLDS + keys)
     code = """if True:
         import sys, pytest
         pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", "-p", "no:randomly"])
@@ -297,8 +304,8 @@ def test_collecting_scenarios_imports_nothing_native(write):
         print("imported:", sorted(native & set(sys.modules)))
     """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "Hold still[3]" in done.stdout
-    assert "imported: []" in done.stdout
+    assert item in done.stdout
+    assert f"imported: {imported}" in done.stdout
 
 
 def test_in_an_action_of_github_a_session_annotates_and_sums_up(pytester, write, monkeypatch):
@@ -318,3 +325,40 @@ def test_a_warning_of_a_verdict_fails_a_strict_session(pytester, write):
     result = run(pytester, "--harness-strict")
     result.assert_outcomes(failed=1)
     result.stdout.re_match_lines([".*warning: already true at the start.*"])
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2")])
+def test_last_failed_runs_exactly_what_failed(pytester, write, workers):
+    case = "parametrize: {params.t: ['0.1 s', '1.5 s']}\nparams: {t: 0.1 s}\n"
+    varied = FAILS.replace("Too short", "Sizes").replace("wait: 0.1 s", "wait: ${t}") + case
+    write(holds=HOLDS, varied=varied)
+    write(title=FAILS.replace("Too short", '"odd [a] title [b]"'), last=FAILS)
+    failed = [
+        "last.scenario.yaml::Too short",
+        "title.scenario.yaml::odd [a] title [b]",
+        "varied.scenario.yaml::Sizes[0.1_s]",
+        "varied.scenario.yaml::Sizes[1.5_s]",
+    ]
+    write(varied=varied.replace("at_least: 2 s", "at_least: 1 s"))
+    options = ("-q", "-p", "no:randomly", "--harness-no-report")
+    pytester.runpytest(*options, *workers).assert_outcomes(failed=3, passed=2)
+
+    def collected(*more):
+        lines = pytester.runpytest(*options, "--collect-only", *more).outlines
+        return [line for line in lines if "::" in line]
+
+    assert sorted(collected("--lf")) == failed[:3]
+    assert sorted(collected("--ff")[:3]) == failed[:3]
+    again = pytester.runpytest(*options, "--lf", *workers)
+    again.assert_outcomes(failed=3)
+    assert collected(*failed[1:]) == failed[1:]
+    left = collected("--deselect", failed[1], "--deselect", failed[2])
+    assert sorted(left) == ["holds.scenario.yaml::Hold still", failed[0], failed[3]]
+
+
+def test_stepwise_continues_with_the_case_that_failed(pytester, write):
+    case = "parametrize: {params.t: ['2.5 s', '0.1 s']}\nparams: {t: 0.1 s}\n"
+    write(varied=FAILS.replace("wait: 0.1 s", "wait: ${t}") + case)
+    options = ("-p", "no:randomly", "--harness-no-report", "--sw")
+    pytester.runpytest(*options).assert_outcomes(failed=1, passed=1)
+    pytester.runpytest(*options).assert_outcomes(failed=1, deselected=1)

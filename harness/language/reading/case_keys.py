@@ -94,7 +94,7 @@ def fixed_values(root: Located, keys: CaseKeys, options: list[Override]) -> dict
     Args:
         root: The file's values, options not applied.
         keys: The keys of its cases.
-        options: The options.
+        options: Values that were given with `--set`.
     """
     varied = [*(keys.randomize or {}), *parametrized_paths(keys)]
     drawn = Located(DRAWN, root.place)
