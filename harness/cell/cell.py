@@ -288,10 +288,7 @@ class Cell:
 
     def detach(self, name: str) -> None:
         """Let go of an attached object and its weld; what it stood for is in the scene again."""
-        if name not in self.scene.attached():
-            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
-        if self.presence[name].obj.in_simulation:
-            self.simulator.unweld(name)
+        self.unweld(name)
         self.believe(name, self.scene.detach_object(name, self.planning_start()))
         for index, record in enumerate(self.attachments):
             if record.object == name and record.end_time == float("inf"):
@@ -299,6 +296,13 @@ class Cell:
                 self._return_represented(record)
         if name in self.held:
             self.held.remove(name)
+
+    def unweld(self, name: str) -> None:
+        """End the weld of an attached object, if it has one; it stays attached."""
+        if name not in self.scene.attached():
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
+        if self.presence[name].obj.in_simulation:
+            self.simulator.unweld(name)
 
     def _return_represented(self, record: AttachmentRecord) -> None:
         presence = self.presence.get(record.represents)

@@ -119,6 +119,17 @@ def positive_number(what: str) -> Callable[[str], float]:
 seconds = positive_number("seconds")
 
 
+def coordinate(text: str) -> float:
+    """A finite coordinate [m]."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = float("nan")
+    if not abs(number) < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a coordinate in metres, such as 1.02")
+    return number
+
+
 def start_time(text: str) -> float:
     """A time of a run [s]: 0, or later."""
     return 0.0 if text in ("0", "0.0") else seconds(text)

@@ -6,7 +6,7 @@ import argparse
 import threading
 from pathlib import Path
 
-from harness.cli.arguments import port_number, start_time
+from harness.cli.arguments import coordinate, port_number, start_time
 from harness.cli.output import complain, say
 from harness.cli.robot_options import ROBOT
 from harness.cli.shared_options import add_plugin
@@ -27,6 +27,8 @@ def add_options(command: argparse.ArgumentParser) -> None:
     add("--world", metavar="WORLD", default="", help=text)
     text = "mount this bundled gripper on the robot"
     add("--gripper", metavar="NAME", default="", help=text)
+    text = "put the robot's base at this place of the world [m], such as a table's top: 0 0 1.02"
+    add("--base", metavar=("X", "Y", "Z"), nargs=3, type=coordinate, help=text)
     text = "serve the page on this port; 0 selects a free one (default: 8011)"
     add("--port", metavar="N", type=port_number, default=8011, help=text)
     text = "listen on this address instead of loopback; the URL then contains a token"
@@ -44,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.studio.server import PortInUseError, page_assets, start_server
     from harness.studio.studio import Studio
 
-    path, text, time = _start(arguments)
+    path, text, time = start_of(arguments)
     files = StudioFiles(Path.cwd(), path, [Path(arguments.target)])
     restored = files.restored()
     is_restored = restored is not None and restored != text
@@ -95,7 +97,7 @@ def refuse_missing_extra() -> None:
         raise UsageError(f"{EXTRA} ({error})") from error
 
 
-def _start(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
+def start_of(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
     """The file that the studio saves to, the text with which it begins, and the time to go to."""
     from harness.recording.stored_run import RESOLVED, RUN
 
@@ -117,14 +119,16 @@ def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     is_robot = is_file or word in robot_names()
     if not is_robot:
         return _scenario(word, arguments)
-    from harness.studio.document import new_text
+    from harness.studio.document import Plain, new_text
 
     robot = {kind: word, "gripper": arguments.gripper}
     stem = Path(word).name.partition(".")[0] or "robot"
     path = Path(f"{stem}_by_hand{SUFFIX}")
     if path.exists():
         return path, path.read_text(encoding="utf-8")
-    given = {key: value for key, value in robot.items() if value}
+    given: dict[str, Plain] = {key: value for key, value in robot.items() if value}
+    if arguments.base is not None:
+        given["base"] = {"xyz": arguments.base}
     return path, new_text(f"{stem} by hand", given, arguments.world or "empty")
 
 
@@ -133,8 +137,8 @@ def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     from harness.language.files.yaml_file import read_text
     from harness.robot.load import robot_names
 
-    if arguments.gripper or arguments.world:
-        raise UsageError("--gripper and --world are for a robot; a scenario has its own")
+    if arguments.gripper or arguments.world or arguments.base is not None:
+        raise UsageError("--gripper, --world and --base are for a robot; a scenario has its own")
     try:
         [file, *more] = discover([word])
     except UsageError as error:

@@ -66,8 +66,8 @@ class Release(Step):
         """Open the gripper, detach the object, and verify that no finger touches it any more.
 
         Raises:
-            StepFailed: INVALID_OBJECT_NAME, when nothing is held; CONTROL_FAILED, when a finger
-                still touches it.
+            StepFailed: INVALID_OBJECT_NAME, when nothing is held, or not that object;
+                CONTROL_FAILED, when a finger still touches it.
         """
         hand = cell.gripper
         name = self.object or (cell.held[-1] if cell.held else None)
@@ -79,7 +79,7 @@ class Release(Step):
             target = cell.description.states_of(hand.group)[self.named_target].positions[hand.joint]
         elif self.position is not None:
             target = self.position
-        cell.simulator.unweld(name)
+        cell.unweld(name)
         result = cell.simulator.command_gripper(
             target, hand.max_effort, timeout=self.timeout or DEFAULT_TIMEOUT
         )

@@ -255,12 +255,8 @@ class LiveCell:
             The scenario's text, which has the step only where it succeeded; and its result.
         """
         before, count = self.document, self.steps_done
-        was_by_hand = self.is_by_hand
-        is_new = self.load(before.with_step(text, count))
-        if is_new:
+        if self.load(before.with_step(text, count)):
             self.repeat(count)
-        elif was_by_hand:
-            self.history[-1] = replace(self.history[-1], is_run=False)
         after = self.document.text
         self.run_steps(count + 1)
         record = next(r for r in self.execution.records if r.path == f"steps[{count}]")

@@ -47,6 +47,36 @@ expect:
     assert result.outcome == "passed", (result.problems, result.verdicts)
 
 
+GHOST = "{name: ghost, box: {size: [0.02, 0.02, 0.02]}, in: planning, pose: {xyz: [0.2, 0, 0.2]}}"
+ATTACHED = "'ghost' is attached: detach it first"
+
+
+@pytest.mark.parametrize(
+    ("steps", "message"),
+    [
+        (["attach_object: ghost", "release: ghost"], ""),
+        (["release: ghost"], "'ghost' is not attached"),
+        (["release: box"], "'box' is not attached"),
+        (["attach_object: ghost", "remove_object: ghost"], ATTACHED),
+        (["attach_object: box", "detach_object: box", "remove_object: box"], ""),
+        (["attach_object: ghost", "attach_object: ghost"], "'ghost' is attached already"),
+        (["attach_object: ghost", "clear_objects: {world: true}", "release: ghost"], ""),
+        (["attach_object: {object: ghost, represents: box}", "remove_object: box"], ""),
+        (
+            ["attach_object: ghost", "move_object: {object: ghost, pose: {xyz: [0, 0.2, 0.1]}}"],
+            ATTACHED,
+        ),
+    ],
+)
+def test_what_is_attached_or_not_is_released_or_refused(tmp_path, steps, message):
+    """Objects of the planner alone have no weld in the physics that could end."""
+    text = "".join(f"  - {step}\n" for step in steps)
+    box = f"{{{BOX}, pose: {{xyz: [0.2, 0.1, 0.015]}}}}"
+    result = result_of(tmp_path, f"objects: [{GHOST}, {box}]\nsteps:\n{text}")
+    last = result.steps[-1]
+    assert (last.status, last.message) == ("failed" if message else "passed", message)
+
+
 @pytest.mark.parametrize(
     "other", ["size: [0.02, 0.02, 0.02]}, mass: 0.1", "size: [0.02, 0.02, 0.02]}"]
 )

@@ -175,3 +175,24 @@ def test_a_motion_that_is_stopped_by_hand_fails_and_leaves_the_arm_where_it_is(c
     assert (record.status, record.error_code) == ("failed", "PREEMPTED")
     assert 0.3 <= cell.simulator.time < 0.35
     assert judged(cell).digest == "", "a run of the file is not stopped there"
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_a_step_recorded_after_a_motion_by_hand_is_run_with_all_others(cell, count):
+    """From the start on: what was recorded by hand is no state of a run, the states before are."""
+    cell.run_steps(count)
+    cell.jog(cell.joint_positions() + 0.1, 1.0, 0.1)
+    cell.record("gripper: close")
+    assert not cell.is_run
+    cell.reset()
+    cell.go_to(4)
+    assert (cell.steps_done, cell.is_run) == (4, True)
+    assert judged(cell).digest
+
+
+def test_a_recorded_step_that_fails_after_a_motion_by_hand_leaves_the_run_possible(cell):
+    cell.jog(cell.joint_positions() + 0.1, 1.0, 0.1)
+    _, record = cell.record("move_to: {position: {xyz: [2, 0, 0.1]}}")
+    assert record.status == "failed"
+    cell.go_to(3)
+    assert (cell.steps_done, cell.is_run) == (3, True)

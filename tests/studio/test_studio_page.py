@@ -106,6 +106,27 @@ def test_a_slider_moves_the_joint(opened, served):
     opened.wait("Math.abs(parseFloat(document.querySelector('.joint output').innerText)) < 0.5")
 
 
+@pytest.mark.parametrize("focus", ['input[aria-label="joint1"]', "#record"])
+def test_keys_move_the_gripper_while_a_slider_or_a_box_to_tick_has_the_focus(browser, serve, focus):
+    """Sliders have it after each drag; then a recorded step and the whole scenario run."""
+    served = serve()
+    context = browser.new_context(viewport={"width": 1400, "height": 900})
+    page = Page(context, served.address)
+    page.page.select_option("#speed", "0")
+    slider = page.page.locator('input[aria-label="joint1"]')
+    slider.focus()
+    slider.press("ArrowRight")
+    page.wait_text("#status", "moved by hand")
+    page.page.focus(focus)
+    page.page.keyboard.press("o")
+    page.wait_text("#status", "1 of 1 steps executed")
+    page.page.click("#run-all")
+    page.wait_text("#verdicts", "digest")
+    assert served.studio.cell.is_run
+    assert page.complaints == []
+    context.close()
+
+
 def test_an_overlap_is_shown_and_physics_waits_before_it_pushes_bodies_apart(opened, served):
     size, xyz = [0.04, 0.04, 0.04], [0.2, 0, 0.01]
     assert served.reply_to("add_object", name="sunk", kind="box", size=size, xyz=xyz) == {}

@@ -249,12 +249,12 @@ document.addEventListener("keydown", (event) => {
   if (event.key === "F10") { event.preventDefault(); return act(event.shiftKey ? "back" : "run", { until: "next" }); }
   if (event.key === "F9") { event.preventDefault(); return editor.toggleBreakpoint(editor.line() - 1); }
   if (event.key === "F5" && !event.shiftKey) { event.preventDefault(); return $("run-breakpoint").click(); }
-  const isTyping = event.target.matches?.("input, textarea, select, .ace_text-input");
+  const isTyping = event.target.matches?.("input:not([type=range], [type=checkbox]), textarea, select, .ace_text-input");
   if (event.key === "Escape" && !event.target.matches?.(".ace_text-input")) return act("stop");
   if (isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === "o" && robot?.gripper) run(robot.gripper.steps.open);
   if (event.key === "p" && robot?.gripper) run(robot.gripper.steps.close);
-  if (event.key === " " && !event.target.matches?.("button, summary")) { event.preventDefault(); $("play").click(); }
+  if (event.key === " " && !event.target.matches?.("button, summary, [type=checkbox]")) { event.preventDefault(); $("play").click(); }
 });
 
 showScene();
