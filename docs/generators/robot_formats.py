@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from harness.language.files.yaml_file import UNITS
+from harness.robot.xacro.functions import BUILTINS, MATH, METHODS, PYTHON
 from tests.robot.format_rows import Row
 from tests.robot.format_tables import TABLES
 
@@ -34,12 +38,54 @@ controllers, launch files) are not read; their settings belong into the scenario
 """
 
 
+EXPRESSIONS = """
+### Expressions of xacro files
+
+An expression of a xacro file is read as Python's syntax, and evaluated by an interpreter that has
+nothing but numbers, text, lists, tuples and dictionaries. It may contain:
+
+- arithmetic, comparisons, `and`, `or`, `not`, `in`, `is`, `a if b else c`, and bit operations;
+- lists, tuples, dictionaries, indices, slices, and comprehensions that make a list;
+- `%` and `.format(...)` with text, with widths of at most 999;
+- `key` of a YAML mapping as `mapping.key`, and properties of a namespace (`ns`) as `ns.name`;
+- functions without a namespace: {builtins};
+- functions of `python.`: {python};
+- of `math.`, or without it: {math};
+- of `xacro.`: `abs_filename`, `arg`, `dotify`, `fatal`, `load_yaml`, `tokenize`, and `error`,
+  `message`, `print_location`, `warning`, which print nothing;
+- methods of text: {text}; of dictionaries: {dictionary}; of lists: {list}.
+
+Files of `load_yaml` are YAML 1.1 with the tags {units}, whose text may be an expression. Lambdas,
+sets, f-strings, other attributes, and the names `complex`, `frozenset`, `hash`, `isinstance`,
+`issubclass`, `set`, `slice`, `type` and `vars` of `python.` are refused. Comments are dropped.
+"""
+
+
+def expressions_section() -> str:
+    """What expressions of xacro files may contain, from the tables that evaluate them."""
+    return EXPRESSIONS.format(
+        builtins=_listed(BUILTINS),
+        python=_listed(PYTHON.keys() - BUILTINS.keys()) + ", and those above",
+        math=_listed(MATH),
+        text=_listed(METHODS[str]),
+        dictionary=_listed(METHODS[dict]),
+        list=_listed(METHODS[list]),
+        units=_listed(UNITS),
+    )
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in sorted(names))
+
+
 def robot_formats_page() -> str:
     """The page as Markdown."""
     parts = [HEAD]
     for title, key, rows in TABLES.values():
         parts.append(f"## {title}\n\n{key}\n\n| | here | |\n| --- | --- | --- |")
         parts[-1] += "".join(f"\n{_line(row)}" for row in rows) + "\n"
+        if title == "xacro":
+            parts.append(expressions_section())
     return "\n".join(parts)
 
 

@@ -20,7 +20,8 @@ from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.srdf.read import read_srdf
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf, parse_urdf
-from harness.robot.xacro.file import refuse_unknown_arguments, render
+from harness.robot.xacro.file import refuse_unknown_arguments
+from harness.robot.xacro.render import render
 
 RENAMED_ROOT = "robot_world"
 """New name of a robot's root link that is named `world`, like the root of every composed robot."""
@@ -49,8 +50,8 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> RobotPart:
         urdf, states, excluded = mjcf.urdf, mjcf.states, mjcf.disabled
     else:
         is_xacro = key == "xacro"
-        text = render(path, spec.args, packages).encode() if is_xacro else read_bounded(path)
-        urdf, states, excluded = parse_urdf(text, path.parent, str(path), packages), (), {}
+        document = render(path, spec.args, packages) if is_xacro else read_bounded(path)
+        urdf, states, excluded = parse_urdf(document, path.parent, str(path), packages), (), {}
     urdf = _without_world(urdf)
     if srdf_path is None:
         srdf = _default_srdf(spec, urdf, states)

@@ -14,7 +14,7 @@ from harness.core.geometry import CollisionMode
 from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
 from harness.core.suggestion import did_you_mean
-from harness.language.files.xml_file import LARGEST_FILE, read_xml
+from harness.language.files.xml_file import LARGEST_FILE, XmlElement, read_xml
 from harness.language.files.yaml_file import read_text
 from harness.language.scenario import RobotSpec
 from harness.robot.acceleration import with_assumed_limits_listed, with_possible_accelerations
@@ -33,7 +33,8 @@ from harness.robot.robot_collection import collected_robots
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.srdf.read import read_srdf
 from harness.robot.urdf.urdf import parse_urdf
-from harness.robot.xacro.file import arguments_of, render, render_bundled
+from harness.robot.xacro.file import arguments_of
+from harness.robot.xacro.render import render
 
 OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 
@@ -230,29 +231,22 @@ def _part(
 @lru_cache(maxsize=32)
 def _bundled(name: str, args: tuple[tuple[str, str], ...]) -> RobotPart:
     folder, facts = _catalogue()[name]
-    return _read(folder, facts, name if facts.variants else "", dict(args), is_bundled=True)
+    return _read(folder, facts, name if facts.variants else "", dict(args))
 
 
-def _read(
-    folder: Path,
-    facts: RobotYaml,
-    variant: str,
-    args: Mapping[str, Any],
-    *,
-    is_bundled: bool = False,
-) -> RobotPart:
+def _read(folder: Path, facts: RobotYaml, variant: str, args: Mapping[str, Any]) -> RobotPart:
     """URDF and SRDF of a folder, with the limits of its robot.yaml."""
     name = variant or facts.robot
     if facts.xacro is not None:
         path = folder / facts.xacro.file
-        text = _rendered(path, facts.xacro, variant, args, is_bundled=is_bundled)
+        document = _rendered(path, facts.xacro, variant, args)
     else:
         path = folder / (facts.urdf or "")
-        text = _text(path)
+        document = _text(path)
         if args:
             raise RobotOptionError("args", f"'{name}' is not a xacro file and takes no arguments")
     packages = PackagePath.of_file(path, [find_folder(each, folder) for each in facts.packages])
-    urdf = parse_urdf(text, folder, str(path), packages)
+    urdf = parse_urdf(document, folder, str(path), packages)
     urdf = replace(urdf, joints=tuple(_with_facts(joint, facts) for joint in urdf.joints))
     srdf_path = folder / facts.srdf
     around = PackagePath.of_file(srdf_path, packages.given)
@@ -269,9 +263,9 @@ def _text(path: Path) -> str:
 
 
 def _rendered(
-    path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str, Any], *, is_bundled: bool
-) -> str:
-    """The URDF text of a xacro file."""
+    path: Path, xacro_file: XacroFile, variant: str, args: Mapping[str, Any]
+) -> XmlElement:
+    """The URDF of a xacro file."""
     declared = arguments_of(read_xml(path))
     for key in args:
         if key not in declared or key == xacro_file.variant_arg:
@@ -279,7 +273,7 @@ def _rendered(
             raise RobotOptionError(
                 "args", f"{path.name} takes no argument '{key}'; known are {known}"
             )
-    mappings = {key: str(value) for key, value in args.items()}
+    mappings = dict(args)
     if xacro_file.variant_arg and variant:
         mappings[xacro_file.variant_arg] = variant
     if xacro_file.mesh_arg and xacro_file.mesh_arg not in mappings:
@@ -287,8 +281,6 @@ def _rendered(
             importlib.util.find_spec(xacro_file.mesh_package or "") is not None
         )
         mappings[xacro_file.mesh_arg] = str(has_meshes).lower()
-    if is_bundled:
-        return render_bundled(path, mappings)
     return render(path, mappings, PackagePath.of_file(path))
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from harness.core.errors import SpecError
+from harness.core.quantity import split_quantity
 from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Source
 from harness.language.files.yaml_file import parse_yaml, read_text, require_key
@@ -26,7 +27,14 @@ def read_data(path: Path, keys: Sequence[str], kind: str) -> Located:
     """
     text = read_text(path)
     require_key(text, keys, str(path), kind)
-    return parse_yaml(text, Source.of_text(str(path), text))
+    return parse_yaml(text, Source.of_text(str(path), text), number=_plain_number)
+
+
+def _plain_number(text: str) -> float:
+    value, unit = split_quantity(text)
+    if unit:
+        raise ValueError(f"`{text}` has a unit and a tag")
+    return value
 
 
 def number(item: Located) -> float:

@@ -62,9 +62,8 @@ TABLES: dict[str, tuple[str, str, tuple[Row, ...]]] = {
     "arm.urdf": ("URDF", "`robot: {urdf: ...}`, or `xacro:` with `args:`", URDF_ROWS),
     "arm.xacro": (
         "xacro",
-        "`robot: {xacro: ..., args: {...}}`; rendered by the xacro library, without ROS, in a"
-        " process of its own.\nMistakes are reported at the file and line they are written in,"
-        " included files too.",
+        "`robot: {xacro: ..., args: {...}}`; rendered without ROS, as the `xacro` package renders"
+        " it.\nMistakes are reported at the file and line they are written in, included files too.",
         XACRO_ROWS,
     ),
     "arm.srdf": (

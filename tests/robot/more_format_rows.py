@@ -46,7 +46,7 @@ def has_more(arm):
 XACRO_ROWS = (
     read("`<xacro:arg>`, `$(arg ...)`", "of `args:`, else as the file has it", 'default="0.1"',
          'default="0.3"', lambda arm: height(arm, "turn") == 0.3),
-    read("`<xacro:property>`, `${...}`", "expressions are Python", FAR,
+    read("`<xacro:property>`, `${...}`", "expressions: see below", FAR,
          '"far" value="${2 * 0.25}"', lambda arm: height(arm, "bend") == 0.5),
     read("`<xacro:macro>`", "with parameters, defaults and blocks", END, MACRO + END, has_more),
     read("`<xacro:if>`, `<xacro:unless>`", "", END,
@@ -57,6 +57,10 @@ XACRO_ROWS = (
     read("`xacro.load_yaml(...)`", "of the given folders", FAR,
          "\"far\" value=\"${xacro.load_yaml('sizes.yaml')['far']}\"",
          lambda arm: height(arm, "bend") == 0.4),
+    read("`$(eval ...)`", "as far as xacro reads it", FAR, '"far" value="$(eval high * 5)"',
+         lambda arm: height(arm, "bend") == 0.5),
+    read("`$(optenv NAME default)`", "the default", FAR, '"far" value="$(optenv HOME 0.4)"',
+         lambda arm: height(arm, "bend") == 0.4),
     refused("`$(env ...)`", "", FAR, '"far" value="$(env HOME)"', "HOME"),
     refused("a file outside of the given folders", "", END, INCLUDE.format("/etc/passwd"),
             "outside the robot's folder"),
@@ -65,10 +69,11 @@ XACRO_ROWS = (
     refused("files that include each other in a circle", "", END, INCLUDE.format("arm.xacro"),
             "include each other in a circle"),
     refused("an unknown macro, argument or name", "", END, "<xacro:tap/>" + END, "tap"),
-    refused("an expression that starts or writes something", "", FAR,
+    refused("a function or attribute that is not listed", "", FAR,
             "\"far\" value=\"${open('made', 'w')}\"", "open"),
-    refused("one without an end", "8 s and 1 GB are the most", FAR,
-            '"far" value="${[0] * 10**10}"', "memory"),
+    refused("what makes too much", "1,000,000 steps of a rendering, and of a result 100,000 "
+            "characters, 10,000 items or 4096 bits, are the most", FAR,
+            '"far" value="${[0] * 10**10}"', "more than 10000 items"),
 )  # fmt: skip
 
 BALL = '<geom type="sphere" size="0.01"/>'

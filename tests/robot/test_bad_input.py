@@ -137,7 +137,7 @@ CASES = {
     "an include of itself": [
         (
             "arm.xacro", "</robot>", '<xacro:include filename="arm.xacro"/></robot>',
-            "23:26: cannot be rendered: files include each other in a circle: 'arm.xacro' includes",
+            "23:26: files include each other in a circle: 'arm.xacro' includes",
         ),
         (
             "arm.xml", "<equality>", '<include file="arm.xml"/><equality>',
@@ -165,7 +165,7 @@ CASES = {
         ),
         (
             "arm.xacro", "</robot>", '<xacro:include filename="/etc/passwd"/></robot>',
-            "23:31: cannot be rendered: '/etc/passwd' lies outside",
+            "23:26: '/etc/passwd' lies outside",
         ),
         ("arm.xml", 'file="t.obj"', 'file="/etc/passwd"', "3:33: mesh '/etc/passwd' lies outside"),
         ("arm.xml", 'meshdir="assets"', 'meshdir="../.."', "3:33: mesh 't.obj' lies outside"),

@@ -1,14 +1,11 @@
 """The bundled robots against the numbers of their makers."""
 
 import math
-import sys
 
 import numpy as np
 import pytest
 
-from harness.core.resources import data_folder
 from harness.robot.load import gripper_names, robot_names
-from harness.robot.xacro.file import render_bundled
 from tests.robot.models import UR_TYPES, Arm, robot
 
 UR_JOINTS = (
@@ -246,18 +243,3 @@ def test_no_type_is_in_touch_with_itself_most_of_the_time(model):
     samples = np.random.default_rng(5).uniform(-np.pi, np.pi, (150, 6))
     hits = sum(arm.touching(dict(zip(UR_JOINTS, q, strict=True))) is not None for q in samples)
     assert hits / len(samples) < 0.55
-
-
-def test_a_rendered_copy_is_kept_and_a_damaged_one_is_rendered_again(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    path = data_folder("robots") / "universal_robots/ur.urdf.xacro"
-    text = render_bundled(path, {"ur_type": "ur5e"})
-    [file] = (tmp_path / "armharness/rendered").iterdir()
-    kept = file.read_bytes()
-    file.write_bytes(kept[:5000])
-    assert render_bundled(path, {"ur_type": "ur5e"}) == text
-    assert file.read_bytes() == kept
-    monkeypatch.setitem(sys.modules, "xacro", None)
-    assert render_bundled(path, {"ur_type": "ur5e"}) == text
-    with pytest.raises(ImportError):
-        render_bundled(path, {"ur_type": "ur3e"})

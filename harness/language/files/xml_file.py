@@ -24,8 +24,9 @@ QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")
 """Root elements of robots and worlds. A scenario can name any file of the machine, so messages
 quote only files that are of these kinds."""
 
-PLACE_ATTRIBUTE = "harness-place"
-"""`file:line:column` of the file that a rendered element comes from; see `mark_places`."""
+TEXT = ""
+LITERAL = "<![CDATA["
+"""Tags of text, and of CDATA, in a document whose text and elements are in one order."""
 
 
 @dataclass(eq=False)
@@ -75,14 +76,14 @@ class XmlElement:
 
     def problem(self, message: str, hint: str = "", *, at: str = "") -> Problem:
         """A mistake at the element, or at the value of its attribute `at`."""
-        return (self._place_of(at) if at else self.place).problem(message, hint)
+        return (self.place_of(at) if at else self.place).problem(message, hint)
 
     def refuse(self, message: str, hint: str = "", *, at: str = "") -> NoReturn:
         """Raise a mistake at the element, or at the value of its attribute `at`."""
         raise SpecError([self.problem(message, hint, at=at)])
 
-    def _place_of(self, name: str) -> Place:
-        """Where an attribute's value stands; the element's place where that is unknown."""
+    def place_of(self, name: str) -> Place:
+        """The place of an attribute's value; the element's place where that is unknown."""
         source, line = self.place.source, self.place.line
         pattern = re.compile(rf"(?<![\w:.-]){re.escape(name)}\s*=\s*[\"']")
         begin = self.place.column - 1
@@ -128,42 +129,38 @@ def read_bounded(path: Path) -> bytes:
     raise SpecError([Problem(name, 1, 1, message)])
 
 
-def parse_xml(content: str | bytes, named: str) -> XmlElement:
-    """The root element of a document; see `read_xml`."""
-    return _Reader(content, named).root()
-
-
-def mark_places(content: bytes, named: str, *, skip: str) -> str:
-    """The document with each element's place in an attribute, for a preprocessor that keeps it.
+def parse_xml(content: str | bytes, named: str, *, is_mixed: bool = False) -> XmlElement:
+    """The root element of a document; see `read_xml`.
 
     Args:
-        content: A well-formed document without a document type.
-        named: The file, as places are to say it.
-        skip: Prefix of tags that get none.
-
-    Raises:
-        SpecError: As `read_xml`.
+        is_mixed: Keep text and elements in one order: pieces of text become children.
     """
-    root = parse_xml(content, named)
-    lines = [list(line) for line in root.place.source.lines]
-    for element in root.walk():
-        if element.tag.startswith(skip):
-            continue
-        place = element.place
-        name = named.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
-        mark = f' {PLACE_ATTRIBUTE}="{place.line}:{place.column}:{name}"'
-        lines[place.line - 1][place.column - 2 + len(element.tag)] += mark
-    return "\n".join("".join(line) for line in lines)
+    return _Reader(content, named, is_mixed=is_mixed).root()
+
+
+def in_elements(root: XmlElement) -> XmlElement:
+    """A document that was read with `is_mixed`, as one that was not: text is in its element."""
+    pending = [root]
+    while pending:
+        element = pending.pop()
+        is_text = [child.tag in (TEXT, LITERAL) for child in element.children]
+        texts = zip(element.children, is_text, strict=True)
+        element.text = "".join(child.text for child, is_one in texts if is_one)
+        texts = zip(element.children, is_text, strict=True)
+        element.children = [child for child, is_one in texts if not is_one]
+        pending += element.children
+    return root
 
 
 class _Reader:
     """Builds elements from expat's events."""
 
-    def __init__(self, content: str | bytes, named: str) -> None:
+    def __init__(self, content: str | bytes, named: str, *, is_mixed: bool) -> None:
         self._content = content
+        self._is_mixed = is_mixed
+        self._text_tag = TEXT
         text = content if isinstance(content, str) else content.decode("utf-8", errors="replace")
         self._source = Source(named, tuple(re.split("\r\n|\r|\n", text)))
-        self._others: dict[str, Source] = {}
         self._open: list[XmlElement] = []
         self._root: XmlElement | None = None
         self._count = 0
@@ -171,6 +168,8 @@ class _Reader:
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
         self._parser.CharacterDataHandler = self._text
+        self._parser.StartCdataSectionHandler = self._begin_literal
+        self._parser.EndCdataSectionHandler = self._end_literal
         self._parser.StartDoctypeDeclHandler = self._doctype
 
     def root(self) -> XmlElement:
@@ -209,11 +208,6 @@ class _Reader:
             self._refuse(f"elements are nested more than {DEEPEST} deep")
         here = self._here(tag)
         place = Place(here.source, here.line, here.column + 1, len(tag))  # after the bracket
-        mark = attributes.pop(PLACE_ATTRIBUTE, "")
-        if mark:
-            place = self._marked(mark, len(tag))
-        elif self._others and self._open:
-            place = self._open[-1].place  # made by the preprocessor: stands where its parent does
         element = XmlElement(tag, attributes, place)
         if self._open:
             self._open[-1].children.append(element)
@@ -221,19 +215,26 @@ class _Reader:
             self._root = element
         self._open.append(element)
 
-    def _marked(self, mark: str, length: int) -> Place:
-        line, column, name = mark.split(":", 2)
-        if name not in self._others:
-            text = Path(name).read_text(encoding="utf-8", errors="replace")
-            self._others[name] = Source(name, tuple(re.split("\r\n|\r|\n", text)))
-        return Place(self._others[name], int(line), int(column), length)
-
     def _end(self, _tag: str) -> None:
         self._open.pop()
 
     def _text(self, data: str) -> None:
-        if self._open:
-            self._open[-1].text += data
+        if not self._open:
+            return
+        item = self._open[-1]
+        if self._is_mixed:
+            last = item.children[-1] if item.children else item
+            if last is item or last.tag != self._text_tag:
+                last = XmlElement(self._text_tag, {}, self._here())
+                item.children.append(last)
+            item = last
+        item.text += data
+
+    def _begin_literal(self) -> None:
+        self._text_tag = LITERAL
+
+    def _end_literal(self) -> None:
+        self._text_tag = TEXT
 
     def _doctype(self, *_declaration: object) -> None:
         """Refuse it; what it declares is not quoted, as the kind of file is not known yet."""

@@ -1,5 +1,7 @@
 """Reads a YAML file into values with places: YAML 1.2 scalars, bounded, without tags.
 
+Files of ROS may have tags for units, and xacro's `load_yaml` reads YAML 1.1.
+
 libyaml's events are composed here and not by its own composer: that one calls itself for every
 level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (`on` is true,
 `1e-3` is text), and drops duplicate keys.
@@ -7,9 +9,10 @@ level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (
 
 from __future__ import annotations
 
+import math
 import re
 import stat
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +20,21 @@ import yaml
 
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
-from harness.language.files.yaml_scalars import scalar_of
+from harness.language.files.yaml_scalars import scalar_of, scalar_of_yaml_11
 from harness.language.files.yaml_wording import DEEPEST, TOO_DEEP, syntax_problem
 
 LARGEST_FILE = 2_000_000  # [bytes]
 LARGEST_TREE = 100_000  # values, aliases expanded
+UNITS = {
+    "!radians": 1.0,
+    "!degrees": math.pi / 180,
+    "!meters": 1.0,
+    "!millimeters": 0.001,
+    "!foot": 0.3048,
+    "!inches": 0.0254,
+}
+"""Tags of YAML files for robots, with their unit in radians or metres."""
+
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -73,25 +86,26 @@ def require_key(text: str, keys: Sequence[str], name: str, kind: str) -> None:
         raise SpecError([Problem(name, 0, 0, f"this is no {kind}: it has no key {found}")])
 
 
-def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None) -> Located:
+def parse_yaml(
+    text: str,
+    source: Source,
+    problems: list[Problem] | None = None,
+    *,
+    number: Callable[[str], float] | None = None,
+) -> Located:
     """The one document of a text; a mapping.
 
     Args:
         source: The source that messages name.
+        number: The number of a text after a tag of UNITS, or a ValueError; None: there are no tags.
         problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
             the file can be read as well; None: they are raised.
 
     Raises:
         SpecError: A syntax error, after which nothing can be trusted, or no mapping.
     """
-    composer = _Composer(source)
-    try:
-        root = composer.document(text)
-    except yaml.MarkedYAMLError as error:
-        raise SpecError([syntax_problem(error, source)]) from error
-    except yaml.reader.ReaderError as error:
-        place = source.end_of(text[: error.position])
-        raise SpecError([place.problem("a control character cannot be in YAML text")]) from error
+    composer = _Composer(source, number)
+    root = composer.read(text)
     is_mapping = root is not None and isinstance(root.value, dict)
     if composer.problems and (problems is None or not is_mapping):
         raise SpecError(composer.problems)
@@ -103,6 +117,25 @@ def parse_yaml(text: str, source: Source, problems: list[Problem] | None = None)
     if problems is not None:
         problems += composer.problems
     return root
+
+
+def parse_ros_yaml(text: str, source: Source, number: Callable[[str], float]) -> Located:
+    """The one document of a text as xacro's `load_yaml` reads it: YAML 1.1, and units.
+
+    Scalars and merge keys (`<<`) are those of YAML 1.1; of duplicate keys the last one counts.
+
+    Args:
+        source: The source that messages name.
+        number: The number of a text after a tag of UNITS, or a ValueError.
+
+    Raises:
+        SpecError: It is not YAML, or has another tag.
+    """
+    composer = _Composer(source, number, is_yaml_11=True)
+    root = composer.read(text)
+    if composer.problems:
+        raise SpecError(composer.problems)
+    return root or Located(None, Place(source))
 
 
 def parse_value(text: str, source: Source) -> Located:
@@ -127,12 +160,32 @@ def parse_value(text: str, source: Source) -> Located:
 class _Composer:
     """Composes events into located values; continues after a mistake, collecting problems."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(
+        self,
+        source: Source,
+        number: Callable[[str], float] | None = None,
+        *,
+        is_yaml_11: bool = False,
+    ) -> None:
         self.source = source
+        self._number = number
+        self._is_yaml_11 = is_yaml_11
+        self._scalar_of = scalar_of_yaml_11 if is_yaml_11 else scalar_of
         self.problems: list[Problem] = []
         self._anchors: dict[str, Located] = {}
         self._sizes: dict[str, tuple[int, int]] = {}  # values and depth of an anchor
         self._count = 0
+
+    def read(self, text: str) -> Located | None:
+        """The document of a text; a SpecError is its syntax error."""
+        try:
+            return self.document(text)
+        except yaml.MarkedYAMLError as error:
+            raise SpecError([syntax_problem(error, self.source)]) from error
+        except yaml.reader.ReaderError as error:
+            place = self.source.end_of(text[: error.position])
+            message = "a control character cannot be in YAML text"
+            raise SpecError([place.problem(message)]) from error
 
     def document(self, text: str) -> Located | None:
         reader: Any = yaml
@@ -153,8 +206,11 @@ class _Composer:
         self._bound(place, depth)
         if isinstance(event, yaml.AliasEvent):
             return self._alias(event, place, depth)
-        if event.tag is not None and event.tag != "!":
+        is_unit = event.tag in UNITS and isinstance(event, yaml.ScalarEvent)
+        if event.tag not in (None, "!") and not (is_unit and self._number):
             hint = 'tags have no meaning here; put the value in "quotes" to make it text'
+            if is_unit and event.tag[1:] in ("degrees", "radians"):
+                hint = f"write `{event.value} {event.tag[1:4]}`"
             self.problems.append(place.problem(f"`{_short_tag(event.tag)}` is a tag", hint))
         before = self._count
         item = Located(None, place)
@@ -187,7 +243,12 @@ class _Composer:
             value = self._value(next(events), events, depth + 1)
             if key is None:
                 continue
-            if key in entries:
+            if key == "<<" and self._is_yaml_11:
+                merged = value.items() or [value]
+                entries = {
+                    k: v for each in merged[::-1] for k, v in each.mapping().items()
+                } | entries
+            elif key in entries and not self._is_yaml_11:
                 first = f"the first is in line {entries[key].key.line}"
                 self.problems.append(place.problem(f"the key `{key}` is here twice", first))
             else:
@@ -201,7 +262,7 @@ class _Composer:
             self.problems.append(place.problem("a key is text, not a list or a mapping"))
             return None
         key = str(item.value) if item is not None else str(event.value)
-        if key == "<<" and item is None and event.implicit[0]:
+        if key == "<<" and item is None and event.implicit[0] and not self._is_yaml_11:
             hint = "repeat the keys, or alias the whole mapping: `key: *anchor`"
             self.problems.append(place.problem("merge keys (`<<`) are not part of YAML 1.2", hint))
             return None
@@ -219,10 +280,16 @@ class _Composer:
 
     def _scalar(self, event: Any, place: Place) -> Scalar:
         text = str(event.value)
+        if self._number and event.tag in UNITS:
+            try:
+                return self._number(text) * UNITS[event.tag]
+            except ValueError as error:
+                self.problems.append(place.problem(str(error)))
+                return 0
         if not event.implicit[0] or event.style in ("'", '"', "|", ">"):
             return text
         try:
-            return scalar_of(text)
+            return self._scalar_of(text)
         except OverflowError:
             shown = text if len(text) <= 40 else text[:40] + "..."
             self.problems.append(place.problem(f"`{shown}` is not a finite number"))

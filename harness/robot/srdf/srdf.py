@@ -78,14 +78,18 @@ def link_pair(first: str, second: str) -> tuple[str, str]:
     return (first, second) if first <= second else (second, first)
 
 
-def parse_srdf(text: str | bytes, source: str) -> Srdf:
+def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
     """Read an SRDF.
+
+    Args:
+        document: The text of the document, or its root element.
+        source: Name of the document in messages.
 
     Raises:
         SpecError: It is not an SRDF, an element lacks an attribute, or a position is not a
             number; at line and column.
     """
-    root = parse_xml(text, source)
+    root = document if isinstance(document, XmlElement) else parse_xml(document, source)
     if root.tag != "robot":
         root.refuse(f"the root element is <{root.tag}>, an SRDF's is <robot>")
     link = root.find("link")

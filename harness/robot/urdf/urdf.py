@@ -71,14 +71,17 @@ class Urdf:
 
 
 def parse_urdf(
-    text: str | bytes, folder: Path, source: str, packages: PackagePath | None = None
+    document: str | bytes | XmlElement,
+    folder: Path,
+    source: str,
+    packages: PackagePath | None = None,
 ) -> Urdf:
     """Read a URDF.
 
     In addition to URDF, `<capsule radius length>` is supported.
 
     Args:
-        text: The text of the document.
+        document: The text of the document, or its root element.
         folder: The folder to which mesh file names are relative.
         source: Name of the document in messages.
         packages: Search path for other mesh file names; by default around `folder`.
@@ -86,7 +89,7 @@ def parse_urdf(
     Raises:
         SpecError: The document is not a URDF of one tree; at the line and column.
     """
-    root = parse_xml(text, source)
+    root = document if isinstance(document, XmlElement) else parse_xml(document, source)
     if root.tag != "robot":
         root.refuse(f"the root element is <{root.tag}>, a URDF's is <robot>")
     replaced = next(xacro_parts(root), None)

@@ -1,1 +1,1 @@
-"""Xacro files, rendered in a process of their own."""
+"""Xacro files, rendered by an interpreter of their expressions."""
