@@ -123,7 +123,7 @@ def body_speeds(
     """
     moved, turned = balls_of(run, name).moved, _turned
     found: list[FloatArray] = []
-    there: BoolArray = ~np.isnan(poses).any(axis=1) if here is None else here
+    there = np.isfinite(poses.sum(axis=1)) if here is None else here
     appears = np.flatnonzero(there & ~np.append(False, there[:-1]))
     times = run.signals.times
     for way in (moved, turned):

@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from harness.assertions.contacts import attached
-from harness.assertions.hold import in_hand
+from harness.assertions.facts import fact
+from harness.assertions.hold import gripped
 from harness.assertions.poses import present
 from harness.assertions.support import carried_by_hand
+from harness.assertions.temporal import bridged, episodes
 from harness.assertions.window import NotObservable, NotReached, object_record
 from harness.core.types import BoolArray, FloatArray
+from harness.language.step import step_class
 from harness.recording.run import Run
 
 Key = tuple[str, str]
@@ -28,7 +31,7 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
         carried = {} if first == "robot" else carried_by_hand(run)
         rows = {
             key: np.where(
-                in_hand(run, key[1]) | carried.get(key[1], False), np.nan, clearances[key]
+                in_grip(run, key[1]) | carried.get(key[1], False), np.nan, clearances[key]
             )
             for key in sorted(clearances)
             if key[0] in names and key[1] not in ("robot", key[0])
@@ -60,8 +63,8 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
 def unknown_distances(run: Run, key: Key) -> BoolArray:
     """Samples at which two bodies have a distance and it is not known, shape (N,).
 
-    The distance exists where both are in the scene, and the planning scene holds the first one
-    (unless it is the robot) and not the second.
+    The distance exists where both are in the scene, the planning scene holds the first one (unless
+    it is the robot), and the hand does not grip the second.
     """
     first, second = key
     exists: BoolArray = np.isnan(run.signals.clearances[key])
@@ -70,8 +73,28 @@ def unknown_distances(run: Run, key: Key) -> BoolArray:
     if second != "robot":
         exists &= present(run, second)
     if second != "robot" and "attachments" not in run.unrecorded:
-        exists &= ~_attached_or_just_released(run, second)
+        exists &= ~in_grip(run, second)
     return exists
+
+
+@fact
+def in_grip(run: Run, name: str) -> BoolArray:
+    """Samples at which an object has no distance to the robot, because the hand grips it, (N,).
+
+    The physics decides: what a step has attached in the planning scene alone has one. A grip lasts
+    through gaps under `BRIDGE`, and until the step ends that moves the gripper to let go. Of what
+    only the planner knows, and where contacts were not recorded, the planning scene decides.
+    """
+    if not object_record(run, name).in_simulation or "contact_forces" in run.unrecorded:
+        return _attached_or_just_released(run, name)
+    mask = gripped(run, name)
+    for start, stop in bridged(run.signals.times, episodes(mask)):
+        mask[start:stop] = True
+    for step in run.steps:
+        during = slice(max(step.start_index - 1, 0), step.end_index)
+        if step_class(step.verb).moves_gripper and mask[during].any():
+            mask[during.start + int(np.argmax(mask[during])) : during.stop] = True
+    return mask
 
 
 def _attached_or_just_released(run: Run, name: str) -> BoolArray:

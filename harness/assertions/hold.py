@@ -7,7 +7,6 @@ import numpy as np
 from harness.assertions.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
-    attached,
     gripper_of,
     hand_links,
     side_forces,
@@ -34,7 +33,6 @@ from harness.core.pose_arrays import (
 )
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.run import Run
-from harness.recording.step_results import GraspMode
 
 HOLD_TIME = 0.1
 """How long fingers must have touched an object without a break to hold it [s].
@@ -252,12 +250,10 @@ def welded(run: Run, name: str) -> BoolArray:
     """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
     times = run.signals.times
     mask = np.zeros(len(times), dtype=bool)
-    welds = [step for step in run.steps if step.result.find(GraspMode) == GraspMode("weld")]
     for record in run.attachments:
-        if name in (record.object, record.represents) and any(
-            step.start_time <= record.start_time <= step.end_time for step in welds
-        ):
-            mask |= (times >= record.start_time) & (times < record.end_time)
+        if name in (record.object, record.represents) and record.welded:
+            begin, end = record.welded
+            mask |= (times >= begin) & (times < end)
     return mask
 
 
@@ -269,10 +265,4 @@ def weld_note(run: Run, name: str) -> str:
 def gripped(run: Run, name: str) -> BoolArray:
     """Samples at which the hand holds an object in the physics, by fingers or weld, shape (N,)."""
     mask = welded(run, name)
-    return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)
-
-
-def in_hand(run: Run, name: str) -> BoolArray:
-    """Samples at which an object is attached, or between all finger sides, shape (N,)."""
-    mask = attached(run, name)
     return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)

@@ -18,7 +18,7 @@ from harness.assertions.contacts import (
     touched,
 )
 from harness.assertions.facts import fact
-from harness.assertions.hold import gripped, in_hand, weight_of
+from harness.assertions.hold import gripped, weight_of
 from harness.assertions.poses import object_poses
 from harness.assertions.temporal import without_gaps
 from harness.assertions.window import NotObservable, object_record
@@ -126,7 +126,7 @@ def standing(run: Run, name: str) -> dict[str, FloatArray]:
     touching = {body for other in stack for body in touched(run, other, moving)}
     always = np.ones(len(run.signals.times), dtype=bool)
     ground = dict.fromkeys(touching - free, always)
-    grounded = carried(run, ground, {body: ~in_hand(run, body) for body in stack})
+    grounded = carried(run, ground, {body: ~gripped(run, body) for body in stack})
     return {
         body: np.where(grounded.get(body, always) | np.isnan(force), force, 0.0)
         for body, force in supports(run, name).items()

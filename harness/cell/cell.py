@@ -286,6 +286,17 @@ class Cell:
         self.attachments.append(record)
         self.report(Attachment(name, link, tuple(touch_links), represents))
 
+    def weld(self, name: str, link: str) -> None:
+        """Fix an attached object to a link in the physics, too."""
+        self.simulator.weld(name, link)
+        self._record_weld(name, (self.simulator.time, float("inf")))
+
+    def _record_weld(self, name: str, welded: tuple[float, float]) -> None:
+        """Note in an object's present attachment from when to when it is welded."""
+        for index, record in enumerate(self.attachments):
+            if record.object == name and record.end_time == float("inf"):
+                self.attachments[index] = replace(record, welded=welded)
+
     def detach(self, name: str) -> None:
         """Let go of an attached object and its weld; what it stood for is in the scene again."""
         self.unweld(name)
@@ -303,6 +314,10 @@ class Cell:
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
         if self.presence[name].obj.in_simulation:
             self.simulator.unweld(name)
+        for record in self.attachments:
+            if record.object == name and record.welded and record.end_time == float("inf"):
+                begin, end = record.welded
+                self._record_weld(name, (begin, min(end, self.simulator.time)))
 
     def _return_represented(self, record: AttachmentRecord) -> None:
         presence = self.presence.get(record.represents)

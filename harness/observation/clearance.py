@@ -218,7 +218,9 @@ class _Measurement:
         self._robot_to_itself()
         for record in scene.objects:
             track = self._tracks[record.name]
-            there = track.present & ~_held(record.name, scene.attachments, motion)
+            there = track.present
+            if not record.in_simulation:  # the hand may grip others in the planning scene alone
+                there = there & ~_held(record.name, scene.attachments, motion)
             if there.any():
                 self._robot_to_object(record, track.part(there), there)
         for attachment in scene.attachments:

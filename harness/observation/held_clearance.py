@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.assertions.contacts import attached
+from harness.assertions.distances import in_grip
 from harness.assertions.facts import remembered_facts
 from harness.assertions.support import carried_by_hand
 from harness.assertions.temporal import bridged, episodes
@@ -18,7 +19,11 @@ from harness.recording.signals import Signals
 
 @remembered_facts()
 def with_held_distances(run: Run, observer: CoalClearance) -> Signals:
-    """The signals of a run with distances of objects in the hand that are not attached."""
+    """The signals of a run with distances of objects in the hand that are not attached.
+
+    What the hand grips has no distance to the robot.
+    """
+    run = replace(run, signals=_without_gripped(run))
     holds = [] if "contact_forces" in run.unrecorded else _holds(run)
     if not holds:
         return run.signals
@@ -31,6 +36,17 @@ def with_held_distances(run: Run, observer: CoalClearance) -> Signals:
         known = distances.get(pair, np.full(len(values), np.nan))
         distances[pair] = np.where(np.isnan(known), values, known)
     return replace(run.signals, clearances=distances)
+
+
+def _without_gripped(run: Run) -> Signals:
+    """The signals of a run without distances of the robot to what its hand grips."""
+    distances, links = dict(run.signals.clearances), dict(run.signals.clearance_links)
+    names = {record.name for record in run.objects if record.in_simulation}
+    for first, name in distances:
+        if first == "robot" and name in names and (mask := in_grip(run, name)).any():
+            distances[first, name] = np.where(mask, np.nan, distances[first, name])
+            links[first, name] = np.where(mask, -1, links[first, name])
+    return replace(run.signals, clearances=distances, clearance_links=links)
 
 
 def _holds(run: Run) -> list[AttachmentRecord]:

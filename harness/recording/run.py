@@ -98,6 +98,7 @@ class AttachmentRecord:
         end_time: When it was let go [s]; inf when that did not happen.
         pose_in_link: T_link_object at attaching, as the planner believes it (xyz, quat wxyz).
         represents: The simulated object it stands for; its own name when it is that object.
+        welded: From when to when the physics fixed it to the hand, too [s]; None if it did not.
     """
 
     object: str
@@ -106,6 +107,7 @@ class AttachmentRecord:
     end_time: float
     pose_in_link: tuple[float, ...]
     represents: str
+    welded: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ class Grasp(Step):
         cell.sync_scene()
         cell.attach(self.object, cell.description.tcp_link, hand.links)
         if self.mode == "weld":
-            cell.simulator.weld(self.object, hand.palm_link)
+            cell.weld(self.object, hand.palm_link)
         cell.held.append(self.object)
 
 

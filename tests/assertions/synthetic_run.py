@@ -173,8 +173,8 @@ def pressed(force, place, direction):
     return np.where(force[:, None] > 0, rows, np.nan)
 
 
-def attachment(name, start, stop, *, represents=None, pose=None, link="palm"):
-    """Attached over samples [start, stop)."""
+def attachment(name, start, stop, *, represents=None, pose=None, link="palm", is_welded=False):
+    """Attached over samples [start, stop), and welded to the hand if required."""
     return AttachmentRecord(
         name,
         link,
@@ -182,6 +182,7 @@ def attachment(name, start, stop, *, represents=None, pose=None, link="palm"):
         stop * DT,
         tuple((pose or SE3.identity()).as_vector()),
         represents or name,
+        (start * DT, stop * DT) if is_welded else None,
     )
 
 

@@ -92,7 +92,9 @@ def test_a_distance_that_was_not_recorded_says_why():
     ("key", "expected"),
     [
         (("robot", "robot"), range(N)),
-        (("robot", "box"), [*range(5), *range(21, N)]),  # neither while attached nor at its end
+        (("robot", "box"), [*range(5), *range(20, N)]),  # not while the hand holds it
+        (("robot", "lid"), range(N)),  # the planner alone believes that the hand does
+        (("robot", "plan"), [*range(5), *range(21, N)]),  # neither while attached nor at its end
         (("robot", "cup"), range(10, 31)),
         (("box", "Table"), range(5, 20)),
         (("box", "cup"), range(10, 20)),
@@ -103,9 +105,13 @@ def test_a_distance_is_unknown_where_it_exists_and_is_missing(key, expected):
     cup = replace(CUP, present=((0.1, 0.3),))
     run = make_run(
         N,
-        objects=(TABLE, BOX, cup),
-        object_poses={"cup": at(N)},
-        attachments=(attachment("box", 5, 20),),
+        objects=(TABLE, BOX, cup, thing("lid"), thing("plan", physics=False)),
+        object_poses={"cup": at(N), "lid": at(N)},
+        attachments=(
+            attachment("box", 5, 20, is_welded=True),
+            attachment("lid", 5, 20),
+            attachment("plan", 5, 20),
+        ),
         clearances={key: np.full(N, np.nan)},
     )
     assert where(unknown_distances(run, key)) == list(expected)
@@ -114,7 +120,8 @@ def test_a_distance_is_unknown_where_it_exists_and_is_missing(key, expected):
 
 
 def test_without_a_record_of_attachments_a_distance_exists_wherever_the_object_is():
-    run = made(attachments=(attachment("box", 5, 20),), clearances={("robot", "box"): [np.nan] * N})
+    box = attachment("box", 5, 20, is_welded=True)
+    run = made(attachments=(box,), clearances={("robot", "box"): [np.nan] * N})
     assert not unknown_distances(run, ("robot", "box"))[10]
     older = replace(run, unrecorded=("attachments",))
     assert unknown_distances(older, ("robot", "box")).all()

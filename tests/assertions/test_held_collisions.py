@@ -187,12 +187,10 @@ def test_what_rests_on_a_held_object_weighs_too():
 
 def test_a_welded_object_is_held_though_no_finger_touches_it():
     hits = {("box", "wall"): force(200, (120, 140))}
-    for mode, expected in (("weld", True), ("friction", False)):
-        grasp = step("grasp", 39, 80, "grasp", result={"mode": mode, "attached": "box"})
+    for welded, expected in (((0.6, 2.0), True), ((0.6, 1.1), False), (None, False)):
         run = make_run(
             objects=(TABLE, BOX, WALL),
-            steps=(grasp,),
-            attachments=[attachment("box", 60, 200)],
+            attachments=[replace(attachment("box", 60, 200), welded=welded)],
             contact_forces=hits,
         )
         assert collides(run) is expected

@@ -114,7 +114,8 @@ def test_a_distance_that_is_lost_for_a_while_leaves_clearance_unknown():
     nearest = Clearance(between=("robot", "any"), at_least=0.01)
     assert verdict(clearance_run(distance), nearest).status == "failed"
     held = clearance_run(
-        distance[:120].tolist() + [0.02] * 80, attachments=[attachment("box", 49, 81)]
+        distance[:120].tolist() + [0.02] * 80,
+        attachments=[attachment("box", 49, 81, is_welded=True)],
     )
     assert verdict(held, spec).status == "passed", "a held box has no distance to the robot"
 
@@ -133,7 +134,9 @@ def test_clearance_beyond_the_cutoff_cannot_be_seen():
 def test_any_object_is_the_nearest_but_for_what_the_robot_holds():
     distance = np.where(np.arange(200) < 50, 0.08, 0.0)
     spec = Clearance(at_least=0.05)
-    run = clearance_run(distance, attachments=[attachment("box", 50, 250)])
+    believed = clearance_run(distance, attachments=[attachment("box", 50, 250)])
+    assert verdict(believed, spec).status == "failed", "the planning scene alone holds it"
+    run = clearance_run(distance, attachments=[attachment("box", 50, 250, is_welded=True)])
     answer = verdict(run, spec)
     assert answer.status == "passed"
     assert answer.margin == pytest.approx(0.03)

@@ -206,6 +206,56 @@ def test_what_was_welded_falls_when_it_is_detached(tmp_path):
     assert result.outcome == "passed", failures(result)
 
 
+KNOCKED = """
+objects:
+  - {name: bottle, cylinder: {radius: 0.03, length: 0.2}, mass: 0.3, pose: {xyz: [0.7, 0.7, 0.1]}}
+  - {name: puck, cylinder: {radius: 0.03, length: 0.05}, mass: 0.1, friction: 0.05,
+     pose: {xyz: [1, 0.7, 0.025]}}
+expect: [{never: collision}]
+"""
+
+
+@pytest.mark.parametrize("again", ["", "- detach_object: bottle\n- attach_object: bottle\n"])
+def test_a_weld_that_failed_holds_nothing(tmp_path, again):
+    """What the planner alone believes to be held may be knocked over without a collision."""
+    steps = (
+        "- grasp: {object: bottle, mode: weld}\n  expect_error: CONTROL_FAILED\n"
+        f"- attach_object: bottle\n{again}"
+        "- inject: {push: {puck: [-4, 0, 0]}, push_duration: 50 ms}\n- wait: 0.5 s"
+    )
+    robot = "{model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 0.3]}}"
+    result, record = run(tmp_path, steps, robot=robot, rest=KNOCKED)
+    assert ("bottle", "puck") in record.signals.contact_forces
+    assert failures(result) == []
+
+
+@pytest.mark.parametrize(("lets_go", "hits"), [("release: red_box", False),
+                                               ("gripper: open", True)])  # fmt: skip
+def test_a_weld_holds_until_a_step_releases_it(tmp_path, lets_go, hits):
+    """The box falls onto a ball while the fingers still open; with `gripper` the weld holds it."""
+    steps = f"""
+    - gripper: open
+    - move_to: {{position: {{xyz: [0.2, 0, 0.06]}}, pitch: 0}}
+    - lin: {{position: {{xyz: [0.25, 0, 0.06]}}, pitch: 0}}
+    - grasp: {{object: red_box, mode: weld}}
+    - move_relative: {{direction: {{xyz: [0, 0, 1]}}, distance: 4 cm}}
+    - add_object: {{name: ball, static: true, in: simulation, sphere: {{radius: 0.01}},
+                   pose: {{xyz: [0.25, 0, 0.028]}}}}
+    - {{{lets_go}, id: open}}
+    - move_relative: {{direction: {{xyz: [0, 0, -1]}}, distance: 5 mm}}
+    """
+    rest = """
+    objects:
+      - {name: red_box, box: {size: [0.03, 0.03, 0.08]}, mass: 0.05, pose: {xyz: [0.25, 0, 0.04]}}
+    expect: [{never: {collision: {between: [red_box, ball]}}}]
+    """
+    result, record = run(
+        tmp_path, steps, robot="{model: open_manipulator_x, base: {xyz: [0, 0, 0.01]}}", rest=rest
+    )
+    assert ("ball", "red_box") in record.signals.contact_forces
+    assert [verdict.status for verdict in result.verdicts] == ["failed" if hits else "passed"]
+
+
 PLATES = "[0.06, 0.01, 0.13]", "0.25, 0.02", "0.25, -0.12"
 
 
