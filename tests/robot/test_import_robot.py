@@ -1,5 +1,7 @@
 """Robots from URDF and SRDF files of their own."""
 
+from itertools import pairwise
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -79,10 +81,73 @@ def test_of_several_arms_the_first_moves_and_the_others_are_reported(tmp_path):
     write_arm(tmp_path, f"{base}{arm('left')}{arm('right')}</robot>")
     found = load_arm(tmp_path, srdf=None)
     assert found.groups["arm"].joint_names == ("left_a_joint", "left_b_joint")
-    assert any("several arms" in note and "right_b" in note for note in found.notes)
+    assert any("several chains" in note and "right_b" in note for note in found.notes)
     other = load_arm(tmp_path, srdf=None, tcp_link="right_b")
     assert other.groups["arm"].joint_names == ("right_a_joint", "right_b_joint")
-    assert not any("several arms" in note for note in other.notes)
+    assert not any("several chains" in note for note in other.notes)
+
+
+def serial(name, parent, count, limit="30"):
+    """A chain of joints, each on the one before."""
+    links = [parent, *(f"{name}{number}" for number in range(1, count + 1))]
+    text = "".join(joint(after, before) for before, after in pairwise(links))
+    return text.replace('effort="30"', f'effort="{limit}"')
+
+
+def arm_joints(folder, joints):
+    """Names of the links that the joints of the arm move, in a robot of joints without an SRDF."""
+    write_arm(
+        folder, f'<robot name="tree"><link name="base_link">{INERTIAL}</link>{joints}</robot>'
+    )
+    arm = load_arm(folder, srdf=None)
+    return [name.removesuffix("_joint") for name in arm.groups["arm"].joint_names]
+
+
+SEVEN = [f"a{number}" for number in range(1, 8)]
+
+
+@pytest.mark.parametrize(
+    "sibling",
+    [
+        joint("flap", "a6").replace('lower="-1" upper="1"', 'lower="0" upper="0.9"'),
+        joint("flap", "a6").replace('effort="30"', 'effort="2"'),
+        joint("flap", "a6")
+        .replace("revolute", "prismatic")
+        .replace('lower="-1" upper="1"', 'lower="0" upper="0.05"'),
+    ],
+)
+@pytest.mark.parametrize("is_first", [False, True])
+def test_a_joint_next_to_the_wrist_that_is_no_finger_does_not_end_the_arm(
+    tmp_path, sibling, is_first
+):
+    arm = serial("a", "base_link", 7)
+    assert arm_joints(tmp_path, sibling + arm if is_first else arm + sibling) == SEVEN
+
+
+def test_a_joint_that_moves_nothing_next_to_every_joint_does_not_end_the_arm(tmp_path):
+    links = ["base_link", *SEVEN]
+    springs = "".join(joint(f"{link}_spring", link) for link in links)
+    arm = serial("a", "base_link", 7).replace("</inertial></link>", f"</inertial>{SHAPE}</link>")
+    assert arm_joints(tmp_path, springs + arm)[:7] == SEVEN
+
+
+@pytest.mark.parametrize("torso", [1, 3])
+@pytest.mark.parametrize("hand", [0, 1, 2])
+def test_a_torso_with_two_arms_has_the_first_of_them(tmp_path, torso, hand):
+    trunk = serial("t", "base_link", torso)
+    sides = "".join(
+        serial(side, f"t{torso}", 7)
+        + "".join(serial(f"{side}_{finger}", f"{side}7", hand, "2") for finger in "ab")
+        for side in ("left", "right")
+    )
+    joints = arm_joints(tmp_path, trunk + sides)
+    assert joints == [f"t{n}" for n in range(1, torso + 1)] + [f"left{n}" for n in range(1, 8)]
+
+
+@pytest.mark.parametrize(("fingers", "count"), [("ab", 1), ("abc", 2), ("abcd", 4)])
+def test_fingers_that_move_alone_end_the_arm(tmp_path, fingers, count):
+    hand = "".join(serial(f"finger_{name}", "a7", count, "2") for name in fingers)
+    assert arm_joints(tmp_path, serial("a", "base_link", 7) + hand) == SEVEN
 
 
 def test_a_root_called_world_stands_in_the_harness_world(tmp_path):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import combinations
 
 from harness.robot.description import Joint
-from harness.robot.gripper.inferred_gripper import is_gripper
+from harness.robot.gripper.inferred_gripper import SHARED_RANGE, is_gripper
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf
@@ -27,26 +28,31 @@ HAND_NAMES = re.compile(r"grip|hand|palm", re.IGNORECASE)
 LEAST_ARM = 2
 """Fewest joints that remain when a jaw is left out."""
 
+MOST_FINGER_JOINTS = 4
+"""Most joints of a finger, as of an Allegro hand."""
+
 
 def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
     """One group from the root to a tip: the given link, else the end of the chain of most joints.
 
     Fingers that mimic each other, and a jaw that closes on its palm, are not part of a chain. If
-    several chains are longest, the group ends where they branch, as at fingers that move alone; of
-    several arms it is the first.
+    several chains are longest, the group ends where fingers that move alone branch; of several
+    arms it is the first.
     """
     if tip_link in {joint.child for joint in urdf.joints}:
         tips = [tip_link]
     else:
         chains = [_with_a_body(joints_to(link.name, urdf.joints), urdf) for link in urdf.links]
-        tips = _tips([_without_fingers(each, urdf) for each in chains]) or _tips(chains)
+        tips = _tips([_without_fingers(each, urdf) for each in chains], urdf)
+        tips = tips or _tips(chains, urdf)
     if not tips:
         return Srdf()
     notes = ["no SRDF: only neighbouring links may touch"]
     if len(tips) > 1:
         others = ", ".join(tips[1:])
         notes.append(
-            f"several arms: the group ends at '{tips[0]}'; other choices of tcp_link: {others}"
+            f"several chains are as long: the group ends at '{tips[0]}'; other choices of"
+            f" tcp_link: {others}"
         )
     group = SrdfGroup(DEFAULT_GROUP, chains=((urdf.root, tips[0]),))
     return Srdf((group,), notes=tuple(notes))
@@ -118,22 +124,60 @@ def _is_jaw(joint: Joint, urdf: Urdf) -> bool:
     return HAND_NAMES.search(joint.parent) is not None or is_gripper(urdf, (joint.name,))
 
 
-def _tips(chains: Sequence[Sequence[Joint]]) -> list[str]:
-    """Last link of the part that the longest chains share; of each, if that part cannot move."""
-
-    def movable(chain: Sequence[Joint]) -> list[str]:
-        return [joint.name for joint in chain if joint.is_movable and joint.mimic is None]
-
-    most = max((len(movable(chain)) for chain in chains), default=0)
+def _tips(chains: Sequence[Sequence[Joint]], urdf: Urdf) -> list[str]:
+    """Last link of the longest chain; of several, of the ends of the arms that they are."""
+    most = max((len(_driven(chain)) for chain in chains), default=0)
     if most == 0:
         return []
     by_last: dict[str, Sequence[Joint]] = {}
-    for each in (chain for chain in chains if len(movable(chain)) == most):
-        last = movable(each)[-1]
+    for each in (chain for chain in chains if len(_driven(chain)) == most):
+        last = _driven(each)[-1].name
         by_last[last] = max(by_last.get(last, ()), each, key=len)
-    longest = list(by_last.values())
-    if len(longest) > 1:
-        common = [row[0] for row in zip(*longest, strict=False) if len({j.name for j in row}) == 1]
-        if movable(common):
-            longest = [common]
-    return [chain[-1].child for chain in longest]
+    return [chain[-1].child for chain in _arms(list(by_last.values()), urdf)]
+
+
+def _arms(chains: list[Sequence[Joint]], urdf: Urdf) -> list[Sequence[Joint]]:
+    """Chains of equally many joints without the fingers at their ends, the likeliest arm first.
+
+    What branches is a hand if at least two branches are alike and have shapes, and no more joints
+    than a finger or the chain before them. Else every branch is part of an arm of its own: a torso
+    carries two, and a wrist a flap or a camera next to its last joint. The likeliest branch has
+    shapes, the largest effort and the widest range.
+    """
+    if len(chains) == 1:
+        return chains
+    common = [row[0] for row in zip(*chains, strict=False) if len({j.name for j in row}) == 1]
+    count = len(_driven(common))
+    branches: dict[str, list[Sequence[Joint]]] = {}
+    for chain in chains:
+        branches.setdefault(_driven(chain)[count].name, []).append(chain)
+    shaped = {link.name for link in urdf.links if link.collisions or link.visuals}
+    rests = {name: _driven(group[0])[count:] for name, group in branches.items()}
+    with_shapes = {
+        name: rest
+        for name, rest in rests.items()
+        if not shaped.isdisjoint(joint.child for joint in branches[name][0][len(common) :])
+    }
+    length = len(_driven(chains[0])) - count
+    if length <= min(count, MOST_FINGER_JOINTS) and any(
+        all(map(_are_alike, *pair)) for pair in combinations((with_shapes or rests).values(), 2)
+    ):
+        return [common]
+
+    def rank(name: str) -> tuple[bool, float, float]:
+        first = rests[name][0]
+        return name not in with_shapes, -first.effort, first.lower - first.upper
+
+    return [arm for name in sorted(branches, key=rank) for arm in _arms(branches[name], urdf)]
+
+
+def _are_alike(first: Joint, second: Joint) -> bool:
+    """Whether two joints can be those of two fingers."""
+    pairs = ((j.upper - j.lower, j.effort) for j in (first, second))
+    return first.kind == second.kind and all(
+        min(values) >= SHARED_RANGE * max(values) for values in zip(*pairs, strict=True)
+    )
+
+
+def _driven(chain: Sequence[Joint]) -> list[Joint]:
+    return [joint for joint in chain if joint.is_movable and joint.mimic is None]
