@@ -39,6 +39,10 @@ def with_integrated_gripper(
     if tcp_link is not None:
         return urdf, _ending_at(srdf, arm, tip, tcp_link, carrier), tcp_link
     if carrier.get(own.facts.palm_link) != carrier.get(tip):
+        notes.append(
+            f"TCP: '{tip}', which moves relative to the gripper's palm '{own.facts.palm_link}':"
+            " a `pick` requires a group that ends at the palm"
+        )
         return urdf, srdf, tip
     poses = urdf_poses(urdf, {})
     palm = poses[own.facts.palm_link]
