@@ -18,18 +18,20 @@ LEAST_DISTANCE = 0.005
 """Distance between two points from which the line between them is a direction [m]."""
 FROM_THE_PALM = math.cos(math.radians(60))
 """Cosine down to which the line from the palm's origin to the TCP leads from the palm's body."""
-ALONG_AN_AXIS = math.cos(math.radians(30))
-"""Cosine down to which a direction is that of an axis of the TCP's frame."""
+ALONG_AN_AXIS = math.cos(math.radians(20))
+"""Cosine down to which a direction is that of an axis of the TCP's frame: origins of palms lie next
+to the middle of the hand, and shapes are not symmetrical."""
 
 
 def approach_axis(
     description: RobotDescription, kinematics: Kinematics, scene: PlanningScene, state: FloatArray
 ) -> FloatArray:
-    """The approach axis of an arm's gripper in the TCP frame, shape (3,), not of unit length.
+    """The approach axis of an arm's gripper in the TCP frame, shape (3,).
 
-    It is the `approach_axis` of a robot.yaml, else the line from the palm's origin to the TCP, if
-    that leads from the palm's body to the pads. It does not where the palm has its origin at the
-    fingertips: the axis is then the one of the TCP's frame that does, or the direction itself.
+    It is the `approach_axis` of a robot.yaml, of whatever length, else the axis of the TCP's frame
+    that leads from the palm to the pads. Where none does, as the hand is mounted obliquely, it is
+    the line from the palm's origin to the TCP; from the palm's body to the pads where that origin
+    is elsewhere, as at the fingertips.
 
     Args:
         description: The robot with its gripper.
@@ -49,15 +51,17 @@ def approach_axis(
 
     origins = -in_tcp(gripper.palm_link).translation
     bodies = _from_palm_to_pads(description, gripper, scene, in_tcp)
-    if bodies is None:
-        return origins if origins.any() else np.array([0.0, 0.0, 1.0])
     length = float(np.linalg.norm(origins))
-    if length >= LEAST_DISTANCE and origins @ bodies >= FROM_THE_PALM * length:
-        return origins
-    largest = int(np.abs(bodies).argmax())
-    if abs(bodies[largest]) < ALONG_AN_AXIS:
-        return bodies
-    return np.sign(bodies[largest]) * np.eye(3)[largest]
+    if bodies is None:
+        direction = origins / length if length else np.array([0.0, 0.0, 1.0])
+    elif length >= LEAST_DISTANCE and origins @ bodies >= FROM_THE_PALM * length:
+        direction = origins / length
+    else:
+        direction = bodies
+    largest = int(np.abs(direction).argmax())
+    if abs(direction[largest]) < ALONG_AN_AXIS:
+        return direction
+    return np.sign(direction[largest]) * np.eye(3)[largest]
 
 
 def _from_palm_to_pads(

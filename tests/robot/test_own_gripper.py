@@ -101,6 +101,27 @@ def test_a_gripper_approaches_from_the_body_of_its_palm_to_the_pads(tmp_path):
     assert report.gripper.endswith("; approaches along +z of hand_tcp")
 
 
+@pytest.mark.parametrize("shift", [(0.012, 0.0), (0.0, -0.015), (0.01, 0.01)])
+@pytest.mark.parametrize(
+    "body", ["", "<collision><geometry><box size='0.04 0.06 0.02'/></geometry>"]
+)
+def test_a_palm_with_its_origin_next_to_the_hand_does_not_tilt_the_approach(tmp_path, shift, body):
+    x, y = shift
+    hand = HAND.replace('<child link="palm"/>', f'<child link="palm"/><origin xyz="{-x} {-y} 0"/>')
+    for side in (0.01, -0.01):
+        hand = hand.replace(f'"0 {side} 0.05"', f'"{x} {side + y} 0.05"')
+    shape = f"{body}<origin xyz='{x} {y} 0'/></collision></link>" if body else "</link>"
+    write(tmp_path, hand.replace("</link>", shape, 1))
+    assert approach(load_arm(tmp_path)) == pytest.approx([0, 0, 1])
+
+
+@pytest.mark.parametrize("tilt", [0.5, -0.7])
+def test_a_hand_that_is_mounted_obliquely_approaches_obliquely(tmp_path, tilt):
+    hand = HAND.replace('<child link="palm"/>', f'<child link="palm"/><origin rpy="0 {tilt} 0"/>')
+    write(tmp_path, hand)
+    assert approach(load_arm(tmp_path)) == pytest.approx([math.sin(tilt), 0, math.cos(tilt)])
+
+
 def test_a_tip_that_the_srdf_states_at_the_pads_is_the_tcp_though_it_has_shapes(tmp_path):
     write(tmp_path, TIPS, GROUP.replace('parent_link="tool"', 'parent_link="palm"'))
     arm = load_arm(tmp_path)
