@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 import warnings
@@ -15,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from harness.core.errors import RobotError
-from harness.core.exact_key import exact_key
 from harness.core.geometry import Mesh, Rgba
 from harness.core.types import FloatArray, IntArray
 from harness.core.user_cache import cached, store
@@ -71,8 +71,9 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
     materials = _material_file(geometry.path, content)
     if len(content) < LARGE:
         return _read_obj(content, materials, geometry)
-    inputs = content, materials, geometry.scale, Path(__file__).read_bytes()
-    name = f"meshes/{exact_key(*inputs)}.npz"
+    others = repr((len(content), materials, geometry.scale)).encode()
+    key = hashlib.sha256(content + others + Path(__file__).read_bytes())
+    name = f"meshes/{key.hexdigest()}.npz"
     stored = cached(name)
     if stored is None:
         parts = _read_obj(content, materials, geometry)

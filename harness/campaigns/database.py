@@ -12,13 +12,12 @@ from typing import Any
 from harness.core.errors import HarnessError
 from harness.core.quantity import split_quantity
 from harness.reporting.margins import margin_share, worst
-from harness.reporting.shared_work import shared_words
 from harness.reporting.suite.cause import cause_of
 from harness.suite.discovery import UsageError
 from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of
 
 DATABASE = "results.sqlite"
-VERSION = 3
+VERSION = 4
 BATCH = 2000
 """Lines that are inserted together; this many are in memory."""
 
@@ -26,7 +25,7 @@ SCHEMA = """
 CREATE TABLE all_runs (
   key TEXT PRIMARY KEY, number INTEGER, file TEXT, name TEXT, title TEXT, outcome TEXT, cause TEXT,
   reason TEXT, digest TEXT, seed INTEGER, sim_time REAL, report TEXT, page TEXT,
-  expectation TEXT, margin REAL, unit TEXT, share REAL, shared TEXT
+  expectation TEXT, margin REAL, unit TEXT, share REAL
 );
 CREATE TABLE left_out (key TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE VIEW runs AS SELECT * FROM all_runs WHERE key NOT IN (SELECT key FROM left_out);
@@ -120,7 +119,7 @@ def _insert(connection: sqlite3.Connection, batch: list[StreamEntry], count: int
     for table in ("parameters", "tags", "verdicts"):
         connection.executemany(f"DELETE FROM {table} WHERE key = ?", keys)
     connection.executemany(
-        f"INSERT OR REPLACE INTO all_runs VALUES ({', '.join('?' * 18)})",
+        f"INSERT OR REPLACE INTO all_runs VALUES ({', '.join('?' * 17)})",
         [_run(entry, count + index) for index, entry in enumerate(entries)],
     )
     connection.executemany(
@@ -164,7 +163,6 @@ def _run(entry: StreamEntry, number: int) -> tuple[Any, ...]:
         _finite(nearest.margin) if nearest else None,
         nearest.unit if nearest else None,
         margin_share(nearest) if nearest else None,
-        shared_words(result.shared) or None,
     )
 
 

@@ -16,7 +16,7 @@ from harness.suite.discovery import UsageError
 
 COLUMNS = (
     *("file", "name", "outcome", "cause", "reason", "seed", "digest", "sim_time"),
-    *("expectation", "margin", "unit", "share", "report", "shared"),
+    *("expectation", "margin", "unit", "share", "report"),
 )
 ROWS_TOGETHER = 10_000
 NUMBERS = ("seed", "sim_time", "margin", "share")

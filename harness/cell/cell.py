@@ -6,8 +6,6 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from harness.cell.program import ProgramStep, step_seed
 from harness.core.camera import Camera
 from harness.core.details import Detail, Details
@@ -155,17 +153,12 @@ class Cell:
         if gripper is not None:
             measured = self.simulator.joint_positions()
             index = self.description.joint_index[gripper.joint]
-            start[index] = rounded(measured[index], self._pose_resolution)
+            start[index] = measured[index]
         return self.description.with_mimics(start)
 
     def measured_pose(self, name: str) -> SE3:
-        """T_world_object as the physics has it now, to the step's `pose_resolution`."""
-        pose, resolution = self.simulator.object_pose(name), self._pose_resolution
-        return SE3.from_vector(rounded(pose.as_vector(), resolution)) if resolution else pose
-
-    @property
-    def _pose_resolution(self) -> float:
-        return 0.0 if self.step is None else self.step.options.pose_resolution
+        """T_world_object as the physics has it now."""
+        return self.simulator.object_pose(name)
 
     def frame(self, name: str) -> SE3:
         """T_world_frame of `world`, a link, or an object as the physics has it now."""
@@ -379,11 +372,3 @@ class Cell:
                 TimeoutFailure(plan.trajectory.duration, timeout),
             )
         self.simulator.track(plan.trajectory)
-
-
-def rounded(measured: FloatArray, resolution: float) -> FloatArray:
-    """Measured numbers as the nearest multiples of a resolution; unchanged where that is 0."""
-    if not resolution:
-        return measured
-    steps: FloatArray = np.round(np.asarray(measured) / resolution)
-    return steps * resolution + 0.0  # no negative zero

@@ -164,8 +164,7 @@ def _row(row: dict[str, Any], style: Style) -> str:
     if reason is None and row["margin"] is not None:
         unit = "" if row["unit"] == "1" else row["unit"]
         reason = f"margin {row['margin']:.4g} {unit}".rstrip()
-    shared = f"from other cases: {row['shared']}" if row["shared"] else ""
-    words = filter(None, (name, reason, drawn, shared))
+    words = filter(None, (name, reason, drawn))
     return f"{style.mark(row['outcome'] == 'passed')} {'  '.join(words)}"
 
 

@@ -88,11 +88,6 @@ def add_options(command: argparse.ArgumentParser) -> None:
     )
     add("--on", metavar="CLUSTER", dest="cluster", default="", help=text)
     add("--no-report", action="store_true", help="write no report")
-    text = (
-        "compute plans, physics and distances in every case, even those that are the same as in a"
-        " case before"
-    )
-    add("--no-sharing", action="store_true", help=text)
     add("--no-page", action="store_true", help="write the report without its page")
     add("--bag", action="store_true", help="write a rosbag2 into the report too")
     text = "let a reporter of `harness list reporters` write into the report too; repeatable"
@@ -232,7 +227,6 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
         strict=arguments.strict,
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
-        share=not arguments.no_sharing and arguments.repeat == 1,  # repetitions compare each other
         conditions=conditions,
         live=live,
     )

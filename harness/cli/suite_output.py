@@ -101,8 +101,6 @@ def show_results(
         say(suite.files_text)
     if suite.resumed:
         say(f"{suite.resumed} of them were known from before")
-    if columns is not None and (shared := columns.shared.sentence()):
-        say(shared)
     if page is not None:
         say(f"reports: {style.link(str(page), page.resolve().as_uri())}")
     elif written := [result for result in suite.results.values() if result.report_dir]:

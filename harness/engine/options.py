@@ -54,7 +54,6 @@ def merged_options(
         padding=DEFAULT_PADDING if stated.padding is None else stated.padding,
         seed=step_seed(root_seed, path),
         root_seed=root_seed,
-        pose_resolution=stated.pose_resolution or 0.0,
         parameters=stated.parameters or {},
         max_jerk=stated.max_jerk or float("inf"),
     )

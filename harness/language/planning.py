@@ -95,14 +95,8 @@ class Planning(SpecModel):
     )
     seed: Annotated[Count, Field(ge=0, le=2**31 - 1)] | None = Field(
         default=None,
-        description="The seed of the planners in place of the scenario's `seed`. The samples of "
-        "`randomize` take the file's, so that equal planning problems have equal plans.",
-    )
-    pose_resolution: Annotated[Length, Field(gt=0, le=0.001)] | None = Field(
-        default=None,
-        description="Measured poses of objects, and the measured position of the gripper, are "
-        "rounded to multiples of this before motions are planned [m, and the same number in rad]; "
-        "the default is not to round. The samples of `randomize` round to 0.1 mm.",
+        description="The seed of the planners in place of the scenario's `seed`; of the samples of "
+        "`randomize` too, which have seeds of their own otherwise.",
     )
     parameters: dict[Name, Number] | None = Field(
         default=None,

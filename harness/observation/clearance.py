@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.core.geometry import Shape
-from harness.core.sharing import shared, was_seen
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.observation.body_tracks import (
     BodyTrack,
@@ -212,9 +211,7 @@ class _Measurement:
 
     def measure(self) -> None:
         """Put the distances of all pairs in."""
-        scene, motion, found = self._scene, self._motion, self._found
-        inputs = self._description.key, motion.joint_positions
-        found.may_be_known = was_seen("motion", *inputs, scene.cutoff, scene.only, found.stretches)
+        scene, motion = self._scene, self._motion
         self._robot_to_itself()
         for record in scene.objects:
             track = self._tracks[record.name]
@@ -235,9 +232,7 @@ class _Measurement:
                 ]
                 yield [self._bodies[name] for name in firsts], self._bodies[second]
 
-        inputs = self._description.key, self._motion.joint_positions
-        everywhere = np.ones(self._found.count, dtype=bool)
-        self._measure((ROBOT, ROBOT), everywhere, inputs, bodies)
+        self._measure((ROBOT, ROBOT), np.ones(self._found.count, dtype=bool), bodies())
 
     def _robot_to_object(self, record: ObjectRecord, track: BodyTrack, there: BoolArray) -> None:
         def bodies() -> Iterator[Bodies]:
@@ -247,11 +242,7 @@ class _Measurement:
             links = self._bodies.items()
             yield [body.part(there) for link, body in links if link not in standing], other
 
-        inputs = (
-            *(self._description.key, self._motion.joint_positions[there]),
-            *(record.shapes, record.is_static, track.rotations, track.translations),
-        )
-        self._measure((ROBOT, record.name), there, inputs, bodies)
+        self._measure((ROBOT, record.name), there, bodies())
 
     def _held_to_objects(self, attachment: AttachmentRecord) -> None:
         """Distances of an attached object: in the physics, and as assumed by the planning scene."""
@@ -289,40 +280,24 @@ class _Measurement:
             )
             yield [first] if first.shapes else [], second
 
-        inputs = shapes, [(track.rotations, track.translations) for track in tracks]
         (first, _), (second, _) = shapes
-        self._measure((first, second), there, inputs, bodies)
+        self._measure((first, second), there, bodies())
 
-    def _measure(
-        self,
-        key: Pair,
-        there: BoolArray,
-        inputs: tuple[object, ...],
-        bodies: Callable[[], Iterable[Bodies]],
-    ) -> None:
-        """Distances of two bodies, measured here or by a case in which they moved alike."""
+    def _measure(self, key: Pair, there: BoolArray, bodies: Iterable[Bodies]) -> None:
+        """Put the distances of two bodies in, unless others are to be measured alone."""
         found, cutoff = self._found, self._scene.cutoff
         if found.only is not None and key not in found.only:
             return
-
-        def measured() -> tuple[FloatArray, IntArray, FloatArray] | tuple[()]:
-            some = [each for each in bodies() if each[0] and each[1].shapes]
-            if not some:
-                return ()
-            every = [pair for each in some for pair in pairs_between(*each, cutoff)]
-            count = int(np.count_nonzero(there))
-            distances, which = smallest_distances(every, cutoff, count)
-            index = self._scene.robot.index
-            of_pair = np.array([index.get(pair.first.body, -1) for pair in every] + [-1])
-            return distances, of_pair[which], largest_travel(every, cutoff, count)
-
-        def facts() -> tuple[object, ...]:
-            return *inputs, cutoff, found.stretches
-
-        result = shared("distances", facts, measured, may_be_known=found.may_be_known)
-        if result:
-            distances, links, moved = result
-            found.put(key, there, distances, links if key[0] == ROBOT else None, moved)
+        some = [each for each in bodies if each[0] and each[1].shapes]
+        if not some:
+            return
+        every = [pair for each in some for pair in pairs_between(*each, cutoff)]
+        count = int(np.count_nonzero(there))
+        distances, which = smallest_distances(every, cutoff, count)
+        index = self._scene.robot.index
+        of_pair = np.array([index.get(pair.first.body, -1) for pair in every] + [-1])
+        links = of_pair[which] if key[0] == ROBOT else None
+        found.put(key, there, distances, links, largest_travel(every, cutoff, count))
 
 
 def _held(name: str, attachments: Sequence[AttachmentRecord], motion: Motion) -> BoolArray:

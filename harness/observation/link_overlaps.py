@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.core.sharing import shared
 from harness.core.types import FloatArray, Pair
 from harness.observation.body_tracks import (
     MovingBody,
@@ -38,11 +37,7 @@ def with_link_overlaps(signals: Signals, description: RobotDescription) -> Signa
     if not count:
         return signals
     shapes = links_with_shapes({link.name: link.collisions for link in description.links})
-    apart = shared(
-        "distances",
-        lambda: ("at zero", description.key),
-        lambda: _pairs_apart_by_design(description, shapes),
-    )
+    apart = _pairs_apart_by_design(description, shapes)
     samples = knots(signals.times, (), ())
     moving = LinkPoses(description, signals.joint_positions[samples])
     overlaps: dict[Pair, FloatArray] = {}

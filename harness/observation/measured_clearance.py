@@ -23,7 +23,6 @@ class MeasuredClearance:
         only: The pairs that are measured; None measures all.
         stretches: The number of the stretch of consecutive samples that each is in, shape (count,);
             None where all are one.
-        may_be_known: Whether the robot moved like this in another case before.
     """
 
     count: int
@@ -32,7 +31,6 @@ class MeasuredClearance:
     travels: dict[Pair, FloatArray] = field(default_factory=dict[Pair, FloatArray])
     only: Collection[Pair] | None = None
     stretches: IntArray | None = None
-    may_be_known: bool = False
 
     @classmethod
     def joined(cls, parts: Sequence[MeasuredClearance]) -> MeasuredClearance:

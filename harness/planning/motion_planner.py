@@ -1,17 +1,13 @@
-"""The planner's front door: free motions, joint motions, straight lines, verified and shared."""
+"""The planner's front door: free motions, joint motions and straight lines, verified."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import wraps
-from typing import TypeVar
 
 import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
-from harness.core.sharing import shared
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.cartesian_path import plan_waypoints
@@ -48,34 +44,6 @@ STATE_CHECKS_PER_SECOND = 20_000
 One check of a UR with its gripper in the lesson's world takes 20 to 25 microseconds on the
 project's machines, so that a second there buys twice as much.
 """
-R = TypeVar("R")
-Method = Callable[["VerifiedPlanner", MotionRequest], R]
-
-
-def sharing_plans(kind: str) -> Callable[[Method[R]], Method[R]]:
-    """Let cases share the results of a planner's method, of which a failure is one.
-
-    Args:
-        kind: What the results are called in the record of a case.
-    """
-
-    def decorated(method: Method[R]) -> Method[R]:
-        @wraps(method)
-        def planning(self: VerifiedPlanner, request: MotionRequest) -> R:
-            def result() -> R | PlanningFailed:
-                try:
-                    return method(self, request)
-                except PlanningFailed as failure:
-                    return failure
-
-            found = shared(kind, lambda: (method.__qualname__, self.scene.key, request), result)
-            if isinstance(found, PlanningFailed):
-                raise found
-            return found
-
-        return planning
-
-    return decorated
 
 
 class VerifiedPlanner:
@@ -90,7 +58,6 @@ class VerifiedPlanner:
         """The robot for which motions are planned."""
         return self.scene.description
 
-    @sharing_plans("plans")
     @explained
     def plan(self, request: MotionRequest) -> MotionPlan:
         """Plan a motion without collision, timed and verified."""
@@ -110,7 +77,6 @@ class VerifiedPlanner:
             case WaypointMotion(goals, path_options):
                 return plan_waypoints(self._links(request), goals, path_options)
 
-    @sharing_plans("goals")
     @explained
     def check_goal(self, request: MotionRequest) -> CheckedGoal:
         """Explain the goal of a free motion without planning to it: each IK solution."""

@@ -29,8 +29,6 @@ class PlanningOptions:
         padding: Distance kept between robot (and what it holds) and every object [m].
         seed: The seed of this step.
         root_seed: The seed that the seeds of nested steps follow from.
-        pose_resolution: Measured positions are rounded to multiples of it before they are planned
-            with [m, and the same number in rad]; 0 takes them as they are.
         parameters: The parameters of the planner: `range`, `goal_bias` ...
         max_jerk: The max jerk of every joint [rad/s^3 or m/s^3]; inf for none.
         cartesian_limits: The cartesian limits of the link, on lines and arcs.
@@ -47,7 +45,6 @@ class PlanningOptions:
     padding: float = 0.0
     seed: int = 0
     root_seed: int = 0
-    pose_resolution: float = 0.0
     parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     max_jerk: float = float("inf")
     cartesian_limits: CartesianLimits = PILZ_LIMITS

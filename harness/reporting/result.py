@@ -97,8 +97,6 @@ class CaseResult:
         overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
         redraws: How often the sample was drawn again because objects overlapped.
         values: What varies as it was drawn at last, path -> value; empty when drawn once.
-        shared: The number of results that were taken from other cases, and the number of all, by
-            kind: `plans`, `physics` in samples, `distances` in parts; never judged.
         wall_times: Seconds of each part; never judged.
     """
 
@@ -119,7 +117,6 @@ class CaseResult:
     overlap: float = 0.0
     redraws: int = 0
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    shared: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, tuple[int, int]])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property

@@ -14,7 +14,6 @@ from typing import Literal
 import numpy as np
 
 from harness.core.camera import Camera
-from harness.core.exact_key import exact_key
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -247,11 +246,6 @@ class RobotDescription:
     joint_controller: str = "position_servo"
     notes: tuple[str, ...] = ()
     rejected_grippers: tuple[str, ...] = ()
-
-    @cached_property
-    def key(self) -> str:
-        """The same for robots of which everything is the same, the content of meshes included."""
-        return exact_key(self)
 
     @cached_property
     def movable_joints(self) -> tuple[Joint, ...]:

@@ -79,7 +79,7 @@ def load_ahead(spec: RobotSpec, collision: CollisionMode | None) -> None:
         RobotError: An option does not fit the robot.
     """
     if _is_bundled(spec):
-        _ = load_robot(spec, collision=collision).key
+        load_robot(spec, collision=collision)
 
 
 def gripper_names() -> tuple[str, ...]:

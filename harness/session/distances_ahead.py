@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from harness.core import sharing
 from harness.core.activity import Activity, unobserved
 from harness.engine.execute import ProgramExecution
 from harness.observation.beliefs import believed_poses
@@ -44,13 +43,12 @@ class DistancesAhead:
     def look(self, execution: ProgramExecution, simulator: Simulator) -> None:
         """Begin to measure the parts that are complete by now, unless others are being measured.
 
-        Only the record of the physics is complete at once; that of a robot arrives later. Cases
-        that share results measure their own: another process for each costs more than it saves.
+        Only the record of the physics is complete at once; that of a robot arrives later.
         """
         from harness.observation.sampled_clearance import complete_parts
         from harness.simulation.mujoco_simulator import MujocoSimulator
 
-        if not isinstance(simulator, MujocoSimulator) or sharing.is_sharing():
+        if not isinstance(simulator, MujocoSimulator):
             return
         if self._background is not None and not self._background.has_message():
             return

@@ -10,7 +10,6 @@ from pathlib import Path
 from harness.assertions.facts import remembered_facts
 from harness.assertions.judge import judge
 from harness.cell.program import ProgramStep
-from harness.core import sharing
 from harness.core.errors import HarnessError, SpecError
 from harness.core.memory import free_memory
 from harness.engine.execute import ProgramExecution, StepEvent
@@ -50,7 +49,7 @@ def run_case(
         make_session: Makes the session of the programs to which a step hands the robot over.
         start: Prepares the case, with the simulator or a robot in its place.
     """
-    clock, tally = Clock(), sharing.begin(share=request.share)
+    clock = Clock()
     try:
         with clock.part("compile"):
             begun = start(request, clock)
@@ -73,7 +72,6 @@ def run_case(
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
             result = _result(request, prepared, judged, overlaps, draw, refusal)
-            result = replace(result, shared=tally.counts())
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result

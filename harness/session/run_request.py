@@ -56,7 +56,6 @@ class RunRequest:
         redraw: Draws the sample again while objects overlap at the start; None draws it once.
         strict: Whether a warning of a verdict fails the case.
         nodes: Commands by name that steps may start as ROS 2 nodes.
-        share: Whether results are taken from other cases of the same command.
         live: The Unix socket to which the case sends its poses while it runs; empty sends none.
     """
 
@@ -74,7 +73,6 @@ class RunRequest:
     redraw: Redraw | None = None
     strict: bool = False
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
-    share: bool = True
     live: str = ""
 
 

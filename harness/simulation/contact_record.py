@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.simulation.copied_contacts import Array, CopiedContacts, RecordedContacts
+from harness.simulation.copied_contacts import Array, CopiedContacts, SampleContacts
 from harness.simulation.model import PhysicsModel
 
 ROWS = 2**16
@@ -77,41 +77,16 @@ class ContactRecord:
             self._resolve(begin)
             self._copied.keep(count)
 
-    def geoms(self, first: int, last: int) -> Array:
-        """The two geoms of each contact in samples first to last - 1, shape (C, 2)."""
-        self._resolve(self.count)
-        return self._geoms[self._begin(first) : self._begin(last)]
-
-    def part(self, first: int, last: int) -> RecordedContacts:
-        """The contacts of samples first to last - 1."""
-        self._resolve(self.count)
-        begin, end = self._begin(first), self._begin(last)
-        counts = np.diff(self._end[first:last], prepend=begin)
-        return RecordedContacts(counts, *(values[begin:end] for values in self._values))
-
-    def take(self, first: int, part: RecordedContacts) -> None:
-        """Go on from a sample with contacts of another run."""
-        begin = self.count
-        self._resolve(begin)
-        self._end[first : first + len(part.counts)] = begin + np.cumsum(part.counts)
-        self.count = self._resolved = end = begin + len(part.forces)
-        while end > len(self._forces):
-            self._grow()
-        self._sleep = b""
-        for values, more in zip(self._values, part.values, strict=True):
-            values[begin:end] = more
-
     def _find_asleep(self, row: int) -> None:
         """Take the contacts of bodies asleep from the sample before."""
         model, data = self._physics.model, self._data
         self._sleep = data.tree_asleep.tobytes()
         is_asleep = np.append(data.tree_asleep, -1) >= 0
         trees = model.body_treeid[model.geom_bodyid]  # -1, the last, for a static body
-        before = self.part(max(0, row - 1), row)
-        chosen = is_asleep[trees[before.geoms]].any(axis=1)
-        self._copied.asleep = RecordedContacts(
-            chosen.sum(keepdims=True), *(values[chosen] for values in before.values)
-        )
+        self._resolve(self.count)
+        before = slice(self._begin(max(0, row - 1)), self._begin(row))
+        chosen = is_asleep[trees[self._geoms[before]]].any(axis=1)
+        self._copied.asleep = SampleContacts(*(values[before][chosen] for values in self._values))
 
     @property
     def _values(self) -> tuple[Array, ...]:

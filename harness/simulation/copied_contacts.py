@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 
 MOST_UNRESOLVED = 1024
 """Contacts that are decoded at a time; their copies stay in the processor's cache."""
@@ -20,11 +20,10 @@ Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedContacts:
-    """Contacts of consecutive samples.
+class SampleContacts:
+    """Contacts of one sample.
 
     Attributes:
-        counts: How many each sample has, shape (N,).
         geoms: The two geoms of each contact, shape (C, 2).
         forces: Normal forces [N], shape (C,).
         normals: Directions from the first geom to the second, shape (C, 3).
@@ -32,7 +31,6 @@ class RecordedContacts:
         frictions: Friction forces [N], shape (C, 3).
     """
 
-    counts: IntArray
     geoms: Array
     forces: FloatArray
     normals: Array
@@ -41,7 +39,7 @@ class RecordedContacts:
 
     @property
     def values(self) -> tuple[Array, ...]:
-        """All but the counts, in order."""
+        """All of them, in order."""
         return self.geoms, self.forces, self.normals, self.points, self.frictions
 
 
@@ -63,9 +61,7 @@ class CopiedContacts:
         self._fields = np.dtype([])
         self._contacts = np.empty((0, 0))
         self._forces = np.empty(8 * MOST_UNRESOLVED)
-        self.asleep = RecordedContacts(
-            np.empty(0, dtype=np.int64), *(np.empty(0) for _ in range(5))
-        )
+        self.asleep = SampleContacts(*(np.empty(0) for _ in range(5)))
         self._clear()
 
     def _clear(self) -> None:

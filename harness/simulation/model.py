@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
-from harness.core.geometry import Friction
-from harness.core.sharing import shared
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.collision_shapes import convex_shapes
@@ -121,23 +119,12 @@ def build_model(
         replace(obj, shapes=convex_shapes(obj.shapes)) for obj in objects if obj.in_simulation
     ]
     refuse_unusable_masses(simulated)
-    structure = [_without_surfaces(obj) for obj in simulated]
-    option = gravity, timestep, tuple(frames), sorted(present)
-    servos, model = shared(
-        "models",
-        lambda: (description.key, structure, option),
-        lambda: _compiled(description, simulated, present, gravity, timestep, frames),
-    )
+    servos, model = _compiled(description, simulated, present, gravity, timestep, frames)
     physics = _places(model, description, servos, simulated, tuple(frames))
     _set_surfaces(physics)
     for name, place in physics.objects.items():
         set_presence(model, place, present=name in present)
     return physics
-
-
-def _without_surfaces(obj: WorldObject) -> WorldObject:
-    shapes = tuple(replace(shape, friction=None) for shape in obj.shapes)
-    return replace(obj, friction=Friction(), shapes=shapes)
 
 
 def _compiled(

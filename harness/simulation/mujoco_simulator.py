@@ -28,7 +28,6 @@ from harness.simulation.objects import Objects, overlaps
 from harness.simulation.recording import Recording
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.set_points import SetPoints, sample_trajectory
-from harness.simulation.shared_physics import SharedPhysics
 from harness.simulation.snapshot import (
     PhysicsState,
     SimulatorCommand,
@@ -105,7 +104,6 @@ class MujocoSimulator:
         self._refuse_unusable_start()
         self.overlaps_at_start = overlaps(self.physics, self._data)
         self._recording.start(self._command)
-        self._shared = SharedPhysics(self._model, self._data, self._recording)
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
 
@@ -381,7 +379,7 @@ class MujocoSimulator:
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:
         arrived = self.faults.distorted(controls, self._drive.position_share)
-        self._shared.advance(arrived, points.positions[1:], points.velocities[1:])
+        self._recording.advance(arrived, points.positions[1:], points.velocities[1:])
 
     def _actuated_columns(self, joint_names: Sequence[str]) -> IntArray:
         places = [self.description.joint_index[name] for name in joint_names]

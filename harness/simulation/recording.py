@@ -5,18 +5,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from harness.core.errors import SimulationDiverged, StepFailed
-from harness.core.types import FloatArray, IntArray
+from harness.core.types import FloatArray
 from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.signals import Signals
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
-from harness.simulation.copied_contacts import RecordedContacts
 from harness.simulation.model import PhysicsModel
 from harness.simulation.step_state import refresh
 
@@ -27,23 +25,6 @@ LOOK_BACK = 25
 """Number of samples before a failure in which contacts are searched."""
 
 _DIVERGED = (mujoco.mjtWarning.mjWARN_BADQACC, mujoco.mjtWarning.mjWARN_BADCTRL)
-
-
-@dataclass(frozen=True, eq=False)
-class RecordedPart:
-    """Consecutive samples.
-
-    Attributes:
-        positions: MuJoCo's positions, shape (N, nq).
-        velocities: MuJoCo's velocities, shape (N, nv).
-        sensors: Sensor data, shape (N, nsensordata).
-        contacts: The contacts of the samples.
-    """
-
-    positions: FloatArray
-    velocities: FloatArray
-    sensors: FloatArray
-    contacts: RecordedContacts
 
 
 class Recording:
@@ -115,37 +96,6 @@ class Recording:
         self.count = first + steps
         self._refuse_divergence(first)
         self._record_forces_of_last_row()
-
-    def part(self, first: int) -> RecordedPart:
-        """The samples from one on."""
-        end = self.count
-        return RecordedPart(
-            self._qpos[first:end],
-            self._qvel[first:end],
-            self._sensors[first:end],
-            self._contacts.part(first, end),
-        )
-
-    def take(
-        self, part: RecordedPart, commands: FloatArray, command_velocities: FloatArray
-    ) -> None:
-        """Go on with samples of another run."""
-        first, end = self.count, self.count + len(part.positions)
-        self._reserve(end)
-        self._commands[first:end], self._command_velocities[first:end] = (
-            commands,
-            command_velocities,
-        )
-        self._qpos[first:end], self._qvel[first:end] = part.positions, part.velocities
-        self._sensors[first:end] = part.sensors
-        self._contacts.take(first, part.contacts)
-        self.count = end
-
-    def touching_geoms(self, first: int, last: int) -> IntArray:
-        """Pairs of geoms that touch in samples first to last - 1, in order, shape (K, 2)."""
-        size = self._physics.model.ngeom
-        one, other = self._contacts.geoms(first, last).astype(np.int64).T
-        return np.column_stack(np.divmod(np.unique(one * size + other), size))
 
     def refuse_beyond(self, steps: int) -> None:
         """Check that a number of further samples can be recorded.

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from harness.core.sharing import shared
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model
@@ -122,7 +121,6 @@ class FeedForward:
     def __init__(
         self, description: RobotDescription, servos: Servos, gravity: tuple[float, float, float]
     ) -> None:
-        self._description, self._facts = description, (vars(servos), gravity)
         spec = bare_robot(description)
         spec.option.gravity = gravity
         spec.option.disableflags = (
@@ -148,19 +146,6 @@ class FeedForward:
             velocities: Joint velocities, shape (N, n).
             accelerations: Joint accelerations, shape (N, n).
         """
-        rows = positions, velocities, accelerations
-        if len(positions) < SHORTEST:
-            return self._efforts(*rows)
-        return shared(
-            "efforts",
-            lambda: (self._description.key, self._facts, *rows),
-            lambda: self._efforts(*rows),
-            is_often_needed=False,
-        )
-
-    def _efforts(
-        self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
-    ) -> FloatArray:
         model, data = self._model, self._data
         efforts = np.empty((len(positions), model.nv))
         qpos, qvel, qacc = (np.empty((len(positions), model.nv)) for _ in range(3))

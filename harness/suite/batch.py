@@ -25,7 +25,7 @@ from harness import __version__
 from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
-from harness.suite.cases import compute_here, run_isolated, share_results
+from harness.suite.cases import compute_here, run_isolated
 from harness.suite.leftovers import remove_abandoned
 from harness.suite.stream import result_of
 from harness.suite.warm import WarmServer
@@ -186,7 +186,6 @@ class _Place:
             }
         )
         os.chdir(folder)  # the fork server begins here
-        self.server.prepare(share_results)  # with later batches too
         self.server.prepare(compute_here)  # a task has one core
 
     def close(self) -> None:

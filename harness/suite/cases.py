@@ -16,7 +16,7 @@ from harness.core.interruption import is_interrupted
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
 from harness.suite.environment import prepare_process
-from harness.suite.leftovers import clean_leftovers, remove_abandoned
+from harness.suite.leftovers import clean_leftovers
 from harness.suite.server import preload
 from harness.suite.warm import REPORT_MODULES, Ended, Heard, WarmServer
 
@@ -85,14 +85,6 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
                 load_ahead(read.scenario.robot, read.scenario.collision)
                 if not is_foreign_world(read.scenario.world.name):
                     load_world(read.scenario.world.name, read.path.parent)
-
-
-def share_results() -> None:
-    """Let the cases that this process forks share results."""
-    from harness.core.sharing import PREFIX, open_folder  # numpy: the caller's start need not wait
-
-    remove_abandoned(PREFIX)
-    open_folder()
 
 
 def compute_here() -> None:
@@ -188,12 +180,10 @@ def run_isolated(
 
 
 def _prepare(server: WarmServer, jobs: Sequence[RunRequest], workers: int) -> None:
-    """Let the server import, read and share what the cases have in common."""
+    """Let the server import and read what the cases have in common."""
     server.prepare(read_ahead, _words(jobs), jobs[:1] if len(jobs) > 1 else [])
     if len(jobs) > 1:
         server.prepare(preload, REPORT_MODULES)
-    if len({job.file for job in jobs}) < len(jobs):
-        server.prepare(share_results)
     if min(workers, len(jobs)) >= len(os.sched_getaffinity(0)):
         server.prepare(compute_here)
 

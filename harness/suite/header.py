@@ -96,13 +96,13 @@ def stated_variation(varied: Mapping[str, Any]) -> Variation:
     if not varied:
         return ONE_CASE
     entries = located(dict(varied), Place(Source(""))).mapping()
-    return Variation.of(read_case_keys(entries, []), _stated_planning(varied))
+    return Variation.of(read_case_keys(entries, []))
 
 
 def _with_options(root: Located, overrides: Mapping[str, str]) -> Located:
     """The file's values with options in their place, where these can change the header."""
     params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
-    of_header = {TITLE, TAGS, VERIFIES, PARAMS, "planning", *CASE_KEYS, *params}
+    of_header = {TITLE, TAGS, VERIFIES, PARAMS, *CASE_KEYS, *params}
     if not any(path.split(".")[0] in of_header for path in overrides):
         return root
     from harness.language.reading.overrides import apply_overrides, from_options
@@ -128,21 +128,13 @@ def _cases(
 
     problems: list[Problem] = []
     entries, _ = case_entries(root, problems)
-    planning = {key: entry for key, entry in root.mapping().items() if key == "planning"}
-    varied: dict[str, Any] = {
-        key: entry.value.plain() for key, entry in (entries | planning).items()
-    }
+    varied: dict[str, Any] = {key: entry.value.plain() for key, entry in entries.items()}
     try:
         keys = read_case_keys(entries, problems)
     except (ValueError, SpecError):
         return varied, ONE_CASE
     fixed = fixed_values(written, keys, from_options(overrides, [])) if overrides else {}
-    return varied, replace(Variation.of(keys, _stated_planning(varied)), fixed=fixed)
-
-
-def _stated_planning(varied: Mapping[str, Any]) -> frozenset[str]:
-    planning = varied.get("planning")
-    return frozenset(planning) if isinstance(planning, Mapping) else frozenset()
+    return varied, replace(Variation.of(keys), fixed=fixed)
 
 
 def _texts(item: Located) -> tuple[str, ...]:

@@ -46,7 +46,6 @@ class SuiteRequest:
         reporters: Names of other reporters that write into the reports.
         nodes: Commands by name that steps may start as ROS 2 nodes.
         conditions: Samples to run instead of those that the files draw; all of them count.
-        share: Whether cases take results from each other.
         live: The Unix socket to which the cases send their poses; empty sends none.
     """
 
@@ -64,7 +63,6 @@ class SuiteRequest:
     reporters: Sequence[str] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     conditions: Conditions | None = None
-    share: bool = True
     live: str = ""
 
 
@@ -285,7 +283,6 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         redraw=fixed.redraw,
         strict=request.strict,
         nodes=request.nodes,
-        share=request.share,
         live=request.live,
     )
 

@@ -133,7 +133,6 @@ class Server:
                 _kill_group(pid)
             for pid in self._jobs:  # so that the caller finds none alive, nor half dead
                 os.waitpid(pid, 0)
-            _remove_shared_results()
             os._exit(0)  # no interpreter's end: native libraries print about leaks there
 
     def _obey(self) -> None:
@@ -178,12 +177,6 @@ def _prepare(call: bytes, arguments: bytes) -> None:
     with contextlib.suppress(Exception):
         pickle.loads(call)(*pickle.loads(arguments))
     share()
-
-
-def _remove_shared_results() -> None:
-    from harness.core.sharing import close_folder  # numpy: after the modules of a run
-
-    close_folder()
 
 
 def _kill_group(pid: int) -> None:

@@ -11,7 +11,7 @@ import itertools
 import json
 import random
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,9 +22,6 @@ from harness.suite.distribution import Distribution, read_distribution
 if TYPE_CHECKING:
     from harness.language.variation import CaseKeys
 
-POSE_RESOLUTION = "1.0e-04"
-"""Resolution [m] of measured poses in samples: with other friction objects differ less, at rest and
-in a hand. It is a twentieth of the default padding."""
 LONGEST_NAME = 60
 
 
@@ -69,7 +66,6 @@ class Variation:
         stop_early: Whether a sequential test may end the sampling.
         seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
-        planning: The planning parameters that the file states.
         fixed: Values that options give in place of a case's own, path -> value.
     """
 
@@ -81,16 +77,14 @@ class Variation:
     stop_early: bool = True
     seed: int = 0
     redraw_overlaps: bool = False
-    planning: frozenset[str] = frozenset()
     fixed: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     @classmethod
-    def of(cls, keys: CaseKeys, planning: Iterable[str] = ()) -> Variation:
+    def of(cls, keys: CaseKeys) -> Variation:
         """The variation that the keys of a scenario file say.
 
         Args:
             keys: The keys of the cases.
-            planning: The planning parameters that the file states.
         """
         from harness.language.reading.written import as_written
 
@@ -102,7 +96,6 @@ class Variation:
             samples=keys.sample_count,
             seed=keys.seed,
             redraw_overlaps=keys.redraw_overlaps is True,
-            planning=frozenset(planning),
         )
         if rate is None:
             return variation
@@ -160,27 +153,12 @@ class Variation:
         drawn = {path: each.draw(rng) for path, each in self.randomize.items()}
         return Case(
             name=_sample_name(case, index),
-            overrides={
-                **self._same_planning(base),
-                **case.overrides,
-                **as_yaml(drawn),
-                "seed": str(seed),
-            },
+            overrides={**case.overrides, **as_yaml(drawn), "seed": str(seed)},
             values={**case.values, **{path: self.fixed.get(path, v) for path, v in drawn.items()}},
             group=case.name,
             sample=index,
             redraw=Redraw(self, case, index, base) if self.redraw_overlaps and not draw else None,
         )
-
-    def _same_planning(self, base: int) -> dict[str, str]:
-        """Overrides with which samples plan the same where only the physics varies.
-
-        Samples of a file that draws nothing differ in their seeds alone, which must count then.
-        """
-        if not self.randomize:
-            return {}
-        same = {"seed": str(base), "pose_resolution": POSE_RESOLUTION}
-        return {f"planning.{key}": value for key, value in same.items() if key not in self.planning}
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ def test_without_a_word_every_option_has_its_default():
     assert (options.pipeline, options.planner_id) == ("ompl", "ompl:")
     assert (options.max_state_checks, options.attempts) == (200_000, 1)
     assert (options.velocity_scaling, options.acceleration_scaling) == (0.3, 0.3)
-    assert (options.padding, options.pose_resolution, options.max_jerk) == (0.002, 0.0, math.inf)
+    assert (options.padding, options.max_jerk) == (0.002, math.inf)
     assert (options.root_seed, options.seed) == (3, step_seed(3, "steps[1]"))
     assert options.parameters == {}
     assert merged(step={}) == options
@@ -43,7 +43,6 @@ KEYS = {
     "max_velocity_scaling_factor": ("velocity_scaling", 0.1, 0.7),
     "max_acceleration_scaling_factor": ("acceleration_scaling", 0.1, 0.7),
     "padding": ("padding", 0.001, 0.004),
-    "pose_resolution": ("pose_resolution", 0.0005, 0.001),
     "max_jerk": ("max_jerk", 5.0, 7.0),
     "seed": ("root_seed", 11, 12),
     "max_state_checks": ("max_state_checks", 50, 70),

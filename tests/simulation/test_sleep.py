@@ -8,7 +8,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from harness.core import sharing
 from harness.core.spatial import SE3
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from tests.simulation.physics_scenes import a_box, a_cylinder
@@ -168,27 +167,6 @@ def test_time_in_pieces_puts_the_same_to_sleep(gripper_over_table):
         runs.append(strike(simulator))
     for run in runs[1:]:
         assert_equal_bits(runs[0], run)
-
-
-def test_shared_physics_holds_what_is_asleep(gripper_over_table):
-    objects = a_stack()
-
-    def a_run():
-        tally = sharing.begin()
-        simulator = MujocoSimulator(gripper_over_table, objects, [obj.name for obj in objects])
-        for _ in range(10):
-            simulator.hold(0.1)
-        return strike(simulator), tally.taken["physics"]
-
-    alone, _ = a_run()
-    sharing.open_folder()
-    try:
-        runs = [a_run() for _ in range(3)]
-    finally:
-        sharing.close_folder()
-    assert runs[2][1] > 1000
-    for signals, _ in runs:
-        assert_equal_bits(alone, signals)
 
 
 def test_mujoco_computes_no_contacts_of_what_is_asleep(gripper_over_table):

@@ -195,13 +195,6 @@ def test_a_cluster_that_a_client_reaches_gives_the_results_of_a_local_run(local,
     assert document(local / "client") == document(local / "local")
 
 
-def test_cases_of_a_node_share_results(local):
-    harness(local, "-j", "2", "--on", "ray", "--report-dir", "shared")
-    lines = (local / "shared/results.jsonl").read_text().splitlines()
-    taken = [json.loads(line)["result"]["shared"].get("distances", [0])[0] for line in lines]
-    assert sum(map(bool, taken)) > 100
-
-
 def test_a_node_with_other_sources_is_refused(local, cluster, tmp_path, monkeypatch):
     source = Path(__file__).parents[2] / "harness"
     shutil.copytree(source, tmp_path / "harness", ignore=shutil.ignore_patterns("__pycache__"))

@@ -12,9 +12,7 @@ import numpy as np
 import pinocchio as pin
 
 from harness.core.errors import StepFailed
-from harness.core.exact_key import exact_key
 from harness.core.geometry import Plane, Shape
-from harness.core.sharing import shared
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.core.world import WorldObject
@@ -55,7 +53,6 @@ class CoalScene:
         self._extra: set[tuple[str, str]] = set()
         self._unpadded: frozenset[tuple[str, str]] = frozenset()
         self._model: CollisionModel | None = None
-        self._key: str | None = None
 
     # Changes -------------------------------------------------------------------------------
 
@@ -71,13 +68,13 @@ class CoalScene:
             center_of_mass=obj.center_of_mass,
             inertia=obj.inertia,
         )
-        self._model = self._key = None
+        self._model = None
 
     def remove_object(self, name: str) -> None:
         """Take an object out of the scene."""
         self._find(name)
         del self._objects[name]
-        self._model = self._key = None
+        self._model = None
 
     def move_object(self, name: str, pose: SE3) -> None:
         """Set T_world_object of an object that is not attached."""
@@ -87,7 +84,7 @@ class CoalScene:
         if np.array_equal(found.pose.matrix(), pose.matrix()):
             return
         self._objects[name] = replace(found, pose=pose)
-        self._model = self._key = None
+        self._model = None
 
     def attach_object(
         self, name: str, link: str, touch_links: Sequence[str], joint_positions: FloatArray
@@ -100,7 +97,7 @@ class CoalScene:
         T_link_object = self.robot.link_pose(joint_positions, link).inverse() @ T_world_object
         touching = frozenset(touch_links) | {link}
         self._objects[name] = replace(found, pose=T_link_object, link=link, touch_links=touching)
-        self._model = self._key = None
+        self._model = None
         return T_link_object
 
     def detach_object(self, name: str, joint_positions: FloatArray) -> SE3:
@@ -110,7 +107,7 @@ class CoalScene:
             raise StepFailed("INVALID_OBJECT_NAME", f"object '{name}' is not attached")
         pose = self.object_pose(name, joint_positions)
         self._objects[name] = replace(found, pose=pose, link=None, touch_links=frozenset())
-        self._model = self._key = None
+        self._model = None
         return pose
 
     def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
@@ -121,12 +118,12 @@ class CoalScene:
                 self._extra.add(key)
             else:
                 self._extra.discard(key)
-        self._model = self._key = None
+        self._model = None
 
     def set_unpadded(self, pairs: Sequence[tuple[str, str]]) -> None:
         """Apply no padding to these pairs of a link and an object, and to no others."""
         self._unpadded = frozenset(_sorted(*pair) for pair in pairs)
-        self._model = self._key = None
+        self._model = None
 
     def snapshot(self) -> SceneState:
         """What is in the scene, and which pairs are allowed besides the robot's."""
@@ -136,34 +133,9 @@ class CoalScene:
         """Go back to a snapshot of this scene."""
         self._objects = dict(state.objects)
         self._extra, self._unpadded = set(state.allowed), state.unpadded
-        self._model = self._key = None
+        self._model = None
 
     # Questions -----------------------------------------------------------------------------
-
-    @property
-    def key(self) -> str:
-        """Key of what plans and distances follow from: the robot, and the scene without surfaces.
-
-        The mass of an object counts while the robot carries it.
-
-        Raises:
-            NoKeyError: Something in the scene has no exact bytes.
-        """
-        if self._key is None:
-            objects = [
-                (
-                    name,
-                    [(shape.geometry, shape.pose) for shape in each.shapes],
-                    each.pose,
-                    each.link,
-                    each.touch_links,
-                    None if each.link is None else (each.mass, each.center_of_mass, each.inertia),
-                )
-                for name, each in self._objects.items()
-            ]
-            allowed = frozenset(self._extra), self._unpadded
-            self._key = exact_key(self.description.key, objects, *allowed)
-        return self._key
 
     def object_names(self) -> tuple[str, ...]:
         """Objects in the scene, attached ones included, in order of adding."""
@@ -191,13 +163,9 @@ class CoalScene:
 
     def touches(self, joint_positions: FloatArray, padding: float = 0.0) -> Sequence[Touch]:
         """Pairs closer than allowed at a state, nearest first."""
-
-        def found() -> tuple[Touch, ...]:
-            model = self.collision_model()
-            configuration = self.robot.configuration(np.asarray(joint_positions, dtype=float))
-            return tuple(touch for _, touch in model.near(configuration, model.margins(padding)))
-
-        return shared("state checks", lambda: (self.key, joint_positions, padding), found)
+        model = self.collision_model()
+        configuration = self.robot.configuration(np.asarray(joint_positions, dtype=float))
+        return tuple(touch for _, touch in model.near(configuration, model.margins(padding)))
 
     def corners(self, body: str) -> FloatArray:
         """Corners of the boxes around a body's shapes; its origin where it has none, (n, 3)."""

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from harness.core.quantity import split_quantity
 from harness.core.types import FloatArray
-from harness.reporting.shared_work import SharedWork
 from harness.reporting.suite.record import SuiteCase
 
 PASSED = -1
@@ -87,7 +86,6 @@ class Columns:
 
     Attributes:
         outcomes: The number of runs with each outcome.
-        shared: What the runs took from each other.
         causes: The number of runs with each cause of failure.
         margins: Text and unit of an expectation -> its finite margins, of valid runs that vary.
         listed: Indices of the runs that are listed.
@@ -106,7 +104,6 @@ class Columns:
             most_listed: How many runs are listed: failures, then the nearest to failing.
         """
         self.outcomes = Counter[str]()
-        self.shared = SharedWork()
         self.causes = Counter[str]()
         self.margins: dict[tuple[str, str], array[float]] = {}
         self.numbers = array("Q")
@@ -127,7 +124,6 @@ class Columns:
         """Read the next case."""
         index, outcome = self.outcomes.total(), case.result.outcome
         self.outcomes[outcome] += 1
-        self.shared.add(case.result)
         group = PASSED
         if case.cause is not None:
             self.causes[case.cause.group] += 1

@@ -10,7 +10,6 @@ from pathlib import Path
 from harness.reporting.html import bundle
 from harness.reporting.margins import allowance_used
 from harness.reporting.sampled import missed, rate_text, short_value
-from harness.reporting.shared_work import shared_words
 from harness.reporting.suite.campaign import campaign_of
 from harness.reporting.suite.cause import Cause
 from harness.reporting.suite.columns import Columns
@@ -42,7 +41,6 @@ class CaseRow:
         share: The worst margin as a share of its limit; 9 where there is none.
         used: The share of the allowance that was used [%]; None where there is no limit.
         drawn: What varies in the case, with its values.
-        shared: What the case took from others.
         words: What a search finds it by.
         trend: Worst margins of earlier runs and this one; None where there are too few.
     """
@@ -54,7 +52,6 @@ class CaseRow:
     share: float
     used: float | None
     drawn: str
-    shared: str
     words: str
     trend: Trend | None
 
@@ -86,7 +83,6 @@ def suite_html(
             (each, each.rate, rate_text("", each.rate).partition(": ")[2])
             for each in sorted(record.rates, key=lambda each: each.outcome == "passed")
         ],
-        shared=columns.shared.sentence(),
         campaign=campaign_of(columns, record.cases, folder),
         varied=_varied(columns),
         history=bool(history),
@@ -121,7 +117,6 @@ def _row(
         case.share if math.isfinite(case.share) else 9,
         None if used is None else 100 * used,
         ", ".join(f"{path} {short_value(value)}" for path, value in case.values.items()),
-        shared_words(result.shared),
         " ".join([*words, cause.text if cause else ""]).lower(),
         _trend([*earlier, None if nearest is None else case.share]),
     )
