@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, cast
 
 import numpy as np
-from pydantic import Field
+from pydantic import BaseModel, Field
 
 from harness.assertions.margins import Margin, MarginSignal, Part, all_of
 from harness.assertions.observations import (
@@ -42,6 +42,10 @@ BOUNDS = {"at_least": ">=", "at_most": "<="}
 """Fields that bound a predicate's one quantity, where its class does not say what it measures."""
 
 
+BASE_FIELDS = {*TemporalFields.model_fields, *PredicateFields.model_fields}
+"""Fields that any expectation has; none of them names an object."""
+
+
 class Expectation(ExpectationFields):
     """What a run is judged by."""
 
@@ -61,6 +65,12 @@ class Expectation(ExpectationFields):
     def predicates(self) -> Mapping[str, Predicate]:
         """The predicates inside it, by their keys."""
         return {}
+
+    def names(self) -> frozenset[str]:
+        """Names of the objects and links that it is about: of its fields and their parts."""
+        own = type(self).model_fields.keys() - BASE_FIELDS - self.predicates().keys()
+        inner = (predicate.names() for predicate in self.predicates().values())
+        return frozenset(_texts([getattr(self, key) for key in own])).union(*inner)
 
     def observations(self) -> Observations:
         """What must be recorded so that it can be judged."""
@@ -210,6 +220,22 @@ class ObjectPredicate(Predicate):
             present=here,
             applies=here if found.applies is None else found.applies & here,
         )
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Every text in a field's value and in its parts, without the keys of mappings."""
+    match value:
+        case str():
+            yield value
+        case BaseModel():
+            yield from _texts([getattr(value, key) for key in type(value).model_fields])
+        case Mapping():
+            yield from _texts(list(cast("Mapping[Any, Any]", value).values()))
+        case list() | tuple():
+            for part in cast("list[Any]", value):
+                yield from _texts(part)
+        case _:
+            pass
 
 
 def _is_recorded(run: Run, name: str) -> bool:

@@ -84,6 +84,8 @@ def formula_verdict(text: str, window: Window) -> Verdict:
     """
     evaluation = Evaluation(window)
     root = parse_formula(text)
+    if not signals_of(root):
+        raise NotObservable("the formula reads no signal of the run")
     bounds = evaluation.bounds(root)
     low, high = float(bounds.low[0]), float(bounds.high[0])
     if low < 0 < high:

@@ -19,6 +19,7 @@ from harness.assertions.window import NotObservable, object_record
 from harness.core.antipodal import (
     combined_press,
     distance_pressed,
+    force_between_sides,
     is_antipodal,
     is_opposite,
     least_thickness,
@@ -32,6 +33,7 @@ from harness.core.pose_arrays import (
     rotation_angle,
 )
 from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.recording.faults import faults_of
 from harness.recording.run import Run
 
 HOLD_TIME = 0.1
@@ -51,6 +53,11 @@ STEADY_TURN = 0.1
 """How far it may turn [rad]."""
 CLOSING_SHARE = 0.01
 """Share of its range by which a gripper's joint is commanded past where it stands if it presses."""
+DRIVE_SHARE = 0.5
+"""Share of the drive's force that reaches an object which the fingers press, and the reverse.
+
+Contacts nearer to the joints of turning fingers, or farther, have another lever than the pads.
+"""
 
 
 @fact
@@ -87,7 +94,7 @@ def why_not_between(run: Run, name: str, sample: int) -> str:
     """Why an object that two sides touch is not between them; empty where it is."""
     sides = [press[[sample]] for press in _side_presses(run, name)]
     if cradled(run, name)[sample]:
-        return "it lies on them and they do not close"
+        return "it lies on them and they do not press it"
     if len(sides) > 2 or between_fingers(run, name)[sample]:
         return ""
     if not is_opposite(*sides)[0]:
@@ -166,25 +173,62 @@ def carried_weight(run: Run, name: str) -> FloatArray | None:
 def cradled(run: Run, name: str) -> BoolArray:
     """Samples at which an object lies on fingers that do not press it, shape (N,).
 
-    The normal forces alone carry half of its weight or more, as those of a trough do, and the
-    gripper's joint stands where it is commanded to. Fingers that grip are commanded further, and
-    carry by friction.
+    The normal forces alone carry half of its weight or more, as those of a trough do, and the force
+    of the gripper's drive does not reach it. Fingers that grip press with that force, and carry by
+    friction.
     """
     weight = weight_of(run, name)
     mask = np.zeros(len(run.signals.times), dtype=bool)
     if weight == 0:
         return mask
     lying = _upward(run, name, "presses") >= CARRIED_SHARE * weight
-    return lying & ~_presses_beyond(run) if lying.any() else mask
+    return lying & ~_is_squeezed(run, name) if lying.any() else mask
 
 
-def _presses_beyond(run: Run) -> BoolArray:
-    """Samples at which the gripper is commanded past where it stands, shape (N,)."""
+def _is_squeezed(run: Run, name: str) -> BoolArray:
+    """Samples at which the gripper's drive presses an object, shape (N,).
+
+    The gripper is commanded past where it stands, and the sides press the object against each other
+    with the force of its drive: the fingers of a jammed gripper, or those that grip something else,
+    press with what the weight gives. The pads are in balance with the drive where its work equals
+    theirs, F = effort / (d gap / d position).
+    """
     hand = gripper_of(run)
     column = [joint.name for joint in run.robot.joints].index(hand.joint)
     signals = run.signals
     short = np.abs(signals.joint_commands[:, column] - signals.joint_positions[:, column])
-    return short > CLOSING_SHARE * abs(hand.open_position - hand.closed_position)
+    closes = short > CLOSING_SHARE * abs(hand.open_position - hand.closed_position)
+    rows = np.array(sorted(hand.widths))
+    sides = _side_presses(run, name)
+    if len(rows) < 2 or len(sides) < 2:
+        return closes
+    travel = np.abs(np.interp(signals.joint_positions[:, column], *_slopes(rows)))
+    efforts = recent_mean(run, np.abs(signals.joint_efforts[:, [column]]), DEBOUNCE)[:, 0]
+    pairs = [
+        force_between_sides(first, second)
+        for index, first in enumerate(sides)
+        for second in sides[index + 1 :]
+    ]
+    work = np.max(pairs, axis=0) * travel
+    reaches = (work * DRIVE_SHARE <= efforts) & (efforts * DRIVE_SHARE <= work)
+    return closes & reaches & ~_jammed(run)
+
+
+def _jammed(run: Run) -> BoolArray:
+    """Samples after a fault that blocked a joint of the gripper, shape (N,)."""
+    joints = run.robot.groups.get(gripper_of(run).group, (gripper_of(run).joint,))
+    stalls = [
+        step.start_time
+        for step in run.steps
+        for fault in faults_of(step)
+        if fault.fault == "joint_stall" and fault.target in joints
+    ]
+    return run.signals.times >= min(stalls, default=np.inf)
+
+
+def _slopes(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Positions, and how fast the gap between the pads changes there [m/rad or m/m]."""
+    return rows[:, 0], np.gradient(rows[:, 1], rows[:, 0])
 
 
 def held_for(run: Run, held: BoolArray) -> FloatArray:

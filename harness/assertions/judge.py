@@ -27,7 +27,7 @@ def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict,
 def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
     text = describe(placed.spec)
     try:
-        refuse_changed_later(run, placed.step, placed.spec)
+        refuse_changed_later(run, placed.step, placed.spec.names())
         with np.errstate(invalid="ignore"):
             verdict = placed.spec.verdict(placed.spec.readable(run), placed.step)
     except NotReached as answer:

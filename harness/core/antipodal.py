@@ -50,6 +50,14 @@ def distance_pressed(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.divide(apart, length, out=np.zeros(len(length)), where=length > 0)
 
 
+def force_between_sides(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Force with which two sides press against each other, mean of both [N], shape (N,).
+
+    It is the part along the line in which they press.
+    """
+    return 0.5 * np.linalg.norm(first[:, 3:] - second[:, 3:], axis=1)
+
+
 def combined_press(presses: list[FloatArray]) -> FloatArray:
     """Contact point and normal force of several links together, (N, 6); zero without force."""
     filled = [np.nan_to_num(press) for press in presses]

@@ -20,8 +20,6 @@ from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 
-TIMEOUT_SLACK = 0.05  # [s] how often the physics is looked at while something is waited for
-
 StepEvent = Literal["step_started", "step_finished"]
 OnStep = Callable[[StepEvent, ProgramStep, StepRecord | None], None]
 
@@ -59,6 +57,7 @@ class _Runner:
     cell: Cell
     on_step: OnStep
     keep_going: bool
+    timestep: float
     records: list[StepRecord] = field(default_factory=list[StepRecord])
     depth: int = 0
 
@@ -76,7 +75,7 @@ class _Runner:
         # the sample at the step's start belongs to it, so that no step is without samples
         start_time, start_index = cell.simulator.time, max(0, cell.simulator.sample_count - 1)
         inner = self._attempt(step)
-        failure = _own(inner) or _too_long(step, cell.simulator.time - start_time)
+        failure = _own(inner) or _too_long(step, cell.simulator.time - start_time, self.timestep)
         status, message = _judge_step(step, failure)
         notes = cell.notes
         self.records[place] = replace(
@@ -160,7 +159,7 @@ class ProgramExecution:
             self.cell.believe(obj.name, obj.pose)
             if obj.in_planning:
                 ports.scene.add_object(obj, obj.pose)
-        self._runner = _Runner(self.cell, on_step, keep_going)
+        self._runner = _Runner(self.cell, on_step, keep_going, program.world.timestep)
         self.cell.run_steps = self._runner.run
 
     @property
@@ -220,10 +219,10 @@ def _details(failure: StepFailed | None, cell: Cell) -> Details:
     return failure.details + Details.of(Explanation(advice=text) if text else None)
 
 
-def _too_long(step: ProgramStep, seconds: float) -> StepFailed | None:
-    """The failure of a step that ended, but after its timeout."""
+def _too_long(step: ProgramStep, seconds: float, timestep: float) -> StepFailed | None:
+    """The failure of a step that ended, but a step of the physics or more after its timeout."""
     timeout = step.spec.timeout
-    if timeout is None or seconds <= timeout + TIMEOUT_SLACK:
+    if timeout is None or seconds - timeout < (1 - 1e-6) * timestep:
         return None
     return StepFailed(
         "TIMED_OUT",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -12,7 +11,7 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.joints import ROUNDING, is_measured
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.window import NotObservable, Window
-from harness.language.base import Share
+from harness.language.base import Fraction
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
@@ -27,9 +26,10 @@ class Effort(Predicate):
     quantities = (EFFORT,)
     is_upper_bound = True
 
-    max_fraction: Annotated[Share, Field(gt=0)] = Field(
+    max_fraction: Fraction = Field(
         default=1.0,
-        description="The largest share of its effort limit that a joint may use; 1 is the limit.",
+        description="The largest share of its effort limit that a joint may use; 1 is the limit,"
+        " which a simulated motor never exceeds.",
     )
 
     def signal(self, window: Window) -> MarginSignal:

@@ -28,6 +28,7 @@ from harness.language.formula.formula import (
     signals_of,
 )
 from harness.language.formula.parser import parse_formula, readable
+from harness.language.formula.ranges import decided, range_of_signal
 from harness.recording.run import Run
 from harness.recording.verdict import Verdict
 from harness.robot.description import Joint, RobotDescription
@@ -39,6 +40,7 @@ RANGES: dict[str, Callable[[Joint], tuple[float, float]]] = {
     "effort": lambda joint: (-joint.effort, joint.effort),
 }
 """The smallest and the largest value of a joint's signals, by their names."""
+UNITS_HINT = "angles without a unit are in radians, lengths in metres"
 LARGEST_CUTOFF = 2.0
 """Distances are recorded up to here, however far a formula compares one [m]."""
 
@@ -68,9 +70,8 @@ class Formula(Expectation):
                 "both sides must be of one kind",
             )
         for comparison in comparisons_of(root):
-            if problem := _beyond_range(comparison, robot):
-                hint = "angles without a unit are in radians, lengths in metres"
-                at.scope.problems.add_in_text(at.key("formula"), comparison.start, problem, hint)
+            if problem := _beyond_range(comparison, robot) or _unbreakable(comparison, robot):
+                at.scope.problems.add_in_text(at.key("formula"), comparison.start, *problem)
         known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
         measured = (*MEASURED_WORDS, *at.scope.objects)
         kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
@@ -87,6 +88,10 @@ class Formula(Expectation):
                 if reason:
                     at.scope.problems.add_in_text(at.key("formula"), signal.starts[0], reason, HINT)
 
+    def names(self) -> frozenset[str]:
+        arguments = [signal.arguments for signal in signals_of(parse_formula(self.formula))]
+        return frozenset(name for names in arguments for name in names)
+
     def observations(self) -> Observations:
         root = parse_formula(self.formula)
         return Observations(frozenset(frames_of(root) - {"tcp"}), _furthest(root))
@@ -95,8 +100,27 @@ class Formula(Expectation):
         return formula_verdict(self.formula, window_of(run, self.during or step))
 
 
-def _beyond_range(comparison: Comparison, robot: RobotDescription) -> str:
-    """Why a joint's signal never comes near a number; empty where it may.
+def _unbreakable(comparison: Comparison, robot: RobotDescription) -> tuple[str, str] | None:
+    """Why no run decides a comparison, and what to do; None where a run does."""
+    if not signals_of(comparison):
+        return f"`{comparison.text}` reads no signal of the run", "name one, such as `z(box)`"
+
+    def range_here(signal: Signal) -> tuple[float, float]:
+        """Motors give at most their effort limit."""
+        joint = robot.joint_by_name.get(signal.arguments[0]) if signal.arguments else None
+        if signal.name == "effort" and joint is not None and joint.effort > 0:
+            return RANGES["effort"](joint)
+        return range_of_signal(signal)
+
+    holds = decided(comparison, range_here)
+    if holds is None:
+        return None
+    always = "always" if holds else "never"
+    return f"`{comparison.text}` {always} holds, whatever the run does", UNITS_HINT
+
+
+def _beyond_range(comparison: Comparison, robot: RobotDescription) -> tuple[str, str] | None:
+    """Why a joint's signal never comes near a number, and what to do; None where it may.
 
     A number further beyond the limits than they are apart is taken for one in another unit.
     """
@@ -106,8 +130,9 @@ def _beyond_range(comparison: Comparison, robot: RobotDescription) -> str:
             joint = robot.joint_by_name.get(signal.arguments[0])
             low, high = (-np.inf, np.inf) if joint is None else RANGES[signal.name](joint)
             if abs(limit.value - (low + high) / 2) > 1.5 * (high - low):
-                return f"{signal} is between {low:.3g} and {high:.3g}, never {limit.value:g}"
-    return ""
+                text = f"{signal} is between {low:.3g} and {high:.3g}, never {limit.value:g}"
+                return text, UNITS_HINT
+    return None
 
 
 def _furthest(root: Node) -> float | None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 from pydantic import Field
 
@@ -11,7 +9,7 @@ from harness.assertions.expectation import Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import percentages
 from harness.assertions.window import NotReached, Window, refuse_unrecorded_steps
-from harness.language.base import Share
+from harness.language.base import Fraction
 from harness.language.expectation import Quantity
 from harness.recording.step_results import CartesianPathResult
 from harness.recording.verdict import Measure
@@ -26,7 +24,7 @@ class FractionCheck(Predicate):
     short = "at_least"
     quantities = (FRACTION,)
 
-    at_least: Annotated[Share, Field(ge=0, le=1)] = Field(
+    at_least: Fraction = Field(
         default=1.0, description="The smallest share of each path that must be followed."
     )
 

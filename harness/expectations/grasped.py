@@ -45,7 +45,7 @@ class Grasped(ObjectPredicate):
     It is between the fingers where two sides press it from opposite directions, more than 90
     degrees apart, at places as far from each other as the object is thick: two contacts with
     coefficients of friction of at most 1 can only then balance each other. Closed tips on a larger
-    box are not, nor is what lies on fingers that do not close, nor what is fixed in the world.
+    box are not, nor is what lies on fingers that do not press it, nor what is fixed in the world.
     Fingers may also spread inside a ring. The object slips as its point between the fingers does,
     wherever its origin is. A grasp has lasted for 0.1 s: a blow
     lasts a few milliseconds, and what flies past at 0.5 m/s is 5 cm further by then.

@@ -84,6 +84,9 @@ class GripperState(Predicate):
         if self.named_target is not None and hand is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
 
+    def names(self) -> frozenset[str]:
+        return frozenset()
+
     def signal(self, window: Window) -> MarginSignal:
         """The gripper's joint, or the gap between its pads, or what its last step reported."""
         run = window.run

@@ -62,8 +62,8 @@ class Lifted(ObjectPredicate):
     least half of its weight, friction included; and within it the object moves in the hand by at
     most 5 mm and 0.1 rad. What is struck, bounces, or is thrown through the open hand fails one of
     them. The height above the object's own start counts as far as the motion of the hand has given
-    it since the hold began. An object that lies on fingers that do not close is not lifted unless
-    `cradled` says so.
+    it since the hold began. An object that lies on fingers that do not press it is not lifted
+    unless `cradled` says so.
     """
 
     judged = "eventually"
@@ -164,7 +164,7 @@ class _Hold:
         name = self._name
         if not self._held[sample]:
             lies = cradled(self._run, name)[sample]
-            return f"{name} lies on the fingers, which do not close" if lies else (
+            return f"{name} lies on the fingers, which do not press it" if lies else (
                 f"nothing holds {name}"
             ), []
         duration, moved = float(self._duration[sample]), float(self._moved[sample])

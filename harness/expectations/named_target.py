@@ -38,6 +38,9 @@ class NamedTarget(Predicate):
             is_given = "tolerance" in self.model_fields_set
             check_tolerance(at, state.positions, self.tolerance, is_given)
 
+    def names(self) -> frozenset[str]:
+        return frozenset()
+
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from the named state [rad or m]."""
         robot = window.run.robot

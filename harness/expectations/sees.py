@@ -134,6 +134,9 @@ class Sees(Predicate):
         if self.object is not None:
             at.scope.check_object(self.object, at.key("object"), simulated=True)
 
+    def names(self) -> frozenset[str]:
+        return frozenset() if self.object is None else frozenset({self.object})
+
     def observations(self) -> Observations:
         return Observations(pictures=frozenset({PictureRequest(self.camera, self._kind)}))
 

@@ -12,6 +12,7 @@ from harness.assertions.joints import gripper_joints
 from harness.assertions.margins import MarginSignal, Part, all_of
 from harness.assertions.text import amount
 from harness.assertions.window import NotObservable, Window
+from harness.cell.scope import At
 from harness.core.types import BoolArray, FloatArray
 from harness.language.base import JointValue
 from harness.language.expectation import Quantity
@@ -33,6 +34,16 @@ class TrackingError(Predicate):
         description="The largest difference between a joint's measured position and its command; by"
         " default 0.05 rad, and 5 mm where the joint slides.",
     )
+
+    def check(self, at: At) -> None:
+        robot = at.scope.description
+        joints = [robot.movable_joints[index] for index in robot.group_indices(robot.default_group)]
+        if joints and all(joint.upper - joint.lower <= self.max for joint in joints):
+            at.scope.problems.add(
+                at.key("max"),
+                "no joint of the arm can be that far from its command",
+                "angles without a unit are in radians, lengths in metres",
+            )
 
     def signal(self, window: Window) -> MarginSignal:
         """Largest distance of a joint from its command [rad or m].

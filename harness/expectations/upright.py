@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import Field
@@ -12,7 +13,7 @@ from harness.assertions.poses import UP, physical_poses
 from harness.assertions.text import amount
 from harness.assertions.window import Window
 from harness.core.pose_arrays import angle_between, rotate
-from harness.language.base import AngleBetween
+from harness.language.base import Angle
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
@@ -25,7 +26,7 @@ class Upright(ObjectPredicate):
     quantities = (LEAN,)
     is_proposed = True
 
-    tolerance: Annotated[AngleBetween, Field(gt=0)] = Field(
+    tolerance: Annotated[Angle, Field(gt=0, lt=math.pi)] = Field(
         default=0.1, description="The largest angle between its z axis and the vertical [rad]."
     )
 

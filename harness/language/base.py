@@ -60,6 +60,17 @@ def refuse_tiny(value: float) -> float:
     return value
 
 
+def refuse_percent(value: Any) -> Any:
+    """A share of a whole, as it is written.
+
+    Raises:
+        MistakeError: It is a number of 2 or more, as one in percent is.
+    """
+    if isinstance(value, int | float) and value >= 2:
+        raise MistakeError(f"must be at most 1, not `{value:g}`", f"write `{value:g} %`")
+    return value
+
+
 class SpecModel(BaseModel):
     """A part of a file: unknown keys refused, immutable, numbers finite and bounded.
 
@@ -124,7 +135,8 @@ AngleBetween = Annotated[Angle, Field(le=math.pi)]
 """A tolerance of the angle between two directions or orientations, which is never beyond pi."""
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]
-Fraction = Annotated[Share, Field(gt=0, le=1)]
+Fraction = Annotated[Share, BeforeValidator(refuse_percent), Field(gt=0, le=1)]
+"""A share of a whole."""
 
 Xyz = tuple[Length, Length, Length]
 Rpy = tuple[Angle, Angle, Angle]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from harness.language.base import (
     Angle,
@@ -18,11 +18,12 @@ from harness.language.base import (
     Number,
     Share,
     SpecModel,
+    refuse_percent,
 )
 from harness.language.plugin_field import PluginName
 from harness.language.poses import Pose, Position
 
-Scaling = Annotated[Share, Field(ge=0.001, le=1)]
+Scaling = Annotated[Share, BeforeValidator(refuse_percent), Field(ge=0.001, le=1)]
 """Share of a limit; below a thousandth a motion would take hours."""
 
 

@@ -70,7 +70,7 @@ class HandOver(ABC):
             if cell.end is not None and cell.end.content.get("reason") == "stopped":
                 ended_by = "stopped"
                 break
-            cell.tick()
+            cell.tick(begin + request.timeout)
             self.after()
             if cell.end is not None and (ended_at == np.inf or not cell.is_idle):
                 ended_at = cell.time

@@ -97,16 +97,18 @@ class GripperDrive:
         controls = simulator.controls(whole)
         first = self._recording.count
         stall_samples = round(STALL_TIME / timestep)
+        last = first + max(1, int(timeout / timestep + 1e-6))
         begin, reached, stalled = 0, False, False
-        while (self._recording.count - first) * timestep < timeout and not (reached or stalled):
+        while self._recording.count < last and not (reached or stalled):
             simulator.limit_grip(self._actuator, max_effort)
+            count = min(CHECK_EVERY, last - self._recording.count)
             if begin < len(whole) - 1:
-                end = min(begin + CHECK_EVERY, len(whole) - 1)
+                end = min(begin + count, len(whole) - 1)
                 simulator.follow(whole.part(begin, end), controls[begin : end + 1])
                 begin = end
             else:
                 simulator.command(whole.positions[-1])
-                simulator.hold_samples(CHECK_EVERY)
+                simulator.hold_samples(count)
                 reached = self._miss(position) <= GOAL_TOLERANCE * self._range
             if not reached and self._recording.count - first >= stall_samples:
                 recent = self._recording.joint_positions(self._recording.count - stall_samples)

@@ -212,12 +212,12 @@ class MujocoSimulator:
             StepFailed: TIMED_OUT; the error names what still moves, and its speed.
         """
         name, speed, calm = "", 0.0, 0.0
-        tick = SETTLE_EVERY * self._timestep
-        for _ in range(max(1, int(np.ceil(timeout / tick)))):
-            first = self._recording.count
-            self.hold_samples(SETTLE_EVERY)
+        last = self._recording.count + max(1, int(timeout / self._timestep + 1e-6))
+        while (first := self._recording.count) < last:
+            count = min(SETTLE_EVERY, last - first)
+            self.hold_samples(count)
             name, speed = self._recording.fastest(first)
-            calm = calm + tick if speed < max_velocity else 0.0
+            calm = calm + count * self._timestep if speed < max_velocity else 0.0
             if calm > SETTLE_FOR - 0.5 * self._timestep:
                 return True
         raise StepFailed(

@@ -203,6 +203,52 @@ CONTACT_SCENES = (
         ),
     ),
     Scene(
+        "ball on a jammed gripper",
+        "a ball lies in the gap of fingers that are blocked and shall close, while the arm rises",
+        "objects:\n  - {name: ball, sphere: {radius: 0.03}, mass: 300 g, friction: 0.1, "
+        "in: simulation, pose: {xyz: [0.276, 0, 0.2458]}}\n"
+        "steps:\n  - gripper: {position: 0.004}\n  - wait: 0.3 s\n"
+        "  - inject: {joint_stall: gripper_left_joint}\n  - gripper: close\n" + UP
+        + "  - wait: 0.3 s\n",
+        "the gripper closes, both fingers press it from either side, and it rose by 4 cm",
+        lambda run: rose(run, "ball", 0.04) and touched(run, "ball"),
+        ("grasped: ball", "lifted: {object: ball, above: 4 cm}"),
+        ("lifted: {object: ball, above: 4 cm, cradled: true}",),
+        truth=lambda run: bool(
+            np.ptp(run.signals.joint_positions[-1000:, -2:], axis=0).max() < 1e-3
+        ),
+    ),
+    Scene(
+        "ball on fingers that grip a rod",
+        "the fingers grip a rod, and a ball lies above it in the gap between them",
+        "objects:\n  - {name: post, static: true, in: simulation, "
+        "box: {size: [0.01, 0.02, 0.182]}, pose: {xyz: [0.286, 0, 0.091]}}\n"
+        "  - {name: rod, in: simulation, box: {size: [0.016, 0.044, 0.01]}, mass: 20 g, "
+        "friction: 1, pose: {xyz: [0.286, 0, 0.1871]}}\n"
+        "steps:\n  - gripper: {position: -0.01, max_effort: 15}\n"
+        "  - add_object: {name: ball, in: simulation, mass: 90 g, friction: 0.2, "
+        "pose: {xyz: [0.286, 0, 0.2335]}, sphere: {radius: 0.0275}}\n  - wait: 0.3 s\n" + UP
+        + "  - wait: 0.3 s\n",
+        "the fingers press with 15 N, and both touch the ball, which rose by 4 cm",
+        lambda run: np.ptp(place_of(run, "ball")[-1000:, 2]) > 0.04 and touched(run, "ball"),
+        ("grasped: ball", "lifted: {object: ball, above: 4 cm}"),
+        ("grasped: rod", "lifted: {object: ball, above: 4 cm, cradled: true}"),
+        truth=lambda run: touches(run, "gripper_left_link", "ball")[-500:].max() < 2.0,
+    ),
+    Scene(
+        "ball gripped below its middle",
+        "a ball lies in the gap of the fingers, which close with 1.4 N, while the arm rises",
+        "objects:\n  - {name: ball, sphere: {radius: 0.03}, mass: 60 g, friction: 1, "
+        "in: simulation, pose: {xyz: [0.276, 0, 0.2458]}}\n"
+        "steps:\n  - gripper: {position: 0.004}\n  - wait: 0.3 s\n"
+        "  - gripper: {position: -0.01, max_effort: 1.4}\n" + UP + "  - wait: 0.3 s\n",
+        "normal forces alone would carry it: too strict",
+        lambda run: touched(run, "ball"),
+        (),
+        ("grasped: ball", "lifted: {object: ball, above: 4 cm}"),
+        truth=lambda run: touches(run, "gripper_left_link", "ball")[-500:].min() > 0.5,
+    ),
+    Scene(
         "plank across both fingers",
         "a plank lies on both fingers of the open gripper like on a shelf, while the arm rises",
         "objects:\n  - {name: plank, box: {size: [0.03, 0.11, 0.004]}, mass: 30 g, friction: 2, "

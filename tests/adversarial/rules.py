@@ -61,11 +61,17 @@ RULES = (
             "ball shot up through the half-open hand",
             "ball thrown up that lands on the fingers",
             "ball cradled on two half-open fingers",
+            "ball on a jammed gripper",
+            "ball on fingers that grip a rod",
             "plank across both fingers",
             "box raised between the fingers by a block below it",
             "cube nudged up without gravity",
         ),
-        ("box lifted with a jerk", "ball gripped above its middle"),
+        (
+            "box lifted with a jerk",
+            "ball gripped above its middle",
+            "ball gripped below its middle",
+        ),
     ),
     Rule(
         "A support stands on the ground",

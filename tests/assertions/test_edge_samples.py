@@ -299,7 +299,8 @@ def test_a_gripper_presses_where_it_is_commanded_by_a_hundredth_of_its_range_pas
             pair: rows + np.array([0, 0, 0, 0, 0, 0.5])
             for pair, rows in run.signals.presses.items()
         }
-        run = changed(run, joint_commands=commands, presses=up)
+        efforts = np.full_like(commands, 2.0)
+        run = changed(run, joint_commands=commands, joint_efforts=efforts, presses=up)
         assert verdict(run, Grasped(object="box")).status == status
 
 

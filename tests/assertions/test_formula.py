@@ -215,6 +215,40 @@ def test_a_number_far_beyond_a_joints_limits_is_in_another_unit(tmp_path, text, 
     assert len(found) == is_refused, found
 
 
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("always 0.4 > 0.3", "reads no signal"),
+        ("always z(tcp) > 0.1 and 2 * 3 m > 1 m", "reads no signal"),
+        ("force(robot, robot) >= 0", "always holds"),
+        ("always not speed(tcp) < 0", "never holds"),
+        ("-speed(tcp) <= 0", "always holds"),
+        ("abs(z(tcp)) + 1 m > 0.5", "always holds"),
+        ("0 * z(tcp) > 1", "never holds"),
+        ("max(force(robot, robot), 2) > min(1, force(robot, robot))", "always holds"),
+        ("1 / (1 + force(robot, robot)) <= 1", "always holds"),
+        ("effort(joint1) <= 5", "always holds"),
+        ("-time > 0", "never holds"),
+        ("force(robot, robot) > 0", ""),
+        ("force(robot, robot) <= 0", ""),
+        ("tilt(tcp) < 3.14", ""),
+        ("z(tcp) / speed(tcp) > -1", ""),
+        ("2 - speed(tcp) > 1", ""),
+    ],
+)
+def test_a_comparison_that_no_run_decides_is_refused(tmp_path, text, reason):
+    found = problems(
+        tmp_path, "- wait: 1 s", robot="open_manipulator_x", rest=f"expect: [formula: '{text}']"
+    )
+    assert [reason in message for _, message in found] == ([True] if reason else []), found
+
+
+def test_a_formula_of_numbers_alone_observes_nothing():
+    run = run_of(np.zeros(3), np.zeros(3), np.arange(3.0))
+    with pytest.raises(NotObservable, match="reads no signal"):
+        formula_verdict("always 2 > 1", window_of(run))
+
+
 def _said(text, x, y, times):
     try:
         return formula_verdict(text, window_of(run_of(x, y, times))).status

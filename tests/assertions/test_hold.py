@@ -114,6 +114,30 @@ def test_an_object_is_cradled_where_normal_forces_carry_it_and_the_gripper_stand
     assert not cradled(weightless, "box").any()
 
 
+@pytest.mark.parametrize(
+    ("effort", "stalled", "is_cradled"),
+    [(2.0, "", False), (1.01, "", False), (0.99, "", True), (3.99, "", False), (4.01, "", True),
+     (0.0, "", True), (2.0, "finger", True), (2.0, "shoulder", False)],
+)  # fmt: skip
+def test_fingers_press_an_object_where_the_force_of_the_drive_reaches_it(
+    effort, stalled, is_cradled
+):
+    """Each side presses with 1 N, horizontally; the gap changes twice as fast as the joint."""
+    up = np.array([0.0, 0.0, WEIGHT / 2])
+    presses = {
+        LEFT: pressed(np.ones(N), (0, -0.02, 0), np.array([0, 1, 0]) + up),
+        RIGHT: pressed(np.ones(N), (0, 0.02, 0), np.array([0, -1, 0]) + up),
+    }
+    faults = {"faults": [{"fault": "joint_stall", "target": stalled, "before": False,
+                          "after": True}]}  # fmt: skip
+    steps = (step("inject", 0, 1, "inject", result=faults),) if stalled else ()
+    run = make_run(N, presses=presses, steps=steps)
+    efforts = np.tile([0.0, -effort], (N, 1))
+    commands = run.signals.joint_positions - 0.01
+    run = changed(run, joint_commands=commands, joint_efforts=efforts)
+    assert cradled(run, "box").all() == cradled(run, "box").any() == is_cradled
+
+
 def test_every_side_must_press_with_the_required_force():
     grips = {
         LEFT: pressed(np.full(N, 1.0), (0, -0.02, 0), (0, 1, 0)),
@@ -151,7 +175,7 @@ def test_what_is_not_between_the_fingers_says_why():
 
     assert why((0, 1, 0), (0, -1, 0)) == ""
     assert why((0, 1, 0), (0, 1, 0)) == "they press it from the same side"
-    assert why((0, 0, 1), (0, 0, 1), beyond=0) == "it lies on them and they do not close"
+    assert why((0, 0, 1), (0, 0, 1), beyond=0) == "it lies on them and they do not press it"
     near = why((0, 1, 0), (0, -1, 0), (0, -0.001, 0), (0, 0.001, 0))
     assert near == "they press it at places 2.0 mm apart, and it is 40.0 mm thick"
 

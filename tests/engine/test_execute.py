@@ -1,5 +1,7 @@
 """Steps that are expected to fail, steps in steps, and what check predicts of them."""
 
+import pytest
+
 from tests.engine.front_door import check, failures, run
 
 OUT_OF_REACH = "{pose: {frame: base_link, xyz: [0.9, 0, 0.3], rpy: [180 deg, 0, 0]}}"
@@ -139,12 +141,39 @@ def test_a_step_that_takes_longer_than_its_timeout_fails_whatever_it_is_made_of(
       expect_error: TIMED_OUT
     - wait: 0.2 s
       timeout: 0.2 s
-    - wait: 0.54 s
+    - wait: 0.503 s
       timeout: 0.5 s
+      expect_error: TIMED_OUT
+    - wait: 90 ms
+      timeout: 50 ms
+      expect_error: TIMED_OUT
     """
     result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}")
     assert result.outcome == "passed", [step.message for step in result.steps]
     messages = [step.message for step in result.steps if step.status == "expected error"]
     assert messages[0] == "the step took 1.000 s, its timeout is 0.5 s"
     assert messages[1].startswith("'rh_r1_joint' is at ")
-    assert messages[2] == "the step took 0.600 s, its timeout is 0.5 s"
+    assert messages[2:] == [
+        "the step took 0.600 s, its timeout is 0.5 s",
+        "the step took 0.503 s, its timeout is 0.5 s",
+        "the step took 0.090 s, its timeout is 0.05 s",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("step", "timeout"), [("gripper: {width: 50 mm}", 0.333), ("settle: {}", 0.052)]
+)
+def test_a_step_that_waits_ends_with_its_timeout(tmp_path, step, timeout):
+    steps = f"""
+    - {step}
+      timeout: {timeout} s
+      expect_error: TIMED_OUT
+    """
+    result, _ = run(tmp_path, steps, robot="{gripper: rh_p12_rn_a}")
+    assert result.steps[0].sim_time == pytest.approx(timeout, abs=1e-9)
+
+
+@pytest.mark.parametrize(("seconds", "timeout"), [(0.2, 0.2), (0.2004, 0.2), (0.3, 0.2996)])
+def test_the_rounding_of_a_step_to_samples_is_no_timeout(tmp_path, seconds, timeout):
+    result, _ = run(tmp_path, f"\n- wait: {seconds} s\n  timeout: {timeout} s\n")
+    assert result.outcome == "passed"

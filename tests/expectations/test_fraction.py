@@ -34,7 +34,7 @@ def test_the_least_share_of_the_cartesian_paths_of_a_window_counts():
     assert verdict(run, FractionCheck(at_least=0.7)).status == "passed"
     assert verdict(run, FractionCheck(), "wait").status == "not reached"
     broken = make_run(steps=(step("weld", 0, 50, "cartesian_path", result=followed(None)),))
-    assert verdict(broken, FractionCheck(at_least=0)).status == "not reached"
+    assert verdict(broken, FractionCheck(at_least=0.1)).status == "not reached"
 
 
 def test_a_share_that_is_complete_uses_none_of_its_allowance():

@@ -129,15 +129,20 @@ def test_the_gap_is_measured_where_the_fingers_touch():
     assert "at places 20.0 mm apart, and it is 40.0 mm thick" in answer.reason
 
 
-@pytest.mark.parametrize(("commanded", "status"), [(0.02, "failed"), (0.0, "passed")])
-def test_what_lies_on_fingers_is_grasped_only_if_they_close(commanded, status):
+@pytest.mark.parametrize(
+    ("commanded", "effort", "status"),
+    [(0.02, 1.6, "failed"), (0.0, 1.6, "passed"), (0.0, 16.0, "failed")],
+)
+def test_what_lies_on_fingers_is_grasped_only_if_they_press_it(commanded, effort, status):
+    """With 0.8 N each, along the gap, which changes twice as fast as the joint."""
     slanted = presses(((0, -0.02, 0), (0, 0.8, 0.6)), ((0, 0.02, 0), (0, -0.8, 0.6)))
     commands = np.tile([0.0, commanded], (200, 1))
-    run = lift_run(presses=slanted, joint_commands=commands)
+    efforts = np.tile([0.0, effort], (200, 1))
+    run = lift_run(presses=slanted, joint_commands=commands, joint_efforts=efforts)
     answer = verdict(run, Grasped(object="box"))
     assert answer.status == status
     if status == "failed":
-        assert "it lies on them and they do not close" in answer.reason
+        assert "it lies on them and they do not press it" in answer.reason
         assert verdict(run, Lifted(object="box", above=0.05)).status == "failed"
         assert verdict(run, Lifted(object="box", above=0.05, cradled=True)).status == "passed"
 

@@ -129,9 +129,10 @@ class ExternalCell:
                 return
         raise GoalRefused("no such goal is active")
 
-    def tick(self) -> None:
-        """Move time by one tick, and see which goals ended."""
-        servos, count = self._servos, self._rows
+    def tick(self, end: float = np.inf) -> None:
+        """Move time by one tick, but not beyond `end` [s], and see which goals ended."""
+        servos, left = self._servos, (end - self.time) / self._servos.timestep
+        count = self._rows if left >= self._rows else max(1, round(left))
         first = servos.sample_count
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * servos.timestep
         rows = self._set_points(times)
