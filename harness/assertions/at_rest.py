@@ -34,9 +34,9 @@ def still_part(
 
     Args:
         window: The window that is judged.
-        quantity: The speed.
+        quantity: The speed that a verdict shows.
         speed: The speed at each sample of the run, shape (N,).
-        limit: The largest speed.
+        limit: The largest speed that counts as rest.
         here: Samples at which its body is in the scene, as of `calm`.
         more: Further fields of the part.
     """

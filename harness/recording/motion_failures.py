@@ -202,7 +202,7 @@ class CircleFailure(AdvisedFailure):
         reason: Start and goal are one point; two others of the points are one, or all three are on
             one line; the distances of start and goal from the centre differ.
         start_radius: The start's distance from the centre [m].
-        goal_radius: The goal's [m].
+        goal_radius: The goal's distance from the centre [m].
     """
 
     reason: Literal["whole turn", "one line", "radii"]

@@ -37,7 +37,7 @@ class ObjectRecord:
             unknown.
         mass: The mass [kg]; NaN when unknown.
         visuals: Shapes that pictures show, where they differ from `shapes`.
-        center_of_mass: In the object's frame [m]; empty when unknown.
+        center_of_mass: The centre of mass in the object's frame [m]; empty when unknown.
     """
 
     name: str
@@ -98,7 +98,8 @@ class AttachmentRecord:
         end_time: When it was let go [s]; inf when that did not happen.
         pose_in_link: T_link_object at attaching, as the planner believes it (xyz, quat wxyz).
         represents: The simulated object it stands for; its own name when it is that object.
-        welded: From when to when the physics fixed it to the hand, too [s]; None if it did not.
+        welded: The times from and to which the physics fixed it to the hand [s]; None if it did
+            not.
     """
 
     object: str

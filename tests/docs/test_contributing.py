@@ -1,4 +1,4 @@
-"""The worked examples of CONTRIBUTING.md, carried out in a copy of the repository."""
+"""The worked examples of docs/guides/extending.md, carried out in a copy of the repository."""
 
 import os
 import re
@@ -13,8 +13,9 @@ import pytest
 
 from docs import ROOT
 
-PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-SECTIONS = dict(re.findall(r"(?ms)^## (.+?)\n(.*?)(?=^## |\Z)", PAGE))
+PAGE = (ROOT / "docs/guides/extending.md").read_text(encoding="utf-8")
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+SECTIONS = dict(re.findall(r"(?ms)^## (.+?)\n(.*?)(?=^## |\Z)", f"{CONTRIBUTING}\n{PAGE}"))
 NEW_FILE = re.compile(r"(?ms)^`([\w./-]+)`:\n\n```\w+\n(.*?)^```$")
 ROW = re.compile(r"(?ms)^At the end of the table in `([\w./-]+)`:\n\n```text\n(.*?)^```$")
 COMMANDS = re.compile(r"(?ms)^```sh\n(.*?)^```$")

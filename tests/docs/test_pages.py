@@ -89,7 +89,7 @@ PATH = re.compile(rf"`({TREE}/[\w./-]+)`")
 @pytest.mark.parametrize("page", PAGES, ids=name)
 def test_every_path_that_a_page_names_exists(page):
     text = page.read_text(encoding="utf-8")
-    new_files = re.findall(r"(?m)^`(.*)`:\n\n```", text)  # those that CONTRIBUTING.md has written
+    new_files = re.findall(r"(?m)^`(.*)`:\n\n```", text)  # those that extending.md has written
     named = set(PATH.findall(CODE.sub("", text))) - set(new_files)
     assert [path for path in named if not (ROOT / path).exists()] == []
 

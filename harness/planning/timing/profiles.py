@@ -11,7 +11,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 
 GRID = 0.002
-"""Durations are whole multiples of this [s]: the physics' default timestep."""
+"""Durations are whole multiples of this [s]: two of the physics' default time steps."""
 
 SAMPLE_PERIOD = 0.01
 """Time between set points [s]: five steps of the grid; the last one may be nearer."""

@@ -56,7 +56,7 @@ class Files:
         """The files of a name that may have wildcards.
 
         Args:
-            name: The path.
+            name: The path as the file states it.
             missing: Why a package in it is missing.
 
         Raises:

@@ -16,7 +16,7 @@ def xacro_names(texts: Substitution, files: Files, budget: Budget) -> Namespace:
 
     Args:
         texts: The arguments of the rendering.
-        files: Its files.
+        files: The files that the rendering may read.
         budget: The steps that are left.
     """
 

@@ -46,7 +46,7 @@ def render(path: Path, args: Mapping[str, Any], packages: PackagePath) -> XmlEle
 
     Args:
         path: The path of the file.
-        args: Its arguments.
+        args: The values of its arguments.
         packages: Search path for `$(find ...)`, and the folders that may be read.
 
     Raises:
@@ -263,13 +263,13 @@ class _Rendering:
         blocks = [
             each for each in self._inside(item, scope).children if each.tag not in (TEXT, LITERAL)
         ]
-        wanted = [each.name for each in macro.parameters if each.is_block]
-        if len(blocks) > len(wanted):
-            blocks[len(wanted)].refuse(f"the macro '{macro.name}' takes no block more")
-        if len(blocks) < len(wanted):
-            name = wanted[len(blocks)].lstrip("*")
+        expected = [each.name for each in macro.parameters if each.is_block]
+        if len(blocks) > len(expected):
+            blocks[len(expected)].refuse(f"the macro '{macro.name}' takes no block more")
+        if len(blocks) < len(expected):
+            name = expected[len(blocks)].lstrip("*")
             item.refuse(f"the macro '{macro.name}' lacks its block '{name}'")
-        for name, block in zip(wanted, blocks, strict=True):
+        for name, block in zip(expected, blocks, strict=True):
             inner.symbols[name] = block
 
     def _default(self, item: XmlElement, macro: Macro, each: Parameter, scope: Scope) -> Any:
