@@ -17,9 +17,13 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Rgba
+from harness.core.memory import limited_memory
 from harness.core.types import FloatArray, IntArray
 from harness.core.user_cache import cached, store
-from harness.robot.mesh_file import metres_per_unit, read_triangles
+from harness.language.base import LARGEST_NUMBER
+from harness.language.files.yaml_file import read_text
+from harness.robot.collada import refuse_unreadable
+from harness.robot.mesh_file import MEMORY, metres_per_unit, read_triangles
 
 GRID = 0.002
 """Size of the cells in which vertices merge [m]: about a pixel in a picture of an arm."""
@@ -46,7 +50,13 @@ class MeshPart:
 def coarsen(
     vertices: FloatArray, faces: IntArray, grid: float = GRID
 ) -> tuple[FloatArray, IntArray]:
-    """Merge vertices that share a cell of a grid [m] and drop triangles that collapse."""
+    """Merge vertices that share a cell of a grid [m] and drop triangles that collapse.
+
+    Raises:
+        ValueError: A vertex is not finite, or too far away.
+    """
+    if not np.abs(vertices).max(initial=0.0) <= LARGEST_NUMBER:
+        raise ValueError("a vertex is not finite or too far away")
     cells = np.round(vertices / grid).astype(np.int64)
     cells -= cells.min(axis=0, initial=0)
     numbers = np.ravel_multi_index((*cells.T,), (*(cells.max(axis=0, initial=0) + 1),))
@@ -138,8 +148,9 @@ def _material_file(path: Path, content: bytes) -> str:
     library = re.search(rb"^mtllib (.*)$", content, re.MULTILINE)
     if library is None:
         return ""
-    file = path.parent / library.group(1).decode("utf-8", errors="replace").strip()
-    return file.read_text(encoding="utf-8") if file.is_file() else ""
+    file = (path.parent / library.group(1).decode("utf-8", errors="replace").strip()).resolve()
+    is_next_to_it = file.is_relative_to(path.parent.resolve()) and file.is_file()
+    return read_text(file, kind="MTL file") if is_next_to_it else ""
 
 
 def _colours(materials: str) -> dict[str, Rgba]:
@@ -155,15 +166,17 @@ def _colours(materials: str) -> dict[str, Rgba]:
 def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
     """The triangles of a mesh file, one part per colour; empty when it cannot be read."""
     try:
-        match geometry.path.suffix.lower():
-            case ".obj":
-                return load_obj(geometry)
-            case ".dae":
-                return load_collada(geometry)
-            case _:
-                triangles = read_triangles(geometry)
-                return (MeshPart(*coarsen(triangles.vertices, triangles.faces), None),)
-    except (RobotError, OSError, ValueError, IndexError):
+        metres_per_unit(geometry)  # refuses what is too large
+        with limited_memory(MEMORY):
+            match geometry.path.suffix.lower():
+                case ".obj":
+                    return load_obj(geometry)
+                case ".dae":
+                    return load_collada(geometry)
+                case _:
+                    triangles = read_triangles(geometry)
+                    return (MeshPart(*coarsen(triangles.vertices, triangles.faces), None),)
+    except (RobotError, OSError, ValueError, IndexError, MemoryError):
         return ()
 
 
@@ -179,6 +192,7 @@ def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
     import collada.common
 
     scale = metres_per_unit(geometry) * np.array(geometry.scale)
+    refuse_unreadable(geometry.path.read_bytes(), geometry.path.name)
     unknown = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
     try:
         with warnings.catch_warnings():  # the library uses numpy.matrix

@@ -9,7 +9,7 @@ file turned, whose second axis points up by convention.
 from __future__ import annotations
 
 import io
-import re
+import logging
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,8 +21,11 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape
+from harness.core.memory import limited_memory
 from harness.core.solids import solid_of
 from harness.core.types import FloatArray, IntArray
+from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE
+from harness.robot.collada import HEADER, metres_of_unit, refuse_unreadable
 from harness.robot.decomposition.convex_parts import Decomposition, stored_decomposition
 
 SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".glb")
@@ -30,13 +33,12 @@ KINDS = "STL, OBJ, DAE, PLY or GLB"
 LARGEST_FILE = 64_000_000
 """Largest mesh file [bytes]."""
 
-FLAT = 1e-9
-"""Thickness below which a mesh is flat [m]."""
+FLAT = 1e-6
+"""Thickness below which a mesh is flat, as a share of its extent: coordinates in single precision
+are rounded to a tenth of that. Qhull crashes on points within 1e-8."""
 
-HEADER = 20_000
-UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
-ROOT = b"<COLLADA"
-DECLARATION = re.compile(rb"<!\s*(DOCTYPE|ENTITY)", re.IGNORECASE)
+MEMORY = 1_000_000_000
+"""Most memory for reading a file; one of the largest size takes about as much [bytes]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,32 +61,65 @@ def read_triangles(geometry: Mesh) -> Triangles:
     Raises:
         RobotError: The file is of an unsupported kind, too large, or damaged.
     """
-    import trimesh  # here: most robots are loaded without reading their meshes
-
     path = geometry.path
     scale = np.array(geometry.scale, dtype=float) * metres_per_unit(geometry)
     kind = path.suffix[1:].lower()
+    content = path.read_bytes()
+    if kind == "dae":
+        refuse_unreadable(content, path.name)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            # As a stream, so that the file cannot name others, such as textures.
-            stream = io.BytesIO(path.read_bytes())
-            scene = trimesh.load_scene(stream, file_type=kind, process=False, skip_materials=True)
-            mesh = scene.to_mesh()
-            mesh.merge_vertices(merge_tex=True, merge_norm=True)
-        vertices, faces = np.array(mesh.vertices) * scale, np.array(mesh.faces, dtype=np.int64)
-        corners = vertices[faces]
+        with limited_memory(MEMORY):
+            vertices, faces = _read(content, kind)
+            vertices = vertices * scale
+            corners = vertices[faces]
+    except MemoryError as error:
+        raise RobotError(f"{path.name} takes more than {MEMORY / 1e9:g} GB to read") from error
     except Exception as error:  # every format's reader has errors of its own
         raise RobotError(
             f"{path.name} cannot be read: it is damaged or not in {kind.upper()} format"
         ) from error
-    if not np.isfinite(corners).all():
-        raise RobotError(f"{path.name} has corners that are not finite numbers: it is damaged")
     if not len(faces):
         raise RobotError(
             f"{path.name} has no triangles: it is empty, damaged or not in {kind.upper()} format"
         )
+    if not np.isfinite(corners).all():
+        raise RobotError(f"{path.name} has corners that are not finite numbers: it is damaged")
+    if np.abs(corners).max() > LARGEST_NUMBER:
+        raise RobotError(f"{path.name} has corners farther away than {LARGEST_NUMBER:g} m")
     return Triangles(vertices, faces)
+
+
+def _read(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
+    """Vertices in the file's unit and triangles.
+
+    Raises:
+        Exception: Of the reader of its format, where the file is damaged.
+    """
+    import trimesh  # here: most robots are loaded without reading their meshes
+
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # not the tracebacks of damaged files
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        # As a stream, so that the file cannot name others, such as textures.
+        stream = io.BytesIO(content)
+        scene = trimesh.load_scene(stream, file_type=kind, process=False, skip_materials=True)
+        mesh = scene.to_mesh()
+        if kind == "stl" and not _is_whole_stl(content, len(mesh.faces)):
+            raise ValueError("some facets have not three corners")
+        if len(mesh.faces) and mesh.faces.min() < 0:
+            raise ValueError("a corner does not exist")  # NumPy would count it from the end
+        mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
+
+
+def _is_whole_stl(content: bytes, count: int) -> bool:
+    """Whether a reader found all facets of an STL file; those of a binary one it counts itself."""
+    if len(content) == 84 + 50 * int.from_bytes(content[80:84], "little"):
+        return True
+    lines = [line for line in content.lower().splitlines() if b"solid" not in line]
+    words = b"\n".join(lines).split()
+    facets = words.count(b"facet"), words.count(b"endfacet")
+    return facets == (count, count) and words.count(b"vertex") == 3 * count
 
 
 @lru_cache(maxsize=128)
@@ -130,11 +165,15 @@ def _hull_errors(geometry: Mesh) -> Iterator[None]:
         raise RobotError(f"{geometry.path.name} has no convex hull: {reason}") from error
 
 
-def _thickness(points: FloatArray) -> float:
-    """Extent of points along the normal of the plane nearest to them [m]."""
+def _is_flat(points: FloatArray) -> bool:
+    """Whether points are in a plane, or all in one place, within `FLAT` of their extent."""
     away = points - points.mean(axis=0)
+    extent = float(np.ptp(away, axis=0).max())
+    if extent < SMALLEST_SIZE:
+        return True
+    away = away / extent
     normal = np.linalg.eigh(away.T @ away)[1][:, 0]
-    return float(np.ptp(away @ normal))
+    return float(np.ptp(away @ normal)) < FLAT
 
 
 def hull_of(points: FloatArray) -> Any:
@@ -145,7 +184,7 @@ def hull_of(points: FloatArray) -> Any:
     """
     import coal
 
-    if _thickness(points) < FLAT:  # Qhull can crash on such points
+    if _is_flat(points):  # Qhull can crash on such points
         raise RuntimeError("its points are in a plane")
 
     corners = coal.StdVec_Vec3s()
@@ -171,7 +210,7 @@ def decomposition_of(geometry: Mesh) -> Decomposition:
 def _decomposition(geometry: Mesh) -> Decomposition:
     def triangles() -> FloatArray:
         mesh = read_triangles(geometry)
-        if _thickness(mesh.vertices) < FLAT:  # Qhull can crash on such points
+        if _is_flat(mesh.vertices):  # Qhull can crash on such points
             raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch")
         return mesh.vertices[mesh.faces]
 
@@ -190,7 +229,7 @@ def metres_per_unit(geometry: Mesh) -> float:
     """Metres of a COLLADA file's unit; 1 for other files, which are in metres.
 
     Raises:
-        RobotError: The file is of an unsupported kind, too large, or declares entities.
+        RobotError: The file is of an unsupported kind, too large, or not COLLADA.
     """
     path = geometry.path
     suffix = path.suffix.lower()
@@ -207,13 +246,7 @@ def metres_per_unit(geometry: Mesh) -> float:
         raise RobotError(f"{path.name} has {size / 1e6:.0f} MB; at most {largest:.0f} MB are read")
     if suffix != ".dae":
         return 1.0
-    if ROOT not in header:
-        raise RobotError(f"{path.name} is not a COLLADA file")
-    if DECLARATION.search(header):
-        raise RobotError(f"{path.name} declares a document type or entities, which are not read")
-    found = UNIT.search(header)
-    unit = float(found[1]) if found else 1.0
-    return unit if unit > 0 else 1.0
+    return metres_of_unit(header, path.name)
 
 
 def hull_solid(geometry: Mesh) -> tuple[float, FloatArray, FloatArray]:

@@ -145,8 +145,12 @@ def _with_states(description: RobotDescription, spec: RobotSpec) -> tuple[NamedS
                 f"groups: {', '.join(description.groups)}",
             )
         for name, positions in named.items():
+            where = f"named_states.{group}.{name}"
             for joint, position in positions.items():
-                _within(description, joint, position, f"named_states.{group}.{name}")
+                _within(description, joint, position, where)
+            hand = description.gripper
+            if hand is not None and hand.group == group and hand.joint not in positions:
+                raise RobotOptionError(where, f"it does not place '{hand.joint}' of the gripper")
             states[group, name] = NamedState(name, group, dict(positions))
     return tuple(states.values())
 

@@ -121,7 +121,7 @@ def test_planner_and_physics_touch_the_same_hull(tmp_path):
         ("a.stl", "", "damaged or not in STL format"),
         ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "is flat"),
         ("a.obj", OBJ.replace("0.0", "nan", 1), "corners that are not finite numbers"),
-        ("a.dae", "<!DOCTYPE a>" + DAE.format(unit=1), "declares a document type"),
+        ("a.dae", "<!DOCTYPE a>" + DAE.format(unit=1), "a DOCTYPE, and with it"),
         ("a.ply", "ply", "damaged or not in PLY format"),
         ("a.3ds", "3ds", "not a STL, OBJ, DAE, PLY or GLB file"),
         ("a.stl", "x" * 64_000_001, "at most 64 MB"),

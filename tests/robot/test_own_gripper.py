@@ -321,3 +321,19 @@ def test_a_hand_that_does_not_grasp_is_reported(tmp_path, hand, words):
     assert any(words in note for note in load_arm(tmp_path).notes)
     with pytest.raises(RobotError, match="'hand' is not a gripper"):
         load_arm(tmp_path, gripper="hand")
+
+
+@pytest.mark.parametrize("inside", ["", '<joint name="right_joint" value="0.01"/>'])
+def test_a_state_of_the_hand_without_its_joint_is_left_out(tmp_path, inside):
+    state = f'<group_state name="close" group="hand">{inside}</group_state>'
+    write(tmp_path, group=GROUP + state)
+    arm = load_arm(tmp_path)
+    assert any("SRDF: 'close' of 'hand' left out" in note for note in arm.notes)
+    states = arm.states_of("hand")
+    assert states["close"].positions[arm.gripper.joint] == arm.gripper.closed_position
+
+
+def test_a_state_of_the_scenario_places_the_joint_of_the_gripper(tmp_path):
+    write(tmp_path)
+    with pytest.raises(RobotError, match="it does not place 'left_joint' of the gripper"):
+        load_arm(tmp_path, named_states={"hand": {"half": {}}})

@@ -12,8 +12,14 @@ from harness.core.types import BoolArray, FloatArray, IntArray
 MOST_VOXELS = 1_000_000
 """Largest number of voxels of a grid."""
 
+MOST_POINTS = 10_000_000
+"""Approximate largest number of points on the surface; each takes about 100 bytes meanwhile."""
+
 FINEST = 0.0005
 """Smallest edge of a voxel [m]."""
+
+POINTS_PER_EDGE = 3
+"""Points on the surface for each edge of a voxel, so that none is missed."""
 
 BORDER = 2
 """Empty voxels around the mesh."""
@@ -64,13 +70,14 @@ def solid_grid(triangles: FloatArray, edge: float) -> SolidGrid:
 
     Args:
         triangles: Corners [m], shape (M, 3, 3).
-        edge: The requested edge of a voxel [m]; larger where `MOST_VOXELS` require it.
+        edge: The requested edge of a voxel [m]; larger where `MOST_VOXELS` or `MOST_POINTS` require
+            it, the latter for triangles that fill a space without order.
     """
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
-    edge = _edge(high - low, edge)
+    edge = _edge(high - low, _area(triangles), edge)
     origin = low - (BORDER + 0.5) * edge
     shape = np.ceil((high - origin) / edge).astype(np.int64) + BORDER
-    points = surface_points(triangles, edge / 3)
+    points = surface_points(triangles, edge / POINTS_PER_EDGE)
     voxel = ((points - origin) / edge).astype(np.int64)
     first = np.full(shape, -1)
     first[tuple(voxel[::-1].T)] = np.arange(len(points))[::-1]  # the last assignment stays
@@ -79,9 +86,18 @@ def solid_grid(triangles: FloatArray, edge: float) -> SolidGrid:
     return SolidGrid(origin, edge, depth, points[first[surface]])
 
 
-def _edge(size: FloatArray, edge: float) -> float:
+def _area(triangles: FloatArray) -> float:
+    """The area of triangles [m^2]."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
+
+
+def _edge(size: FloatArray, area: float, edge: float) -> float:
     edge = max(edge, FINEST)
-    while np.prod(np.ceil(size / edge) + 2 * BORDER + 1) > MOST_VOXELS:
+    while (
+        np.prod(np.ceil(size / edge) + 2 * BORDER + 1) > MOST_VOXELS
+        or area * (POINTS_PER_EDGE / edge) ** 2 > MOST_POINTS
+    ):
         edge *= 1.05
     return edge
 

@@ -133,7 +133,7 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
     )
     has_body = hand.has_shape(palm) and palm not in pads
     body = hand.middle(palm, closed) if has_body else np.zeros(3)
-    srdf = _with_states(srdf, facts)
+    srdf = _with_states(srdf, facts, notes)
     center = hand.center(pads, closed)
     return IntegratedGripper(facts, urdf, srdf, center, body, tuple(pairs), tuple(notes))
 
@@ -398,16 +398,25 @@ def _outermost(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, .
     return sorted(links, key=reach, reverse=True)
 
 
-def _with_states(srdf: Srdf, facts: GripperFacts) -> Srdf:
-    """The SRDF with states `open` and `close` of the hand, unless it has such ones."""
-    named = {state.name.lower() for state in srdf.states if state.group == facts.group}
+def _with_states(srdf: Srdf, facts: GripperFacts, notes: list[str]) -> Srdf:
+    """The SRDF with states `open` and `close` of the hand, unless it has such ones.
+
+    States of the hand that do not place its joint are left out.
+    """
+    own = [state for state in srdf.states if state.group == facts.group]
+    empty = [state for state in own if facts.joint not in state.positions]
+    if empty:
+        names = ", ".join(f"'{state.name}'" for state in empty)
+        notes.append(f"SRDF: {names} of '{facts.group}' left out: '{facts.joint}' is not placed")
+    named = {state.name.lower() for state in own if state not in empty}
     ends = {"open": facts.open_position, "closed": facts.closed_position}
     added = (
         NamedState(STATES[word][0], facts.group, {facts.joint: position})
         for word, position in ends.items()
         if named.isdisjoint(STATES[word])
     )
-    return replace(srdf, states=(*srdf.states, *added))
+    kept = (state for state in srdf.states if state not in empty)
+    return replace(srdf, states=(*kept, *added))
 
 
 def _state(srdf: Srdf, group: str, joint: str, word: str, default: float) -> float:
