@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.errors import RobotOptionError
 from harness.core.geometry import CollisionMode, Mesh, Shape, reach, undivided
 from harness.core.suggestion import did_you_mean
-from harness.robot.description import RobotDescription
+from harness.robot.description import Link, RobotDescription
 from harness.robot.mesh_file import decomposition_of
 
 LEAST_LENGTH = 0.05
@@ -48,6 +48,28 @@ def collision_shapes(
     return tuple(found)
 
 
+def with_collision_modes(
+    links: Iterable[Link],
+    words: CollisionMode | Mapping[str, CollisionMode] | None,
+    mode: CollisionMode | None,
+) -> tuple[Link, ...]:
+    """Links whose meshes have their collision mode, still whole; arguments as below."""
+
+    def mode_of(link: str) -> CollisionMode | None:
+        return (words.get(link) if isinstance(words, Mapping) else words) or mode
+
+    def with_mode(shape: Shape, link: str) -> Shape:
+        mesh = shape.geometry
+        if not isinstance(mesh, Mesh):
+            return shape
+        return replace(shape, geometry=replace(mesh, collision=mesh.collision or mode_of(link)))
+
+    return tuple(
+        replace(link, collisions=tuple(with_mode(shape, link.name) for shape in link.collisions))
+        for link in links
+    )
+
+
 def with_collision_shapes(
     description: RobotDescription,
     links: CollisionMode | Mapping[str, CollisionMode] | None,
@@ -64,10 +86,7 @@ def with_collision_shapes(
         RobotOptionError: A link is not known.
         RobotError: A mesh cannot be read, or is flat.
     """
-    by_link: Mapping[str, CollisionMode | None] = (
-        links if isinstance(links, Mapping) else dict.fromkeys(description.link_names, links)
-    )
-    for name in by_link:
+    for name in links if isinstance(links, Mapping) else ():
         if name not in description.link_names:
             hint = did_you_mean(name, description.link_names, "links")
             raise RobotOptionError(
@@ -76,10 +95,8 @@ def with_collision_shapes(
     described = replace(
         description,
         links=tuple(
-            replace(
-                link, collisions=collision_shapes(link.collisions, by_link.get(link.name) or mode)
-            )
-            for link in description.links
+            replace(link, collisions=collision_shapes(link.collisions))
+            for link in with_collision_modes(description.links, links, mode)
         ),
     )
     notes = [*parts_notes({link.name: link.collisions for link in described.links})]

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.geometry import Mesh, Shape
 from harness.core.solids import point_inertia
-from harness.robot.collision_shapes import convex_shapes
+from harness.robot.collision_shapes import collision_shapes
 from harness.robot.description import Inertial, Link
 from harness.robot.mesh_file import hull_solid, shape_solid
 from harness.robot.tree import carriers
@@ -111,12 +111,16 @@ def _with_mass(link: Link) -> Link:
 
 
 def _solids(shape: Shape) -> Sequence[Shape]:
-    """A shape's convex parts, or its hull where parts overlap so much that they are larger."""
-    parts = convex_shapes([shape])
-    if not isinstance(shape.geometry, Mesh):
-        return parts
+    """A shape's convex parts, or its hull where parts overlap so much that they are larger.
+
+    They are the same however the shape collides, and so is the mass.
+    """
+    mesh = shape.geometry
+    if not isinstance(mesh, Mesh):
+        return [shape]
+    parts = collision_shapes([replace(shape, geometry=replace(mesh, collision="parts"))])
     volumes = [hull_solid(part.geometry)[0] for part in parts if isinstance(part.geometry, Mesh)]
-    return parts if sum(volumes) < hull_solid(shape.geometry)[0] else [shape]
+    return parts if sum(volumes) < hull_solid(mesh)[0] else [shape]
 
 
 def solid_inertial(shapes: Sequence[Shape]) -> Inertial:

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.core.geometry import CollisionMode
 from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
+from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
 from harness.robot.description import WORLD, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
@@ -27,12 +29,15 @@ RENAMED_ROOT = "robot_world"
 """New name of a robot's root link that is named `world`, like the root of every composed robot."""
 
 
-def read_robot(spec: RobotSpec, base_dir: Path) -> RobotPart:
+def read_robot(
+    spec: RobotSpec, base_dir: Path, collision: CollisionMode | None = None
+) -> RobotPart:
     """The robot of `urdf:`, `xacro:` or `mjcf:`, with its SRDF or a default one.
 
     Args:
         spec: The `robot:` of the scenario.
         base_dir: The scenario's folder, to which paths are relative.
+        collision: How meshes collide whose link the robot's `collision` does not have.
 
     Raises:
         SpecError: A file has mistakes; at line and column.
@@ -53,6 +58,7 @@ def read_robot(spec: RobotSpec, base_dir: Path) -> RobotPart:
         document = render(path, spec.args, packages) if is_xacro else read_bounded(path)
         urdf, states, excluded = parse_urdf(document, path.parent, str(path), packages), (), {}
     urdf = _without_world(urdf)
+    urdf = replace(urdf, links=with_collision_modes(urdf.links, spec.collision, collision))
     if srdf_path is None:
         srdf = _default_srdf(spec, urdf, states)
     else:

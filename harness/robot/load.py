@@ -124,7 +124,7 @@ def _loaded_once(bundled: _Bundled, collision: CollisionMode | None) -> RobotDes
 
 
 def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotDescription:
-    main, tool = _parts(spec, base_dir)
+    main, tool = _parts(spec, base_dir, collision)
     description = compose_robot(main, tool, spec.base.se3())
     if spec.kinematics is not None:
         note = f"the joints' poses are those of the calibration {spec.kinematics}"
@@ -146,7 +146,9 @@ def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) ->
     return with_collision_shapes(description, links, collision)
 
 
-def _parts(spec: RobotSpec, base_dir: Path) -> tuple[RobotPart | None, RobotPart | None]:
+def _parts(
+    spec: RobotSpec, base_dir: Path, collision: CollisionMode | None
+) -> tuple[RobotPart | None, RobotPart | None]:
     """The arm, without the gripper that another one replaces, and the gripper.
 
     Raises:
@@ -156,7 +158,7 @@ def _parts(spec: RobotSpec, base_dir: Path) -> tuple[RobotPart | None, RobotPart
         raise RobotOptionError(
             "base", f"it is a pose in the frame 'world', not in '{spec.base.frame}'"
         )
-    main, tool = _main(spec, base_dir), None
+    main, tool = _main(spec, base_dir, collision), None
     if spec.gripper is not None and not (main and _is_own(main, spec.gripper)):
         own = [group.name for group in main.srdf.groups] if main and spec.model is None else []
         tool = _part(spec.gripper, "gripper", {}, base_dir, own)
@@ -181,10 +183,10 @@ def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:
     return replace(main, urdf=replace(main.urdf, joints=calibrated(main.urdf.joints, path)))
 
 
-def _main(spec: RobotSpec, base_dir: Path) -> RobotPart | None:
+def _main(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotPart | None:
     """The arm, or a gripper without an arm; None when only `gripper` is given."""
     if spec.urdf is not None or spec.xacro is not None or spec.mjcf is not None:
-        return read_robot(spec, base_dir)
+        return read_robot(spec, base_dir, collision)
     for key in OF_FILES:
         if getattr(spec, key):
             raise RobotOptionError(key, "it requires a robot's file: `urdf`, `xacro` or `mjcf`")
