@@ -85,6 +85,27 @@ def test_the_parent_of_the_end_effector_is_the_tcp_if_it_is_at_the_pads(tmp_path
     assert load_arm(tmp_path).tcp_link == "between"
 
 
+MARKER = '<visual><geometry><box size="0.01 0.01 0.01"/></geometry></visual>'
+
+
+@pytest.mark.parametrize("name", ["end_effector_link", "ee_link", "grasp_frame"])
+@pytest.mark.parametrize("options", [{}, {"srdf": None}])
+def test_a_frame_with_a_visible_marker_is_the_tcp(tmp_path, name, options):
+    write(tmp_path, HAND + FRAME.format(name, "0 0 0.073", MARKER))
+    arm = load_arm(tmp_path, **options)
+    assert arm.tcp_link == name
+    assert any(
+        note == f"TCP: '{name}', 23 mm from the middle between the pads" for note in arm.notes
+    )
+
+
+def test_the_parent_of_an_end_effector_without_a_parent_group_is_the_tcp(tmp_path):
+    frame = FRAME.format("point", "0 0 0.08", LIGHT + MARKER)
+    tool = '<end_effector name="e" parent_link="point" group="hand"/>'
+    write(tmp_path, HAND + frame, GROUP.splitlines()[0] + tool)
+    assert load_arm(tmp_path).tcp_link == "point"
+
+
 def approach(arm):
     state = arm.with_mimics(arm.start_positions())
     axis = approach_axis(arm, PinocchioKinematics(arm), CoalScene(arm), state)
@@ -240,6 +261,23 @@ def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_ou
     assert (gripper.closed_position, gripper.widths[0, 1]) == pytest.approx((0, 0), abs=1e-6)
     corner = 0.05 * math.sin(1.2)
     assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
+
+
+@pytest.mark.parametrize(("height", "inward"), [(0.03, 0.008), (0.035, 0.004)])
+def test_the_opening_of_fingers_that_slide_is_the_gap_at_their_pads(tmp_path, height, inward):
+    """Each finger has a carriage at its root, which extends farther inward than its pad."""
+    hand = HAND
+    for side in (1, -1):
+        carriage = (
+            f'<collision><origin xyz="0 {side * (0.01 - inward)} {height}"/>'
+            '<geometry><box size="0.02 0.01 0.02"/></geometry></collision></link>\n'
+            f'  <joint name="{"left" if side > 0 else "right"}_joint" type="prismatic"'
+        )
+        hand = hand.replace("</link>\n" + carriage.split("</link>\n")[1], carriage)
+    assert hand.count("<collision>") == 4
+    write(tmp_path, hand)
+    gripper = load_arm(tmp_path).gripper
+    assert gripper.widths[:, 1] == pytest.approx(0.01 + 2 * gripper.widths[:, 0], abs=1e-6)
 
 
 def test_a_gripper_has_states_open_and_close_even_if_no_srdf_names_them(tmp_path):

@@ -205,10 +205,15 @@ def _fingers(urdf: Urdf, joint: Joint) -> list[tuple[Joint, tuple[str, ...]]]:
 
 
 class _Hand:
-    """The hand's solids at joint positions, in palm axes."""
+    """The hand's solids at joint positions, in palm axes.
+
+    Attributes:
+        out: Direction from the palm to the fingers, shape (3,).
+    """
 
     def __init__(self, urdf: Urdf, joint: Joint, palm: str) -> None:
         self.urdf, self.joint, self.palm = urdf, joint, palm
+        self.out = np.zeros(3)
         self._links: Mapping[str, Link] = {link.name: link for link in urdf.links}
         self._poses: dict[float, dict[str, SE3]] = {}
         self._parts: dict[str, list[tuple[Any, SE3]]] = {}
@@ -229,15 +234,35 @@ class _Hand:
         return [(coal_geometry(s), pose @ s.pose) for s in self._links[link].collisions]
 
     def parts(self, link: str, *, is_jaw: bool) -> list[tuple[Any, SE3]]:
-        """The convex parts of a pad that close on objects, with their T_link_shape."""
+        """The convex parts of a pad that close on objects, with their T_link_shape.
+
+        Of a jaw that turns, it is what is farther from the hinge than half of its reach; of one of
+        two fingers that slide, the outer half of what extends beyond the palm.
+        """
         if link not in self._parts:
             shapes = convex_shapes(self._links[link].collisions)
             self._parts[link] = [(coal_geometry(shape), shape.pose) for shape in shapes]
-            hinge = self._hinge(link) if is_jaw else None
-            if hinge is not None:
-                points = [pose.apply(hull_corners(solid)) for solid, pose in self._parts[link]]
-                self._parts[link] = _outer_half(points, *hinge)
+            corners = [pose.apply(hull_corners(solid)) for solid, pose in self._parts[link]]
+            if is_jaw and (hinge := self._hinge(link)) is not None:
+                origin, axis = hinge
+                arms = np.concatenate(corners) - origin
+                arms = arms - np.outer(arms @ axis, axis)
+                farthest = max(arms, key=np.linalg.norm)
+                farthest = farthest / np.linalg.norm(farthest)
+                self._parts[link] = _outer_half(corners, farthest, farthest @ origin)
+            elif not is_jaw and self.joint.kind == "prismatic" and self.out.any():
+                out = self.pose(link, self.joint.lower).rotation.T @ self.out
+                self._parts[link] = _outer_half(corners, out, self._end_of_palm(link))
         return self._parts[link]
+
+    def _end_of_palm(self, link: str) -> float:
+        """How far out from a link's origin the palm extends [m]; -inf for one without shapes."""
+        lower = self.joint.lower
+        ends = [
+            float(np.max(pose.apply(hull_corners(solid)) @ self.out))
+            for solid, pose in self.solids(self.palm, lower)
+        ]
+        return max(ends, default=-np.inf) - float(self.pose(link, lower).translation @ self.out)
 
     def _hinge(self, link: str) -> tuple[FloatArray, FloatArray] | None:
         """Origin [m] and axis of the hinge on which a jaw turns, link axes; None for the palm."""
@@ -317,17 +342,19 @@ def _distance(first: Any, first_pose: SE3, second: Any, second_pose: SE3) -> flo
 
 
 def _outer_half(
-    parts: Sequence[FloatArray], hinge: FloatArray, axis: FloatArray
+    parts: Sequence[FloatArray], out: FloatArray, start: float
 ) -> list[tuple[Any, SE3]]:
-    """What of convex parts (N, 3) is farther from a hinge than half of the farthest corner."""
-    arms = [points - hinge for points in parts]
-    arms = [arm - np.outer(arm @ axis, axis) for arm in arms]
-    farthest = max(np.concatenate(arms), key=np.linalg.norm)
-    reach = float(np.linalg.norm(farthest))
-    cut = [
-        _above(points, arm @ farthest / reach - 0.5 * reach)
-        for points, arm in zip(parts, arms, strict=True)
-    ]
+    """What of convex parts (N, 3) is beyond the middle between a start and the farthest corner.
+
+    Args:
+        parts: Corners of the parts.
+        out: The unit vector along which distances count.
+        start: The distance where the half begins; before the parts, their nearest corner.
+    """
+    heights = [points @ out for points in parts]
+    low, high = (end(map(end, heights)) for end in (min, max))
+    middle = 0.5 * (high + (start if low < start < high else low))
+    cut = [_above(points, each - middle) for points, each in zip(parts, heights, strict=True)]
     return [(hull_of(points), SE3.identity()) for points in cut if len(points) > 3]
 
 
@@ -374,7 +401,13 @@ def _pads(
     hand: _Hand, sides: Sequence[tuple[str, ...]], positions: FloatArray
 ) -> tuple[tuple[str, str], FloatArray]:
     """The link of each side that touches objects, and the gap between them at positions."""
-    first, second = (_outermost(hand, links, sides) for links in sides)
+    fingers = [link for side in sides for link in side if link != hand.palm]
+    middle = 0.5 * (hand.joint.lower + hand.joint.upper)
+    out = np.mean([hand.middle(link, middle) for link in fingers], axis=0)
+    if hand.has_shape(hand.palm) and not any(hand.palm in links for links in sides):
+        out = out - hand.middle(hand.palm, middle)
+    hand.out = out / max(float(np.linalg.norm(out)), 1e-9)
+    first, second = (_outermost(hand, links, middle) for links in sides)
     ranks = [(n, m) for n in range(len(first)) for m in range(len(second))]
     ranks.sort(key=lambda rank: (abs(rank[0] - rank[1]), sum(rank)))  # alike fingers, alike pads
     for pads in ((first[n], second[m]) for n, m in ranks):
@@ -384,16 +417,12 @@ def _pads(
     raise NoGripperError(f"the gap between {first[0]} and {second[0]} does not change")
 
 
-def _outermost(hand: _Hand, links: tuple[str, ...], sides: Sequence[tuple[str, ...]]) -> list[str]:
+def _outermost(hand: _Hand, links: tuple[str, ...], position: float) -> list[str]:
     """The links of a side, the one that extends farthest from the palm first."""
-    middle = 0.5 * (hand.joint.lower + hand.joint.upper)
-    fingers = [link for side in sides for link in side if link != hand.palm]
-    out = np.mean([hand.middle(link, middle) for link in fingers], axis=0)
-    out = out / max(float(np.linalg.norm(out)), 1e-9)
 
     def reach(link: str) -> float:
-        boxes = hand.boxes(link, middle)
-        return max(float(np.maximum(low * out, high * out).sum()) for low, high in boxes)
+        boxes = hand.boxes(link, position)
+        return max(float(np.maximum(low * hand.out, high * hand.out).sum()) for low, high in boxes)
 
     return sorted(links, key=reach, reverse=True)
 

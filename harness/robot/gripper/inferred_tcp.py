@@ -89,13 +89,13 @@ def _states_chain(srdf: Srdf, arm: PlanningGroup) -> bool:
 def _frames(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) -> Iterator[tuple[int, str]]:
     """Links that may be the TCP, rigidly connected with the arm's tip, and their ranks.
 
-    Those that the SRDF states may have shapes.
+    Those that the SRDF states may have shapes, and those named as frames a visible marker.
     """
     carrier = carriers(urdf.joints, urdf.root)
     parents = {
         tool.parent_link
         for tool in srdf.end_effectors
-        if arm.name in (tool.parent_group, tool.group)
+        if arm.name in (tool.parent_group, tool.group) or not tool.parent_group
     }
     stated = parents | ({tip} if _states_chain(srdf, arm) else set())
     for link in urdf.links:
@@ -103,13 +103,13 @@ def _frames(urdf: Urdf, srdf: Srdf, arm: PlanningGroup, tip: str) -> Iterator[tu
             continue
         if link.name in stated:
             yield 0, link.name
-        elif link.collisions or link.visuals:
+        elif link.collisions:
             continue
         elif TCP_NAMES.search(link.name):
             yield 0, link.name
         elif TOOL_NAMES.search(link.name):
             yield 1, link.name
-        elif link.inertial is None:
+        elif not link.visuals and link.inertial is None:
             yield 2, link.name
 
 
