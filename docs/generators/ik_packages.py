@@ -52,7 +52,7 @@ is called as its own examples call it ([packages.py](../../scenarios/ik_test/pac
 tolerances of 0.1 mm and 1 mrad. To measure again:
 
 ```sh
-pip install 'armharness[ik-packages]' && python -m docs.generators.ik_packages
+pip install -e '.[ik-packages]' && python -m docs.generators.ik_packages
 ```
 
 A third of the targets are at singularities or close to them, and another third have joints at their

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.campaigns.filters import Query, parameter_paths, sql_of
+from harness.core.extras import install_command
 from harness.core.files import replaced, writing
 from harness.suite.discovery import UsageError
 
@@ -104,7 +105,7 @@ def write_parquet(connection: sqlite3.Connection, query: Query, file: Path) -> i
         import pyarrow as pa
         import pyarrow.parquet as pq
     except ImportError:
-        raise UsageError("--parquet needs pyarrow: pip install 'armharness[parquet]'") from None
+        raise UsageError(f"--parquet needs pyarrow: {install_command('parquet')}") from None
     names, numbers = columns(connection), _numeric_columns(connection)
     schema = pa.schema([(name, pa.float64() if name in numbers else pa.string()) for name in names])
     found = rows(connection, query)

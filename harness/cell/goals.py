@@ -10,6 +10,7 @@ import numpy as np
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
+from harness.core.state_words import stated_name
 from harness.core.types import FloatArray
 from harness.language.goals import ArcFields, CartesianLimitsSpec, GoalFields, GoalTolerance
 from harness.language.planning import PathConstraintsSpec as ConstraintsSpec
@@ -60,7 +61,8 @@ def arm_has_six_joints(description: RobotDescription, group: str | None) -> bool
 def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
     """The goal with every number known, in the world, for the present state of the cell."""
     if goal.named_target is not None:
-        state = cell.description.states_of(group)[goal.named_target]
+        states = cell.description.states_of(group)
+        state = states[stated_name(goal.named_target, states)]
         return JointGoal(_joint_positions(cell, group, dict(state.positions)))
     if goal.joints is not None:
         return JointGoal(_joint_positions(cell, group, goal.joints))

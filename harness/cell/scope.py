@@ -8,6 +8,7 @@ from typing import Literal
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
+from harness.core.state_words import stated_name
 from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
@@ -264,7 +265,7 @@ class Scope:
             message = f"there is no named state '{state}': the group '{group}' has no named states"
             hint = "write joint positions, or add a <group_state> to the SRDF"
             self.problems.add(loc, message, hint, needs=("robot",))
-        elif state not in states and group in self.description.groups:
+        elif stated_name(state, states) not in states and group in self.description.groups:
             self.problems.unknown(
                 loc, f"named state of {group} called", state, states, needs=("robot",)
             )

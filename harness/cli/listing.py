@@ -9,22 +9,34 @@ from harness.cli.output import complain, say
 from harness.cli.shared_options import add_plugin
 
 Rows = Iterable[tuple[str, ...]]
+SHOWN = 3
+"""Names of a kind that `harness list` alone prints."""
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
     """Add the options of `harness list`."""
-    command.add_argument("kind", choices=tuple(LISTINGS), help="what to list")
+    text = "what to list; without it, how much there is of each kind"
+    command.add_argument("kind", choices=tuple(LISTINGS), nargs="?", help=text)
     add_plugin(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print one line for each thing of a kind."""
-    table = list(LISTINGS[arguments.kind]())
+    """Print one line for each thing of a kind; without a kind, one line for each kind."""
+    listing = _kinds if arguments.kind is None else LISTINGS[arguments.kind]
+    table = list(listing())
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for row in table:
         cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
         say("  ".join(cells).rstrip())
     return 0
+
+
+def _kinds() -> Rows:
+    for kind, listing in LISTINGS.items():
+        rows = list(listing())
+        first = ", ".join(row[0] for row in rows[:SHOWN])
+        more = ", ..." if len(rows) > SHOWN else ""
+        yield f"harness list {kind}", str(len(rows)), first + more
 
 
 def _robots() -> Rows:

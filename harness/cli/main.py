@@ -46,6 +46,15 @@ MODULES = {"list": "listing", "import": "importing", "ik-test": "ik_test"}
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
 130 interrupted (Ctrl-C, SIGTERM)"""
+GREETING = """\
+harness runs scenarios of robot arms: planned, simulated in physics, judged, reported.
+
+  harness list scenarios          the scenarios that are bundled
+  harness run NAME                run one, and write its report page
+  harness new first.scenario.yaml write a commented scenario that passes, to begin with
+  harness studio                  open a robot cell in the browser
+  harness --help                  all commands"""
+"""What `harness` alone prints."""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
 STREAMS = ("stdin", "stdout", "stderr")
 
@@ -88,7 +97,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from contextlib import nullcontext
 
     parsed = _parser().parse_args(arguments)
-    from harness.cli.output import OutputError, complain, guarded, only_json_on_stdout
+    from harness.cli.output import OutputError, complain, guarded, only_json_on_stdout, say
+
+    if parsed.command is None:
+        for line in GREETING.splitlines():
+            say(line)
+        return 0
 
     if parsed.command in ("run", "search", "studio"):
         gc.enable()
@@ -223,7 +237,6 @@ def _parser() -> argparse.ArgumentParser:
         title="commands",
         metavar="COMMAND",
         dest="command",
-        required=True,
         parser_class=CommandParser,
     )
     for name, text in COMMANDS.items():

@@ -11,9 +11,8 @@ from harness.cli.output import complain, say
 from harness.cli.robot_options import ROBOT
 from harness.cli.shared_options import add_plugin
 from harness.cli.view import open_browser
+from harness.core.extras import install_command
 from harness.suite.discovery import SUFFIX, UsageError, discover
-
-EXTRA = "the studio needs packages that are not installed: pip install 'armharness[studio]'"
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -94,7 +93,10 @@ def refuse_missing_extra() -> None:
         import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
         import viser as _viser  # noqa: F401
     except ImportError as error:
-        raise UsageError(f"{EXTRA} ({error})") from error
+        command = install_command("studio")
+        raise UsageError(
+            f"the studio needs packages that are not installed: {command} ({error})"
+        ) from error
 
 
 def start_of(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:

@@ -24,6 +24,7 @@ from harness.assertions.window import (
     refuse_unrecorded_steps,
 )
 from harness.cell.scope import At
+from harness.core.state_words import stated_name
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
 from harness.language.expectation import Quantity
 from harness.recording.execution_failures import GripperOutcome
@@ -95,7 +96,8 @@ class GripperState(Predicate):
         if self.stalled is not None:
             return _stalled(self.stalled, window)
         if self.named_target is not None:
-            state = run.robot.named_states.get(hand.group, {}).get(self.named_target)
+            states = run.robot.named_states.get(hand.group, {})
+            state = states.get(stated_name(self.named_target, states))
             if state is None:
                 raise NotObservable(f"there is no named state '{self.named_target}' of the gripper")
             return near(window, state, self.tolerance, given)

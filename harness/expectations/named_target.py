@@ -11,6 +11,7 @@ from harness.assertions.joints import POSITION_ERROR, check_tolerance, near
 from harness.assertions.margins import MarginSignal
 from harness.assertions.window import NotObservable, Window
 from harness.cell.scope import At
+from harness.core.state_words import stated_name
 from harness.language.base import JointValue, Name
 
 
@@ -33,7 +34,8 @@ class NamedTarget(Predicate):
     def check(self, at: At) -> None:
         group = at.scope.check_group(self.group, at.key("group"))
         at.scope.check_state(group, self.state, at.key("state"))
-        state = at.scope.description.states_of(group).get(self.state)
+        states = at.scope.description.states_of(group)
+        state = states.get(stated_name(self.state, states))
         if state is not None:
             is_given = "tolerance" in self.model_fields_set
             check_tolerance(at, state.positions, self.tolerance, is_given)
@@ -47,7 +49,8 @@ class NamedTarget(Predicate):
         hand = "" if robot.gripper is None else robot.gripper.group
         every = [robot.arm_group, hand, *sorted(robot.named_states)]
         for group in every if self.group is None else [self.group]:
-            state = robot.named_states.get(group, {}).get(self.state)
+            states = robot.named_states.get(group, {})
+            state = states.get(stated_name(self.state, states))
             if state is not None:
                 is_given = "tolerance" in self.model_fields_set
                 return near(window, state, self.tolerance, is_given)

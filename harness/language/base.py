@@ -87,6 +87,9 @@ class SpecModel(BaseModel):
         extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
     )
 
+    not_yet: ClassVar[Mapping[str, str]] = {}
+    """Keys that people expect and that do not exist yet, and what to do without them."""
+
     @classmethod
     def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
         """What to write instead of a key of other programs, given all keys next to it."""

@@ -162,7 +162,8 @@ class CaseKeys(SpecModel):
     )
     parametrize: Parametrize | None = Field(
         default=None,
-        description="The cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named cases.",
+        description="The cases: a grid `{robot.model: [ur3e, ur5e]}`, or a list of named cases: "
+        "`[{id: small, params.size: 2 cm}, {id: large, params.size: 4 cm}]`.",
     )
     randomize: dict[str, Distribution] | None = Field(
         default=None,

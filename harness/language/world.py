@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -146,6 +146,23 @@ class ObjectSpec(SpecModel):
 
     One with `visuals` alone is seen and touches nothing.
     """
+
+    not_yet: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("conveyor", "belt"),
+            "no surface moves what lies on it: a belt at rest is a `static` box, and the step"
+            " `move_object` puts an object farther along",
+        ),
+        **dict.fromkeys(
+            ("suction", "vacuum", "magnet"),
+            "a gripper holds objects between two finger sides; `grasp: {object: NAME, mode: weld}`"
+            " also fixes the object to the hand",
+        ),
+        **dict.fromkeys(
+            ("joint", "joints", "hinge"),
+            "objects are rigid: there are no doors and drawers that open",
+        ),
+    }
 
     name: Name = Field(
         description="The name of the object, unique in the scene; not `robot`, `gripper`, `any`,"

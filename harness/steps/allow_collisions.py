@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from typing import Annotated, ClassVar
 
 from pydantic import Field
@@ -14,7 +15,7 @@ from harness.language.files.source import Loc
 from harness.language.step import AnyStep, Block, Step
 from harness.recording.step_results import AllowedCollisions
 
-SPECIAL_BODIES = ("robot",)
+SPECIAL_BODIES = ("robot", "gripper")
 
 
 class AllowCollisions(Step):
@@ -24,7 +25,7 @@ class AllowCollisions(Step):
     results = (AllowedCollisions,)
 
     pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)] = Field(
-        description="Pairs of names of links or objects that may touch."
+        description="Pairs of names of links or objects that may touch; `gripper`: all its links."
     )
     during: Annotated[tuple[AnyStep, ...], Field(min_length=1)] = Field(
         description="The steps during which the pairs may touch."
@@ -37,19 +38,32 @@ class AllowCollisions(Step):
         yield Block(self.during, (*loc, "during"), f"{path}.during")
 
     def check(self, at: At) -> None:
+        if any("gripper" in pair for pair in self.pairs):
+            at.scope.check_gripper(at.key("pairs"), "`gripper`")
         for index, pair in enumerate(self.pairs):
             for side, name in enumerate(pair):
                 at.scope.check_body(name, at.key("pairs", index, side), special=SPECIAL_BODIES)
 
     def execute(self, cell: Cell) -> None:
         """Allow the pairs, run the nested steps, and check the pairs again, whatever happened."""
-        cell.report(AllowedCollisions(self.pairs))
-        cell.scene.set_allowed(self.pairs, allowed=True)
-        cell.allowed.append(self.pairs)
+        pairs = tuple(
+            (first, second)
+            for pair in self.pairs
+            for first, second in product(*(_bodies(name, cell) for name in pair))
+            if first != second
+        )
+        cell.report(AllowedCollisions(pairs))
+        cell.scene.set_allowed(pairs, allowed=True)
+        cell.allowed.append(pairs)
         try:
             cell.run_children()
         finally:
             cell.allowed.pop()
-            cell.scene.set_allowed(self.pairs, allowed=False)
+            cell.scene.set_allowed(pairs, allowed=False)
             for around in cell.allowed:  # may name the same pairs
                 cell.scene.set_allowed(around, allowed=True)
+
+
+def _bodies(name: str, cell: Cell) -> tuple[str, ...]:
+    """The bodies that a name stands for in the planning scene."""
+    return (cell.gripper.palm_link, *cell.gripper.links) if name == "gripper" else (name,)

@@ -10,6 +10,7 @@ from harness.cell.cell import Cell
 from harness.cell.grasping import GAP_SLACK, position_for_width
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
+from harness.core.state_words import stated_name
 from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
 from harness.language.step import Step
 from harness.ports.simulation import GripperResult
@@ -90,7 +91,7 @@ class Gripper(Step):
         effort = self.max_effort or hand.grip_effort
         if self.named_target is not None:
             states = cell.description.states_of(hand.group)
-            return states[self.named_target].positions[hand.joint], effort
+            return states[stated_name(self.named_target, states)].positions[hand.joint], effort
         if self.position is not None:
             return self.position, effort
         return position_for_width(hand, self.width or 0.0), effort

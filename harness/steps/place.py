@@ -9,7 +9,7 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
@@ -17,8 +17,10 @@ from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, wi
 from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch, matrix_pitch, turn_about
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
+from harness.cell.supports import places_on
 from harness.core.details import Detail
 from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.geometry import Plane
 from harness.core.spatial import SE3
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
@@ -72,8 +74,10 @@ class Place(Step):
     there, the object is also tried turned about the vertical, provided that it stands upright and
     looks the same after the turn: by half turns, square ones by quarters, round ones by eighths;
     the step reports which `turn` of how many `turns`.
-    A `pose` with a rotation is kept to. An arm of fewer than six joints brings the object to the
-    position alone, with the pitch that the gripper has: the object turns with the arm.
+    A `pose` with a rotation is kept to. With `on`, the place nearest to the middle of the support's
+    top is taken that is free and that the arm can reach. An arm of fewer than six joints brings the
+    object to the position alone, with the pitch that the gripper has: the object turns with the
+    arm.
     """
 
     verb: ClassVar[str] = "place"
@@ -83,7 +87,14 @@ class Place(Step):
         default=None,
         description="The name of the object; the default is the one that was picked last.",
     )
-    pose: Pose = Field(description="The pose at which the object will stand.")
+    pose: Pose | None = Field(
+        default=None, description="The pose at which the object will stand; or `on`."
+    )
+    on: Name | None = Field(
+        default=None,
+        description="The object stands on the top of this one, upright, at the free place that is "
+        "nearest to the middle.",
+    )
     approach: Travel | None = Field(
         default=None,
         description="The approach; the default is straight down, 10 cm or as much as the arm can "
@@ -93,14 +104,23 @@ class Place(Step):
         default=None, description="The retreat; the default is 3 to 10 cm back along the gripper."
     )
 
+    @model_validator(mode="after")
+    def _one_place(self) -> Place:
+        if (self.pose is None) == (self.on is None):
+            raise ValueError("exactly one of `pose`, and `on` with the name of a support")
+        return self
+
     def summary(self) -> str:
-        return self.object or ""
+        return " on ".join(filter(None, (self.object or "", self.on)))
 
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`place`")
-        at.check_pose(self.pose, "pose")
+        if self.pose is not None:
+            at.check_pose(self.pose, "pose")
         if self.object is not None:
             at.scope.check_object(self.object, at.key("object"))
+        if self.on is not None:
+            _check_support(self.on, self.object, at)
         check_travel(self.approach, at, "approach")
         check_travel(self.retreat, at, "retreat")
         name = self.object or next(reversed(at.scope.attached), None)
@@ -135,14 +155,33 @@ class Place(Step):
         cell.run_children(children)
 
 
+def _check_support(name: str, held: str | None, at: At) -> None:
+    """Report a support that is not there, or has no middle."""
+    at.scope.check_present(name, at.key("on"))
+    support, message = at.scope.objects.get(name), ""
+    if name == held:
+        message = f"'{name}' cannot stand on itself"
+    elif support is not None and any(isinstance(each.geometry, Plane) for each in support.shapes):
+        message = f"'{name}' has no middle that something could be put on"
+    elif support is not None and not support.in_planning:
+        message = f"'{name}' is unknown to the planner"
+    if message:
+        hint = (
+            "give a place in its stead: `pose: {xyz: [X, Y, Z]}`, where the object's origin will be"
+        )
+        at.scope.problems.add(at.key("on"), message, hint)
+
+
 def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     """The free motion above the place, and the straight one down to it."""
     along = -UP
     if step.approach is not None and step.approach.direction is not None:
         along = cell.world_direction(step.approach.direction)
+    stated = places_on(name, step.on, cell) if step.on else [cell.world_pose(_pose_of(step))]
     targets = [
-        SE3(stated.rotation, stated.translation + PUT_DOWN_GAP * UP)
-        for stated in _equal_poses(name, step, cell)
+        SE3(equal.rotation, equal.translation + PUT_DOWN_GAP * UP)
+        for each in stated
+        for equal in _equal_poses(name, each, step, cell)
     ]
     goals = [_tcp_goal(name, target, step, cell) for target in targets]
     approaches = [
@@ -165,7 +204,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     try:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
-        advice = place_advice(name, step, failure, cell)
+        advice = place_advice(name, stated[0], failure, cell)
         raise with_advice(failure, advice) from failure
     least = max(refused, key=lambda touch: touch.distance, default=None)
     if least is not None and least.distance < -DEEPEST_OPENING:
@@ -204,8 +243,8 @@ def _no_room(name: str, touch: Touch) -> StepFailed:
     )
 
 
-def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) -> str:
-    """What to do in the keys of a place."""
+def place_advice(name: str, stated: SE3, failure: PlanningFailed, cell: Cell) -> str:
+    """What to do in the keys of a place, at `stated`."""
     if failure.code.startswith("START_STATE"):
         return ""  # the planner's advice is about the start
     if fails_at_start_of_approach(failure):
@@ -213,7 +252,7 @@ def place_advice(name: str, step: Place, failure: PlanningFailed, cell: Cell) ->
             "the place can be reached, the start of the approach cannot: give `approach` a shorter"
             " `distance`, or another `direction`"
         )
-    stated, nearest = cell.world_pose(step.pose), nearest_state(failure)
+    nearest = nearest_state(failure)
     if failure.code == "GOAL_IN_COLLISION":
         if nearest is None or nearest.nearest_free is None:
             return ""
@@ -240,13 +279,19 @@ def _xyz(point: FloatArray) -> str:
     return f"xyz: [{x:g}, {y:g}, {z:g}]"
 
 
-def _equal_poses(name: str, step: Place, cell: Cell) -> list[SE3]:
+def _pose_of(step: Place) -> Pose:
+    if step.pose is None:
+        raise ValueError("the model has a pose, or a support")
+    return step.pose
+
+
+def _equal_poses(name: str, stated: SE3, step: Place, cell: Cell) -> list[SE3]:
     """T_world_object of every way to put it there: as stated, then turned further and further.
 
     An arm of fewer than six joints turns the object as it reaches there: it has one way.
     """
-    stated = cell.world_pose(step.pose)
-    if step.pose.has_rotation or not arm_has_six_joints(cell.description, step.group):
+    is_turned = step.pose is not None and step.pose.has_rotation
+    if is_turned or not arm_has_six_joints(cell.description, step.group):
         return [stated]
     obj = cell.presence[name].obj
     count = equal_turns((*obj.shapes, *obj.visuals), stated.rotation) or TURNS_OF_ROUND

@@ -11,6 +11,7 @@ from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.details import Detail
 from harness.core.errors import StepFailed
+from harness.core.state_words import stated_name
 from harness.language.base import JointValue, Name
 from harness.language.step import Step
 from harness.recording.execution_failures import GripperOutcome
@@ -76,7 +77,8 @@ class Release(Step):
             raise StepFailed("INVALID_OBJECT_NAME", message)
         target = hand.open_position
         if self.named_target is not None:
-            target = cell.description.states_of(hand.group)[self.named_target].positions[hand.joint]
+            states = cell.description.states_of(hand.group)
+            target = states[stated_name(self.named_target, states)].positions[hand.joint]
         elif self.position is not None:
             target = self.position
         cell.unweld(name)

@@ -12,6 +12,7 @@ from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_arc, check_goal
 from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
 from harness.cell.scope import At, Scope
+from harness.core.state_words import stated_name
 from harness.core.types import FloatArray
 from harness.language.base import NonNegativeLength, SpecModel
 from harness.language.goals import ArcFields, GoalFields, LineFields
@@ -158,9 +159,10 @@ def _place_of_joints(goal: GoalFields, group: str, scope: Scope) -> LinkPosition
         return None
     states = description.states_of(group)
     if goal.named_target is not None:
-        if goal.named_target not in states:
+        name = stated_name(goal.named_target, states)
+        if name not in states:
             return None
-        given = dict(states[goal.named_target].positions)
+        given = dict(states[name].positions)
     else:
         given = dict(goal.joints or {})
     names = description.groups[group].joint_names

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import HarnessError
+from harness.core.extras import install_command
 from harness.core.registry import VARIABLE as PLUGINS
 from harness.reporting.result import CaseResult
 from harness.robot.packages import SEARCH_VARIABLE as PACKAGES
@@ -51,8 +52,8 @@ def check_cluster(name: str) -> None:
         import ray  # noqa: F401  # pyright: ignore[reportMissingImports, reportUnusedImport]
     except ImportError:
         raise UsageError(
-            "--on ray needs Ray, which is no part of this installation: pip install"
-            " 'armharness[cluster]'"
+            "--on ray needs Ray, which is no part of this installation:"
+            f" {install_command('cluster')}"
         ) from None
 
 

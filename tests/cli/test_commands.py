@@ -1,14 +1,18 @@
 import json
 import re
+import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from packaging.requirements import Requirement
 
 from harness import __version__
 from harness.cli.main import main
+from harness.core.extras import install_command
 from harness.core.spatial import xyzw_from_wxyz
 from harness.language.step import STEPS
 from harness.recording.read_run import read_run
@@ -263,3 +267,34 @@ def test_a_place_for_reports_does_not_matter_where_none_is_written(tmp_path, mon
     (tmp_path / "reports").write_text("a file")
     assert main(["run", "missing.scenario.yaml", "--no-report"]) == 2
     assert "--report-dir" not in capsys.readouterr().err
+
+
+def test_the_command_alone_greets_with_commands_that_exist(capsys):
+    from harness.cli.main import COMMANDS
+
+    assert main([]) == 0
+    shown = re.findall(r"^  harness (\S+)", capsys.readouterr().out, re.MULTILINE)
+    assert shown[-1] == "--help"
+    assert set(shown[:-1]) <= set(COMMANDS)
+
+
+def test_a_list_without_a_kind_has_one_line_for_each_kind(capsys):
+    from harness.cli.listing import LISTINGS
+
+    assert main(["list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[2] for line in lines] == list(LISTINGS)
+    assert main(["list", "worlds"]) == 0
+    worlds = capsys.readouterr().out.split()
+    [line] = [line for line in lines if "list worlds" in line]
+    assert line.split()[3] == str(len(worlds))
+
+
+@pytest.mark.parametrize("extra", ["studio", "parquet", "cluster"])
+def test_the_command_that_installs_an_extra_names_its_packages(extra):
+    """The distribution itself is on no index."""
+    words = shlex.split(install_command(extra))
+    assert words[:4] == [sys.executable, "-m", "pip", "install"]
+    project = tomllib.loads(Path(__file__).parents[2].joinpath("pyproject.toml").read_text())
+    stated = project["project"]["optional-dependencies"][extra]
+    assert {str(Requirement(word)) for word in words[4:]} == {str(Requirement(s)) for s in stated}

@@ -35,7 +35,7 @@ states that can be reached. (Not every state can be reached: with joints of two 
 regions are not connected.)
 
 ```sh
-pip install 'armharness[packages]'
+pip install -e '.[packages]'
 python -m pytest -m packages          # tries all arms, and compares them with this page
 python -m tests.packages.page         # tries all arms, and writes this page
 ```

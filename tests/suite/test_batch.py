@@ -135,5 +135,5 @@ def test_a_missing_ray_is_named_with_the_way_to_install_it(tmp_path, monkeypatch
     monkeypatch.setitem(sys.modules, "ray", None)
     Path("wait.scenario.yaml").write_text(SCENARIO)
     assert main(["run", "wait.scenario.yaml", "--on", "ray"]) == 2
-    assert "pip install 'armharness[cluster]'" in capsys.readouterr().err
+    assert "-m pip install 'ray[client]>=2.40'" in capsys.readouterr().err
     assert not Path("reports").exists()

@@ -294,7 +294,8 @@ def _model(
     Raises:
         SpecError: With the problems found before and all that are found here.
     """
-    lines = SourceMap(models_shape(written, model, problems, notes))
+    guessed: set[tuple[str, int, int]] = set()
+    lines = SourceMap(models_shape(written, model, problems, notes, guessed))
     data = lines.root.plain()
     try:
         loaded = model.model_validate(data)
@@ -305,7 +306,7 @@ def _model(
         problems += (
             problem
             for problem in problems_of(independent, lines)
-            if (problem.path, problem.line, problem.column) not in known
+            if (problem.path, problem.line, problem.column) not in known | guessed
         )
         raise _BrokenError(problems, lines, *_remains(data, model, errors)) from None
     if problems:

@@ -113,7 +113,7 @@ def _is_misspelt(word: str, near: str, content: Located, model: object) -> bool:
     if is_slip(word, near):
         return True
     keys = content.value.keys() if isinstance(content.value, dict) else ()
-    return is_model(model) and all(key in keys_of(model) for key in keys)
+    return bool(keys) and is_model(model) and all(key in keys_of(model) for key in keys)
 
 
 def with_temporal_word(word: str) -> tuple[str, str] | None:

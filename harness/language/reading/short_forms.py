@@ -8,13 +8,13 @@ is left out, so that pydantic continues with the rest. Every value keeps its pla
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, cast, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
 from harness.core.errors import Problem
-from harness.core.suggestion import did_you_mean, nearest
+from harness.core.suggestion import SYNONYMS, did_you_mean, is_slip, nearest
 from harness.language.annotations import bare, branches, is_model, keys_of, units_of
 from harness.language.base import SpecModel
 from harness.language.expectation import CHECK, ExpectationFields, PredicateFields
@@ -44,19 +44,27 @@ def models_shape(
     model: type[SpecModel],
     problems: list[Problem],
     notes: list[Problem] | None = None,
+    guessed: set[tuple[str, int, int]] | None = None,
 ) -> Located:
     """A file's values in the shape of its model.
 
     Args:
         notes: Gets what is allowed and probably not intended.
+        guessed: Gets the places of values whose keys are guesses, whose mistakes may be none.
     """
-    return _Shaper(problems, [] if notes is None else notes).model(item, model)
+    shaper = _Shaper(
+        problems, [] if notes is None else notes, set() if guessed is None else guessed
+    )
+    return shaper.model(item, model)
 
 
 class _Shaper:
-    def __init__(self, problems: list[Problem], notes: list[Problem]) -> None:
+    def __init__(
+        self, problems: list[Problem], notes: list[Problem], guessed: set[tuple[str, int, int]]
+    ) -> None:
         self.problems = problems
         self.notes = notes
+        self.guessed = guessed
 
     def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
         self._note_unit(item, annotation, metadata)
@@ -121,18 +129,43 @@ class _Shaper:
                 hint = f"write it in the column of `{names['verb']}:`"
                 self.problems.append(entry.key.problem(message, hint))
             else:
-                where = names.get("verb") or names.get("word") or ""
-                message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
-                near = nearest(key, inside)
-                place = "" if near else _place_of(key, {each: keys[each] for each in inside})
-                known = did_you_mean(key, inside, "keys") if inside else "it has no keys"
-                advice = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
-                hint = advice or "; ".join(filter(None, [place, known]))
-                self.problems.append(entry.key.problem(message, hint))
+                near = self._unknown_key(key, item, model, inside, names)
                 if near is not None and near not in item.value:  # continue with the valid key
-                    shaped = self.field(entry.value, keys[near])
-                    entries[near] = Entry(entry.key, shaped)
+                    entries[near] = self._guessed(key, entry, near, model)
         return Located(entries, item.place)
+
+    def _unknown_key(
+        self,
+        key: str,
+        item: Located,
+        model: type[SpecModel],
+        inside: Sequence[str],
+        names: Mapping[str, str],
+    ) -> str | None:
+        """Refuse a key; the valid one that it probably means."""
+        place = item.mapping()[key].key
+        if key in model.not_yet:
+            self.problems.append(place.problem(f"there is no `{key}` yet", model.not_yet[key]))
+            return nearest(key, inside)
+        where = names.get("verb") or names.get("word") or ""
+        message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
+        near = nearest(key, inside)
+        home = "" if near else _place_of(key, {each: keys_of(model)[each] for each in inside})
+        known = did_you_mean(key, inside, "keys") if inside else "it has no keys"
+        advice = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
+        hint = advice or "; ".join(filter(None, [home, known]))
+        self.problems.append(place.problem(message, hint))
+        return near
+
+    def _guessed(self, key: str, entry: Entry, near: str, model: type[SpecModel]) -> Entry:
+        """A value under the key that was probably intended; its mistakes count for a slip alone."""
+        count = len(self.problems)
+        shaped = self.field(entry.value, keys_of(model)[near])
+        is_sure = is_slip(key, near) or key in SYNONYMS.get(near, ())
+        if key in model.not_yet or not is_sure:
+            del self.problems[count:]
+            self.guessed.update(_places(shaped))
+        return Entry(entry.key, shaped)
 
     def step(self, item: Located) -> Located:
         found = take_apart(item, STEPS, KEYS_BY_VERB, "step", "verb", self.problems)
@@ -234,6 +267,16 @@ def _place_of(key: str, siblings: Mapping[str, FieldInfo]) -> str:
     if len(homes) == 1:
         return f"write `{homes[0]}: {{{key}: ...}}`"
     return f"`{key}:` stands in column 1 of the file" if key in keys_of(Scenario) else ""
+
+
+def _places(item: Located) -> Iterator[tuple[str, int, int]]:
+    """The places of a value, and of all that it is made of."""
+    place = item.place
+    yield place.source.path, place.line, place.column
+    for entry in item.mapping().values():
+        yield from _places(entry.value)
+    for each in item.items():
+        yield from _places(each)
 
 
 def _models_in(annotation: Any) -> list[type[SpecModel]]:

@@ -1,0 +1,76 @@
+"""A guess at what was intended is advice: what stands there is no value of the guessed key."""
+
+import pytest
+
+from harness.cli.main import main
+from tests.language.test_mistakes import HEAD, problems
+
+BOX = "{name: a, box: {size: [1, 1, 1]}, %s}"
+
+
+def messages(text):
+    return [(each.message, each.hint) for each in problems(text)]
+
+
+@pytest.mark.parametrize(
+    ("key", "word"),
+    [
+        ("conveyor: {speed: 0.1}", "`static` box"),
+        ("suction: true", "`grasp: {object: NAME, mode: weld}`"),
+        ("joint: {type: hinge}", "rigid"),
+        ("joints: [{type: slide}]", "rigid"),
+    ],
+)
+def test_what_objects_do_not_have_yet_is_said_alone(key, word):
+    [(message, hint)] = messages(f"objects: [{BOX % key}]\n{HEAD}  - settle\n")
+    assert message == f"there is no `{key.partition(':')[0]}` yet"
+    assert word in hint
+    assert "did you mean" not in hint
+
+
+def test_several_robots_are_not_taken_for_one():
+    text = "scenario: x\nrobots: [ur3e, ur5e]\nsteps:\n  - settle\n"
+    [(message, hint)] = messages(text)
+    assert message == "there is no `robots` yet"
+    assert "`group`" in hint
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{HEAD}  - settle: {{timeout_max: [1, 2]}}\n",
+        f"{HEAD}  - place: {{object: a, pose: {{xyz: [0, 0, 0], rotate: up}}}}\n",
+        f"objects: [{BOX % 'frictions_of: 7 deg'}]\n{HEAD}  - settle\n",
+        f"{HEAD}  - settle\nexpect:\n  - conveyor: 3\n",
+    ],
+)
+def test_a_guess_brings_no_second_problem(text):
+    assert len(messages(text)) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "second"),
+    [
+        (f"{HEAD}  - place: {{object: a, poses: {{xyz: [0, 0]}}}}\n", "`xyz` has 2 items"),
+        (f"{HEAD}  - place: {{object: a, pose: {{position: [0, 0, up]}}}}\n", "a length is"),
+    ],
+)
+def test_mistakes_below_a_slip_of_the_pen_and_a_known_synonym_are_reported_too(text, second):
+    assert [message for message, _ in messages(text)][1].startswith(second)
+
+
+@pytest.mark.parametrize(
+    "cases",
+    [
+        "[{name: left, params.x: 1}, {name: right, params.x: 2}]",
+        "[{title: left, params.x: 1}]",
+        "{cases: [{id: left, params.x: 1}]}",
+    ],
+)
+def test_the_name_of_a_case_is_its_id(tmp_path, cases, capsys):
+    file = tmp_path / "named.scenario.yaml"
+    file.write_text(f"{HEAD}  - wait: ${{x}}\nparams: {{x: 1}}\nparametrize: {cases}\n")
+    assert main(["check", str(file)]) == 2
+    said = " ".join("".join(capsys.readouterr()).replace("|", "").split())
+    assert ":6:" in said
+    assert "with its name as `id`: `- {id: small, params.size: 2 cm}`" in said
