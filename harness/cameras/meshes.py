@@ -17,6 +17,7 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Rgba
+from harness.core.inputs import read_input
 from harness.core.memory import limited_memory
 from harness.core.types import FloatArray, IntArray
 from harness.core.user_cache import cached, store
@@ -77,7 +78,7 @@ def load_obj(geometry: Mesh) -> tuple[MeshPart, ...]:
     them, and are converted to sRGB. The parts of a large file are kept in the user's cache
     directory: reading a robot's files takes a quarter of a second.
     """
-    content = geometry.path.read_bytes()
+    content = read_input(geometry.path)
     materials = _material_file(geometry.path, content)
     if len(content) < LARGE:
         return _read_obj(content, materials, geometry)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -138,7 +139,7 @@ def _run(
         )
     results: dict[int, CaseResult] = {}
     for index, result in arriving:
-        results[index] = result
+        results[index] = replace(result, inputs={})
         sampling.note(index, result.outcome, result.digest)
     return results
 

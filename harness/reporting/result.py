@@ -98,6 +98,8 @@ class CaseResult:
         redraws: How often the sample was drawn again because objects overlapped.
         values: What varies as it was drawn at last, path -> value; empty when drawn once.
         wall_times: Seconds of each part; never judged.
+        inputs: The files that it follows from, absolute path -> hash, which is empty where there
+            was no such file. They are removed from a result that is stored.
     """
 
     file: str
@@ -118,6 +120,7 @@ class CaseResult:
     redraws: int = 0
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])
+    inputs: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def name(self) -> str:

@@ -21,6 +21,7 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape
+from harness.core.inputs import read_input
 from harness.core.memory import limited_memory
 from harness.core.solids import solid_of
 from harness.core.types import FloatArray, IntArray
@@ -64,7 +65,7 @@ def read_triangles(geometry: Mesh) -> Triangles:
     path = geometry.path
     scale = np.array(geometry.scale, dtype=float) * metres_per_unit(geometry)
     kind = path.suffix[1:].lower()
-    content = path.read_bytes()
+    content = read_input(path)
     if kind == "dae":
         refuse_unreadable(content, path.name)
     try:
@@ -216,7 +217,7 @@ def _decomposition(geometry: Mesh) -> Decomposition:
 
     factors = np.array(geometry.scale) * metres_per_unit(geometry)
     with _hull_errors(geometry):
-        return stored_decomposition(geometry.path.read_bytes(), factors, triangles)
+        return stored_decomposition(read_input(geometry.path), factors, triangles)
 
 
 def hull_points(geometry: Mesh) -> FloatArray:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cache
-from importlib.metadata import version
+from collections.abc import Sequence
 
+from harness.core.versions import library_versions
 from harness.engine.execute import Execution
 from harness.language.reading.resolve import resolved_text
 from harness.observation.fault_effects import with_receipts
@@ -18,8 +17,6 @@ from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
-
-LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
 
 
 def robot_record(description: RobotDescription, kinematics: Kinematics) -> RobotRecord:
@@ -89,12 +86,6 @@ def _gripper_record(description: RobotDescription) -> GripperRecord | None:
         widths=tuple((float(q), float(width)) for q, width in gripper.widths),
         palm_link=gripper.palm_link,
     )
-
-
-@cache
-def library_versions() -> Mapping[str, str]:
-    """What a run may depend on; looked up once, each takes a millisecond or two."""
-    return {name: version(name) for name in LIBRARIES}
 
 
 def resolved_scenario(request: RunRequest, prepared: Prepared) -> str:

@@ -21,44 +21,17 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from harness import __version__
 from harness.recording.plain import to_plain
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.cases import compute_here, run_isolated
+from harness.suite.installation import Installation, installation
 from harness.suite.leftovers import remove_abandoned
 from harness.suite.stream import result_of
 from harness.suite.warm import WarmServer
 
 PREFIX = "harness-batch-"
 """How the names of folders begin; the number of the process follows."""
-
-
-@dataclass(frozen=True)
-class Installation:
-    """What must be the same on every node, so that results can be compared.
-
-    Attributes:
-        version: The version of the program.
-        source: Hash of the program's source files.
-        python: The version of Python.
-        libraries: Versions of the libraries that results depend on.
-    """
-
-    version: str
-    source: str
-    python: str
-    libraries: Mapping[str, str]
-
-    def difference(self, other: Installation) -> str:
-        """The first thing in which another installation differs, with both values; or empty."""
-        here, there = to_plain(self), to_plain(other)
-        here |= here.pop("libraries")
-        there |= there.pop("libraries")
-        for name in here:
-            if here[name] != there.get(name):
-                return f"{name} {str(there.get(name))[:12]} instead of {str(here[name])[:12]}"
-        return ""
 
 
 @dataclass(frozen=True)
@@ -114,21 +87,6 @@ class BatchResult:
     refusal: str = ""
     processor: str = ""
     seconds: float = 0.0
-
-
-@cache
-def installation() -> Installation:
-    """The installation in this process."""
-    from harness.session.record import library_versions
-
-    package = Path(__file__).parents[1]
-    hasher = hashlib.sha256()
-    for file in sorted(package.rglob("*")):
-        if file.is_file() and file.suffix != ".pyc":
-            hasher.update(f"{file.relative_to(package)}\0".encode() + file.read_bytes())
-    return Installation(
-        __version__, hasher.hexdigest(), platform.python_version(), dict(library_versions())
-    )
 
 
 @cache

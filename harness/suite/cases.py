@@ -9,7 +9,7 @@ import time
 import traceback
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from harness.core.errors import HarnessError, SpecError
 from harness.core.interruption import is_interrupted
@@ -49,6 +49,12 @@ def ignore_progress(_index: int, _event: ProgressEvent) -> None:
 def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     """Run a case in this process."""
     prepare_process()
+    from harness.core.inputs import inputs_read
+
+    return replace(_run_job(job, notify), inputs=inputs_read())
+
+
+def _run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
     from harness.session import run_case as session  # imports planners and physics
 
     if job.nodes:
@@ -71,9 +77,9 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
         some: Cases whose bundled robots and worlds other cases have too.
     """
     from harness.core.registry import import_built_in
+    from harness.core.versions import library_versions
     from harness.language.reading.load import is_foreign_world, load_world, read_scenario
     from harness.robot.load import load_ahead, read_bundled
-    from harness.session.record import library_versions
 
     library_versions()
     import_built_in(("step", "expectation"), words)

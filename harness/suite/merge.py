@@ -9,12 +9,24 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
 from harness.suite.conditions import read_conditions
 from harness.suite.discovery import UsageError
 from harness.suite.plan import SuiteRequest, cases_of
 from harness.suite.shards import ShardRecord, read_shard_records
-from harness.suite.stream import FILE, ResultHead, Stream, entry_of, head_of, lines_of
+from harness.suite.stream import (
+    FILE,
+    Inputs,
+    ResultHead,
+    Stream,
+    checked_line,
+    entry_of,
+    head_of,
+    inputs_of,
+    is_intact,
+    lines_of,
+)
 from harness.suite.suite_run import SuiteOptions, SuiteRun
 
 
@@ -33,6 +45,7 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
         HarnessError: The results cannot be written.
     """
     records = read_shard_records(folders)
+    inputs = _checked_inputs([folder / FILE for folder in folders])
     for folder in folders:
         if folder.resolve() == target.resolve():
             raise UsageError(f"'{folder}' holds a part; write the whole into another --report-dir")
@@ -54,6 +67,8 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
         for folder, record in zip(folders, records, strict=True)
     ]
     try:
+        for listed in inputs:
+            stream.append(checked_line(compact_json(listed)))
         for index, result, line in heapq.merge(*parts, key=_index):
             suite.take(index, result, stream.append(line))
         stream.rename()
@@ -69,6 +84,45 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
     )
     suite.count()
     return suite, first
+
+
+def _checked_inputs(paths: Sequence[Path]) -> list[Inputs]:
+    """The files that the results of parts follow from.
+
+    Raises:
+        UsageError: A line of a stream is not as it was written, or two parts ran different files.
+    """
+    found: dict[str, Inputs] = {}
+    seen: dict[str, tuple[str, Path]] = {}
+    for path in (each for each in paths if each.is_file()):
+        listed: dict[str, Inputs] = {}
+        used: dict[str, str] = {}
+        with path.open("rb") as file:
+            for number, (_, line) in enumerate(lines_of(file), start=1):
+                if not line.strip():
+                    continue
+                if not is_intact(line):
+                    raise UsageError(
+                        f"line {number} of '{path}' is not as it was written: its checksum does"
+                        " not match; run this part again with --resume"
+                    )
+                if (head := head_of(line)) is not None:
+                    used[head.key] = head.inputs
+                elif (inputs := inputs_of(line)) is not None:
+                    listed[inputs.digest] = inputs
+        for inputs in (listed[each] for each in dict.fromkeys(used.values()) if each in listed):
+            found[inputs.digest] = inputs
+            for name, digest in inputs.files.items():
+                other, where = seen.setdefault(name, (digest, path))
+                if other != digest:
+                    place = f"'{path.parent}'"
+                    both = f"{place} and '{where.parent}' are not parts of one suite: they"
+                    one = f"the results in {place} are of different states of the project: they"
+                    raise UsageError(
+                        f"{one if where == path else both} followed from different contents of"
+                        f" '{name}'; run one again with --resume"
+                    )
+    return list(found.values())
 
 
 def _results_of(

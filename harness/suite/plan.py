@@ -19,7 +19,6 @@ from harness.suite.folders import place_of, report_folders
 from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
-from harness.suite.stream import file_hash
 from harness.suite.variation import Case, Cases
 
 if TYPE_CHECKING:
@@ -308,7 +307,6 @@ def record_of(
                 header.tags,
                 header.verifies,
                 header.varied,
-                file_hash(file),
             )
         )
     return ShardRecord(

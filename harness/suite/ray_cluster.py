@@ -14,12 +14,12 @@ from harness.core.errors import HarnessError
 from harness.core.extras import install_command
 from harness.core.registry import VARIABLE as PLUGINS
 from harness.reporting.result import CaseResult
-from harness.robot.packages import SEARCH_VARIABLE as PACKAGES
 from harness.session.run_request import RunRequest
-from harness.suite.batch import Batch, BatchResult, Files, installation, run_batch, unpack_report
+from harness.suite.batch import Batch, BatchResult, Files, run_batch, unpack_report
 from harness.suite.cases import Chooser, error_result, never_needless
 from harness.suite.discovery import UsageError
-from harness.suite.stream import input_files
+from harness.suite.installation import installation, search_environment
+from harness.suite.named_files import named_files
 
 LOCAL = "ray"
 CLIENT = "ray://"
@@ -181,11 +181,9 @@ def _files_of(files: Sequence[Path]) -> Files:
     """Every file that the cases and the plug-ins name."""
     contents: dict[str, bytes] = {}
     for file in files:
-        for path, content in input_files(file):
+        for path, content in named_files(file):
             contents[os.path.abspath(path)] = content  # noqa: PTH100 - links stay as they are
-    environment = {
-        name: value for name in (PLUGINS, PACKAGES) if (value := os.environ.get(name, ""))
-    }
+    environment = search_environment()
     for plugin in environment.get(PLUGINS, "").split(os.pathsep):
         if plugin.endswith(".py"):
             contents[plugin] = Path(plugin).read_bytes()

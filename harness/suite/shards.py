@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from harness import __version__
 from harness.core.files import replaced, writing
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader, stated_variation
+from harness.suite.installation import Installation, installation
 
-FORMAT = "armharness-shard/1"
+FORMAT = "armharness-shard/2"
 FILE = "shard.json"
 AUTO = "auto"
 SOURCES = (
@@ -108,7 +108,6 @@ class PlannedFile:
         tags: The tags that the file states.
         verifies: Requirements that the file names.
         varied: The values in the file that its cases follow from.
-        digest: Hash of the file and of the files that it names.
     """
 
     file: str
@@ -116,7 +115,6 @@ class PlannedFile:
     tags: tuple[str, ...]
     verifies: tuple[str, ...]
     varied: Mapping[str, Any]
-    digest: str
 
     @property
     def header(self) -> ScenarioHeader:
@@ -142,7 +140,7 @@ class ShardRecord:
         reporters: Names of other reporters that write into the reports.
         nodes: Commands by name that steps may start as ROS 2 nodes.
         conditions: Hash of the samples of `--conditions`; empty where the files draw them.
-        version: The version of the program that ran the part.
+        installation: The program and the libraries that ran the part.
     """
 
     shard: Shard
@@ -157,7 +155,7 @@ class ShardRecord:
     reporters: tuple[str, ...] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     conditions: str = ""
-    version: str = __version__
+    installation: Installation = field(default_factory=installation)
 
     @property
     def suite(self) -> dict[str, Any]:
@@ -216,10 +214,11 @@ def _check_same_suite(record: ShardRecord, folder: Path, other: ShardRecord, pla
     if here != there:
         what = next(name for name in here if here[name] != there[name])
         names = {
-            "files": "the scenario files or the files that they name",
+            "files": "the scenario files, their cases, titles or tags",
             "count": "the number of parts",
             "conditions": "the samples of --conditions",
-            "version": f"the version of armharness ({record.version} and {other.version})",
+            "installation": "the program or its libraries:"
+            f" {other.installation.difference(record.installation)}",
         }
         raise UsageError(
             f"'{folder}' and '{place}' are not parts of one suite: they differ in"

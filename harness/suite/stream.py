@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-import re
 import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -15,36 +14,28 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 
 from pydantic_core import from_json
 
-from harness import __version__
 from harness.core.errors import HarnessError
+from harness.core.inputs import content_hash
 from harness.recording.older_runs import in_present_words
 from harness.recording.run import Outcome
 from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
+from harness.suite.folders import place_of
+from harness.suite.installation import installation, search_environment
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
-FORMAT = "armharness-stream/2"
-KNOWN_FORMATS = ("armharness-stream/1", FORMAT)
+FORMAT = "armharness-stream/3"
+KNOWN_FORMATS = ("armharness-stream/1", "armharness-stream/2", FORMAT)
 LEFT_OUT = "armharness-left-out/1"
-FILE = "results.jsonl"
-MESHES = (".stl", ".obj", ".dae")
-INPUTS = (
-    ".yaml",
-    ".yml",
-    ".sdf",
-    ".world",
-    ".urdf",
-    ".xacro",
-    ".srdf",
-    ".xml",
-    *MESHES,
-)
-"""Files that count where a scenario, or a file that it names, names them."""
+INPUTS = "armharness-inputs/1"
+CHECK = ',"check":"'
+"""How the end of a line begins that has the checksum of the text before it."""
 
-_NAME = re.compile(r"""\"([^\"\n]+)\"|'([^'\n]+)'|([^\s\"',\[\]{}<>=]+)""")
+CHECK_DIGITS = 16
+FILE = "results.jsonl"
 
 
 @dataclass(frozen=True)
@@ -90,6 +81,7 @@ class LineHead:
     format: str
     key: str
     result: ResultHead
+    inputs: str = ""
 
 
 @dataclass(frozen=True)
@@ -101,6 +93,7 @@ class StreamEntry:
         result: The result of the case.
         values: What varies in the case, path -> value.
         tags: The tags of its file.
+        inputs: The digest of the files that the result follows from; an earlier line lists them.
         format: The format of the line.
     """
 
@@ -108,6 +101,7 @@ class StreamEntry:
     result: CaseResult
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     tags: tuple[str, ...] = ()
+    inputs: str = ""
     format: str = FORMAT
 
     @property
@@ -116,11 +110,38 @@ class StreamEntry:
         content = {
             "format": self.format,
             "key": self.key,
+            "inputs": self.inputs,
             "values": self.values,
             "tags": self.tags,
             "result": self.result,
         }
-        return f"{compact_json(content, not_finite='strings')}\n".encode()
+        return checked_line(compact_json(content, not_finite="strings"))
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """A line of a stream that lists files which results follow from.
+
+    Attributes:
+        digest: A hash of the list, which the lines of results name.
+        files: The path of each file, as the command's working directory shows it -> its hash, which
+            is empty where there was no file.
+    """
+
+    format: Literal["armharness-inputs/1"]
+    digest: str
+    files: Mapping[str, str]
+
+    @classmethod
+    def of(cls, read: Mapping[str, str]) -> Inputs:
+        """The line of the files that a case has read, by their absolute paths."""
+        here = Path.cwd()
+        files = {
+            str(path.relative_to(here) if path.is_relative_to(here) else path): digest
+            for path, digest in sorted((Path(each), digest) for each, digest in read.items())
+        }
+        text = compact_json(files).encode("utf-8", "surrogateescape")
+        return cls(INPUTS, hashlib.sha256(text).hexdigest()[:CHECK_DIGITS], files)
 
 
 @dataclass(frozen=True)
@@ -153,8 +174,10 @@ class Stream:
             HarnessError: The file cannot be written.
         """
         self.path = Path(name) if folder is None else folder / name
-        self._known: dict[str, tuple[Place, ResultHead]] = {}
+        self._known: dict[str, tuple[Place, LineHead]] = {}
         self._unused = set[str]()
+        self._inputs: dict[str, Inputs] = {}
+        self._changed: dict[str, bool] = {}
         self._leaves_out = False  # whether an earlier run did
         try:
             if folder is None:
@@ -171,28 +194,58 @@ class Stream:
             raise self._error(error) from error
 
     def _read_known(self) -> None:
-        """Read which results there are; a line that was cut off gets its end."""
-        with self.path.open("rb") as file:
+        """Read which results there are; lines that were cut off, damaged or edited are blanked.
+
+        The other lines stay where they are: those who follow a stream know them by their places.
+        """
+        damaged: list[Place] = []
+        whole = 0
+        with self.path.open("r+b") as file:
             for place, line in lines_of(file):
-                if (head := head_of(line)) is not None:
-                    self._known[head.key] = place, head.result
+                whole = place.offset + place.length
+                if not is_intact(line):
+                    damaged.append(place)
+                elif (head := head_of(line)) is not None:
+                    self._known[head.key] = place, head
+                elif (inputs := inputs_of(line)) is not None:
+                    self._inputs[inputs.digest] = inputs
                 elif (keys := left_out_of(line)) is not None:
                     self._leaves_out = bool(keys)
+            for place in damaged:
+                head = head_of(os.pread(file.fileno(), place.length, place.offset))
+                self._unused.update([] if head is None else [head.key])
+                os.pwrite(file.fileno(), b" " * (place.length - 1), place.offset)
+            os.pwrite(file.fileno(), b" " * (self._end - whole), whole)
         self._unused.update(self._known)
-        if os.pread(self._file.fileno(), 1, self._end - 1) != b"\n":
+        if whole != self._end:
             self.append(b"\n")
 
     def known(self, job: RunRequest) -> tuple[Place, ResultHead] | None:
-        """An earlier run's result of the same file, values and version; None if there is none.
+        """An earlier run's result from the same inputs; None if there is none.
 
-        An error is no result: it is tried again.
+        An error is no result: it is tried again. So is an invalid file, as what it lacks may be
+        there now.
         """
         if not self._known:
             return None
         key = fingerprint(job)
         self._unused.discard(key)
-        found = self._known.get(key)
-        return None if found is None or found[1].outcome == "error" else found
+        if key not in self._known:
+            return None
+        place, head = self._known[key]
+        is_result = head.result.outcome in ("passed", "failed")
+        return (place, head.result) if is_result and self._has_same_inputs(head.inputs) else None
+
+    def _has_same_inputs(self, digest: str) -> bool:
+        """Whether all files that results follow from are as they were."""
+        inputs = self._inputs.get(digest)
+        if inputs is None:
+            return False
+        if digest not in self._changed:
+            self._changed[digest] = any(
+                content_hash(Path(path)) != before for path, before in inputs.files.items()
+            )
+        return not self._changed[digest]
 
     def write(
         self,
@@ -212,7 +265,13 @@ class Stream:
         Raises:
             HarnessError: The disk is full.
         """
-        return self.append(StreamEntry(fingerprint(job), result, values or {}, tuple(tags)).line)
+        inputs = Inputs.of(result.inputs)
+        if self._inputs.get(inputs.digest) != inputs:
+            self._inputs[inputs.digest] = inputs
+            self.append(checked_line(compact_json(inputs)))
+        result = replace(result, inputs={})
+        entry = StreamEntry(fingerprint(job), result, values or {}, tuple(tags), inputs.digest)
+        return self.append(entry.line)
 
     def leave_out(self, places: Iterable[Place]) -> None:
         """Note the results that do not count: those at some places, and unknown ones.
@@ -222,7 +281,7 @@ class Stream:
         """
         keys = [*(self.entry(each).key for each in places), *sorted(self._unused)]
         if keys or self._leaves_out:
-            self.append(f"{compact_json(LeftOut(LEFT_OUT, keys))}\n".encode())
+            self.append(checked_line(compact_json(LeftOut(LEFT_OUT, keys))))
 
     def append(self, line: bytes) -> Place:
         """Add a line, and return its place.
@@ -269,6 +328,34 @@ def lines_of(file: BinaryIO) -> Iterator[tuple[Place, bytes]]:
         if line.endswith(b"\n"):
             yield Place(offset, len(line)), line
         offset += len(line)
+
+
+def checked_line(text: str) -> bytes:
+    """A JSON object as a line that ends with a checksum of its text.
+
+    The checksum shows that a line was damaged or edited. It does not stop a person who computes it
+    anew.
+    """
+    content = text.removesuffix("}").encode("utf-8", "surrogateescape")
+    return content + f'{CHECK}{_checksum(content)}"}}\n'.encode()
+
+
+def is_intact(line: bytes) -> bool:
+    """Whether a line has the checksum of its text; lines of older formats have none."""
+    content, mark, end = line.rpartition(CHECK.encode())
+    return bool(mark) and end.rstrip() == f'{_checksum(content)}"}}'.encode()
+
+
+def _checksum(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:CHECK_DIGITS]
+
+
+def inputs_of(line: bytes) -> Inputs | None:
+    """The files that a line of a stream lists; None where it is another line."""
+    try:
+        return validator(Inputs).validate_json(line)
+    except ValueError:
+        return None
 
 
 def left_out_of(line: bytes) -> Sequence[str] | None:
@@ -328,48 +415,18 @@ def validator(kind: type) -> TypeAdapter[Any]:
 
 
 def fingerprint(job: RunRequest) -> str:
-    """What a case's result follows from: file, files it names, values, seed, version.
+    """What a case's result follows from besides files: program, case, values, seed, options.
 
     Reporters count as well, as a report that another reporter has not written yet is not complete.
     """
-    parts = [__version__, file_hash(job.file), job.case, str(job.seed), *_sorted(job.overrides)]
+    environment = sorted(search_environment().items())
+    parts = [installation().digest, repr(environment), place_of(job.file).as_posix()]
+    parts += [job.case, str(job.seed), *_sorted(job.overrides)]
     parts += ["strict"] if job.strict else []
     parts += [f"reporter {name}" for name in sorted(job.reporters)]
     parts += [f"node {name}={command}" for name, command in sorted(job.nodes.items())]
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def _sorted(overrides: Mapping[str, str]) -> list[str]:
     return [f"{path}={value}" for path, value in sorted(overrides.items())]
-
-
-@cache
-def file_hash(file: Path) -> str:
-    """Hash of a scenario file and of the files that it names, and those that they name."""
-    hasher = hashlib.sha256()
-    for _, content in input_files(file):
-        hasher.update(content)
-    return hasher.hexdigest()
-
-
-def input_files(file: Path) -> Iterator[tuple[Path, bytes]]:
-    """A scenario file and the files that it names, and those that they name, with their contents.
-
-    A name is any word or quoted text with the ending of an input, from the folder of the file that
-    says it: to read one too many does no harm. What packages hold is not followed.
-    """
-    waiting, seen = [file], set[Path]()
-    while waiting:
-        path = waiting.pop()
-        if path in seen or not path.is_file():
-            continue
-        seen.add(path)
-        try:
-            data = path.read_bytes()
-        except OSError:
-            continue
-        yield path, data
-        if path.suffix.lower() not in MESHES:
-            text = data.decode("utf-8", "replace")
-            names = sorted({"".join(groups) for groups in _NAME.findall(text)})
-            waiting += [path.parent / name for name in names if name.lower().endswith(INPUTS)]

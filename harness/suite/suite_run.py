@@ -14,6 +14,7 @@ from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated
+from harness.suite.installation import installation
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import Plan
 from harness.suite.repetitions import Repetitions
@@ -174,6 +175,7 @@ class SuiteRun:
         if self._how.stream is None and (self._repetitions is not None or len(self.jobs) == 1):
             return
         stream = Stream(self._how.stream, resume=self._how.resume)
+        installation()  # now, while the modules of a run are imported in another process
         self.read_from(stream)
         for index, job in enumerate(self.jobs if self._how.resume else ()):
             if known := stream.known(job):
@@ -190,6 +192,7 @@ class SuiteRun:
             planned, job = self.plan[index // self._how.repeat], self.jobs[index]
             values = {**planned.values, **result.values}
             place = self._stream.write(job, result, values, planned.header.tags)
+        result = replace(result, inputs={})
         self.take(index, result, place)
         return result
 

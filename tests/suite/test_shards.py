@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from harness.core.resources import data_folder
 from harness.suite.discovery import UsageError
 from harness.suite.shards import Shard, shard_of
 
@@ -100,6 +101,7 @@ def test_every_case_is_in_exactly_one_part(parts):
         for line in map(
             json.loads, (parts / f"at{number}" / "results.jsonl").read_text().splitlines()
         )
+        if "result" in line
     )
     assert len(held) == 33
     assert set(held.values()) == {1}
@@ -125,7 +127,8 @@ def test_a_part_that_was_cut_off_is_named_with_what_it_lacks(parts, tmp_path):
     (cut / "results.jsonl").write_text("\n".join(lines[:-2]) + "\n" + lines[-1][:50])
     merged = harness("merge", "at1", cut, "at3", "--report-dir", tmp_path / "out", cwd=parts)
     assert merged.returncode == 3
-    assert f"part 2/3 in '{cut}' lacks 2 of {len(lines)} results" in merged.stderr
+    count = sum('"result"' in line for line in lines)
+    assert f"part 2/3 in '{cut}' lacks 2 of {count} results" in merged.stderr
 
 
 def test_links_of_merged_results_lead_to_where_the_parts_are_now(parts, tmp_path):
@@ -157,14 +160,51 @@ def test_a_part_that_leaves_nothing_to_merge_says_so(tmp_path):
 def test_parts_of_two_versions_are_refused(parts, tmp_path):
     old = shutil.copytree(parts / "at2", tmp_path / "old")
     text = (old / "shard.json").read_text()
-    version = json.loads(text)["version"]
+    version = json.loads(text)["installation"]["version"]
     (old / "shard.json").write_text(text.replace(f'"version": "{version}"', '"version": "0.0.1"'))
     refused = harness("merge", parts / "at1", old, "--report-dir", "out", cwd=tmp_path)
     assert refused.returncode == 2
-    assert f"the version of armharness (0.0.1 and {version})" in refused.stderr
+    assert f"the program or its libraries: version 0.0.1 instead of {version}" in refused.stderr
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"format": "armharness-shard/1"}'])
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ('"outcome":"failed"', '"outcome":"passed"'),
+        ('"digest":"', '"digest":"0'),
+        ('"seed":', '"seed":1'),
+        ('"files":{', '"files":{"another.yaml":"",'),
+    ],
+)
+def test_an_edited_line_is_refused(parts, tmp_path, before, after):
+    edited = shutil.copytree(parts / "at2", tmp_path / "edited")
+    text = "".join((parts / f"at{number}/results.jsonl").read_text() for number in (1, 2, 3))
+    assert before in text
+    (edited / "results.jsonl").write_text(text.replace(before, after, 1))
+    number = text[: text.index(before)].count("\n") + 1
+    refused = harness("merge", parts / "at1", edited, "--report-dir", "out", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert f"line {number} of '" in refused.stderr
+    assert "its checksum does not match" in refused.stderr
+    assert not (tmp_path / "out/results.jsonl").exists()
+
+
+def test_parts_that_ran_different_robots_are_refused(tmp_path):
+    """The robot's folder is named, none of its files."""
+    shutil.copytree(data_folder("robots") / "open_manipulator_x", tmp_path / "arm")
+    text = GRID.replace("robot: open_manipulator_x", "robot: {model: ./arm}")
+    (tmp_path / "grid.scenario.yaml").write_text(text)
+    for number in (1, 2):
+        options = ("--shard", f"{number}/2", "--report-dir", f"at{number}", "--no-page")
+        assert harness("run", ".", *options, cwd=tmp_path).returncode in (0, 1)
+        with (tmp_path / "arm/open_manipulator_x.urdf").open("a") as file:
+            file.write("<!-- another arm -->\n")
+    refused = harness("merge", "at1", "at2", "--report-dir", "out", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "different contents of 'arm/open_manipulator_x.urdf'" in refused.stderr
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"format": "armharness-shard/2"}'])
 def test_a_damaged_description_is_refused(parts, tmp_path, text):
     broken = shutil.copytree(parts / "at2", tmp_path / "broken")
     (broken / "shard.json").write_text(text)

@@ -1,18 +1,36 @@
 """What a result follows from, so that a run that goes on computes what changed."""
 
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
+from harness.core.resources import data_folder
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
-from harness.suite.stream import Stream, fingerprint
+from harness.suite.stream import FILE, Stream, fingerprint, is_intact
 
 
-def test_a_line_that_was_cut_off_leaves_the_others_whole(cell, tmp_path):
+@pytest.fixture
+def job(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return RunRequest(Path("one.scenario.yaml"))
+
+
+def passed(job):
+    return CaseResult(str(job.file), job.case, "t", "passed")
+
+
+def test_a_line_that_was_cut_off_leaves_the_others_whole(job, tmp_path):
     """A process that was killed while it wrote leaves half a line."""
-    one, two = cell("one"), cell("two", b"other")
+    one, two = job, RunRequest(Path("two.scenario.yaml"))
     stream = Stream(tmp_path)
-    for job in (one, two):
-        stream.write(job, CaseResult(str(job.file), "", "t", "passed"))
+    for each in (one, two):
+        stream.write(each, passed(each))
     stream.close()
     stream.path.write_bytes(stream.path.read_bytes()[:-40])
     again = Stream(tmp_path, resume=True)
@@ -23,29 +41,150 @@ def test_a_line_that_was_cut_off_leaves_the_others_whole(cell, tmp_path):
     place, head = Stream(tmp_path, resume=True).known(two)
     assert head.outcome == "failed"
     assert stream.path.read_bytes()[place.offset :].startswith(b'{"format"')
+    lines = stream.path.read_bytes().splitlines(keepends=True)
+    assert all(is_intact(line) or not line.strip() for line in lines)
 
 
-@pytest.fixture
-def cell(tmp_path):
-    """A scenario that names a robot, which names a mesh; returns its job."""
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (b'"passed"', b'"failed"'),
+        (b'"digest":""', b'"digest":"0"'),
+        (b'"title":"t"', b'"title": "t"'),
+        (b"armharness-stream/3", b"armharness-stream/2"),
+        (b',"check":', b',"other":'),
+    ],
+)
+def test_a_case_whose_line_was_edited_is_run_again(job, tmp_path, before, after):
+    stream = Stream(tmp_path)
+    stream.write(job, passed(job))
+    stream.close()
+    text = stream.path.read_bytes()
+    assert before in text
+    stream.path.write_bytes(text.replace(before, after))
+    assert Stream(tmp_path, resume=True).known(job) is None
 
-    def write(name, mesh=b"solid", quote='"'):
-        folder = tmp_path / name
-        (folder / "my meshes").mkdir(parents=True)
-        (folder / "my meshes/arm.stl").write_bytes(mesh)
-        (folder / "arm.urdf").write_text('<mesh filename="my meshes/arm.stl"/>')
-        path = folder / "one.scenario.yaml"
-        path.write_text(f"robot: {{urdf: {quote}arm.urdf{quote}}}\n")
-        return RunRequest(path)
 
-    return write
+@pytest.mark.parametrize("outcome", ["invalid", "error"])
+def test_a_case_without_a_result_is_run_again(job, tmp_path, outcome):
+    Stream(tmp_path).write(job, CaseResult(str(job.file), "", "t", outcome))
+    assert Stream(tmp_path, resume=True).known(job) is None
 
 
-def test_the_same_inputs_are_the_same_wherever_they_stand(cell):
-    assert fingerprint(cell("here")) == fingerprint(cell("there"))
+def test_values_options_and_search_folders_count(job, monkeypatch):
+    found = {fingerprint(job)}
+    found.add(fingerprint(RunRequest(job.file, {"robot.model": "ur5e"})))
+    found.add(fingerprint(RunRequest(job.file, seed=3)))
+    found.add(fingerprint(RunRequest(job.file, case="a")))
+    found.add(fingerprint(RunRequest(job.file, strict=True)))
+    for name in ("GZ_SIM_RESOURCE_PATH", "HARNESS_PACKAGE_PATH", "HARNESS_PLUGINS"):
+        monkeypatch.setenv(name, "folder")
+        found.add(fingerprint(job))
+    assert len(found) == 8
 
 
-@pytest.mark.parametrize("quote", ["", "'", '"'])
-def test_what_a_named_file_names_counts(cell, quote):
-    before, after = cell("before", quote=quote), cell("after", b"other", quote)
-    assert fingerprint(before) != fingerprint(after)
+SCENARIO = """\
+scenario: Everything from files
+robot: {model: ./arm}
+world: room.yaml
+objects: [{name: part, mesh: {file: part.obj}, pose: {xyz: [0.25, 0, 0.05]}, static: true}]
+steps:
+  - include: {file: pause.steps.yaml}
+  - nod: {}
+params: {n: 1}
+parametrize: {n: [1, 2]}
+"""
+PLUGIN = """\
+from typing import ClassVar
+
+from harness.language.step import Step
+from nodding import TIME
+
+
+class Nod(Step):
+    \"\"\"Wait for a time that another module states.\"\"\"
+
+    verb: ClassVar[str] = "nod"
+
+    def summary(self) -> str:
+        return "nod"
+
+    def execute(self, cell) -> None:
+        assert TIME
+"""
+TETRAHEDRON = "v 0 0 0\nv 0.02 0 0\nv 0 0.02 0\nv 0 0 0.02\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    """A folder with a run of a scenario that reads files of every kind."""
+    folder = tmp_path_factory.mktemp("project")
+    shutil.copytree(data_folder("robots") / "open_manipulator_x", folder / "arm")
+    (folder / "a.scenario.yaml").write_text(SCENARIO)
+    (folder / "room.yaml").write_text("world: Room\n")
+    (folder / "part.obj").write_text(TETRAHEDRON)
+    (folder / "pause.steps.yaml").write_text("steps: [{wait: 0.01}]\n")
+    (folder / "nod.py").write_text(PLUGIN)
+    (folder / "nodding.py").write_text("TIME = 1\n")
+    assert "2 passed" in ran(folder)
+    return folder
+
+
+def ran(folder, *more):
+    command = ["run", "a.scenario.yaml", "--no-page", "--plugin", "nod.py", *more]
+    done = subprocess.run(
+        [sys.executable, "-m", "harness.cli", *command], cwd=folder, capture_output=True,
+        text=True, check=False, env={**os.environ, "PYTHONPATH": str(folder)},
+    )  # fmt: skip
+    return done.stdout + done.stderr
+
+
+def test_a_result_of_the_same_files_is_kept(project):
+    assert "2 of them were known from before" in ran(project, "--resume")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("arm/open_manipulator_x.urdf", "<!-- edited -->\n"),
+        ("arm/open_manipulator_x.srdf", "<!-- edited -->\n"),
+        ("arm/robot.yaml", "# edited\n"),
+        ("room.yaml", "# edited\n"),
+        ("part.obj", "# edited\n"),
+        ("pause.steps.yaml", "# edited\n"),
+        ("a.scenario.yaml", "# edited\n"),
+        ("nod.py", "# edited\n"),
+        ("nodding.py", "# edited\n"),
+    ],
+)
+def test_a_changed_file_is_noticed(project, tmp_path, name, text):
+    lines = (project / "reports" / FILE).read_text().splitlines()
+    listed = [line for line in map(json.loads, lines) if "files" in line]
+    assert name in {path for line in listed for path in line["files"]}
+    copy = tmp_path / "copy"
+    shutil.copytree(project, copy)
+    with (copy / name).open("a") as file:
+        file.write(text)
+    assert not is_known(copy)
+
+
+def is_known(folder):
+    """Whether the result of a folder's scenario is from the files that stand there now."""
+    code = """if True:
+        from pathlib import Path
+        from harness.core.registry import load_plugin
+        from harness.session.run_request import RunRequest
+        from harness.suite.stream import Stream
+        load_plugin("nod.py")
+        found = Stream(Path("reports"), resume=True)
+        print([found._has_same_inputs(each) for each in found._inputs])
+    """
+    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True,
+                          check=True, env={**os.environ, "PYTHONPATH": str(folder)})  # fmt: skip
+    return json.loads(done.stdout.lower()) == [True]
+
+
+def test_the_copy_of_a_project_has_the_same_inputs(project, tmp_path):
+    copy = tmp_path / "copy"
+    shutil.copytree(project, copy)
+    assert is_known(copy)

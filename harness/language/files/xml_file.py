@@ -10,6 +10,7 @@ from typing import NoReturn
 from xml.parsers import expat
 
 from harness.core.errors import Problem, SpecError
+from harness.core.inputs import read_input
 from harness.language.files.source import Place, Source
 
 LARGEST_FILE = 16_000_000
@@ -122,7 +123,7 @@ def read_bounded(path: Path) -> bytes:
             raise SpecError([Problem(name, 0, 0, reason)])
         size = path.stat().st_size
         if size <= LARGEST_FILE:
-            return path.read_bytes()
+            return read_input(path)
     except OSError as error:
         raise SpecError([Problem(name, 0, 0, f"cannot be read: {error.strerror}")]) from error
     message = f"is too large: {size / 1e6:.0f} MB, and at most {LARGEST_FILE / 1e6:.0f} are read"

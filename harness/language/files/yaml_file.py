@@ -19,6 +19,7 @@ from typing import Any
 import yaml
 
 from harness.core.errors import Problem, SpecError
+from harness.core.inputs import read_input
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
 from harness.language.files.yaml_scalars import scalar_of, scalar_of_yaml_11
 from harness.language.files.yaml_wording import DEEPEST, TOO_DEEP, syntax_problem
@@ -57,7 +58,7 @@ def read_text(path: Path, *, kind: str = "YAML file", largest: int = LARGEST_FIL
         if mode.st_size > largest:
             size = f"{mode.st_size / 1e6:.1f} MB; at most {largest / 1e6:.0f} MB are read"
             raise SpecError([Problem(name, 0, 0, f"the file has {size}")])
-        data = path.read_bytes()
+        data = read_input(path)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         missing = isinstance(error, FileNotFoundError)

@@ -11,6 +11,7 @@ from importlib.metadata import version
 import numpy as np
 
 from harness.core.geometry import Mesh, Shape
+from harness.core.inputs import read_input
 from harness.core.user_cache import cached, store
 from harness.planning.collision.convex_tree import ConvexTree, joined
 from harness.planning.collision.shape_tree import shape_tree
@@ -58,7 +59,7 @@ def _content(shape: Shape) -> bytes:
         points = found.hull if part is None else found.parts[part]
         return repr(points.shape).encode() + points.tobytes() + pose
     scale = geometry.scale, metres_per_unit(geometry), geometry.path.suffix
-    return repr(scale).encode() + hashlib.sha256(geometry.path.read_bytes()).digest() + pose
+    return repr(scale).encode() + hashlib.sha256(read_input(geometry.path)).digest() + pose
 
 
 @cache

@@ -116,6 +116,10 @@ def case_json(case: SuiteCase) -> str:
         "unit": nearest.unit,
         "share": case.share,
     }  # fmt: skip
-    content = {name: getattr(case.result, name) for name in CaseResult.__dataclass_fields__}
+    content = {
+        name: getattr(case.result, name)
+        for name in CaseResult.__dataclass_fields__
+        if name != "inputs"
+    }
     content |= {"values": case.values, "tags": case.tags, "verifies": case.verifies}
     return compact_json({**content, "worst_margin": margin})

@@ -1,0 +1,59 @@
+"""The files that this process has read, which its results follow from.
+
+A file that a result follows from is read with `read_input`, so that a run that goes on, or a merge,
+can see whether it has changed. The set grows as long as the process lives and has what the process
+that it was forked from has read: one file too many costs a run, one too few keeps a wrong result.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+INSTALLED = ("site-packages", "dist-packages")
+"""Folders of installed packages, whose versions count instead of their files."""
+
+_read: dict[str, str] = {}
+
+
+def read_input(path: Path) -> bytes:
+    """The bytes of a file, which is noted as an input.
+
+    Raises:
+        OSError: It cannot be read.
+    """
+    key = str(path.absolute())
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        _read[key] = ""
+        raise
+    _read[key] = hashlib.sha256(content).hexdigest()
+    return content
+
+
+def inputs_read() -> Mapping[str, str]:
+    """The absolute path and the hash of every input; the hash is empty where there was no file.
+
+    The modules of plug-ins, and those that they import from outside installed packages, are inputs.
+    """
+    own = str(Path(__file__).resolve().parents[1])
+    programs = (own, sys.prefix, sys.base_prefix)
+    for module in list(sys.modules.values()):
+        file = getattr(module, "__file__", None)
+        if not isinstance(file, str) or file in _read or file.startswith(programs):
+            continue
+        path = Path(file)
+        if path.suffix == ".py" and path.is_file() and not set(INSTALLED) & set(path.parts):
+            read_input(path)
+    return dict(_read)
+
+
+def content_hash(path: Path) -> str:
+    """The hash of a file as `inputs_read` has it; empty where there is no file."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""
