@@ -1,8 +1,8 @@
 """The files that this process has read, which its results follow from.
 
 A file that a result follows from is read with `read_input`, so that a run that goes on, or a merge,
-can see whether it has changed. The set grows as long as the process lives and has what the process
-that it was forked from has read: one file too many costs a run, one too few keeps a wrong result.
+can see whether it has changed. The set grows as long as the process lives: one file too many costs
+a run, one too few keeps a wrong result.
 """
 
 from __future__ import annotations
@@ -32,6 +32,11 @@ def read_input(path: Path) -> bytes:
         raise
     _read[key] = hashlib.sha256(content).hexdigest()
     return content
+
+
+def forget_inputs() -> None:
+    """Forget what was read for all cases: files of the program, which count as one."""
+    _read.clear()
 
 
 def inputs_read() -> Mapping[str, str]:

@@ -76,6 +76,7 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
         words: The words of the scenarios.
         some: Cases whose bundled robots and worlds other cases have too.
     """
+    from harness.core.inputs import forget_inputs
     from harness.core.registry import import_built_in
     from harness.core.versions import library_versions
     from harness.language.reading.load import is_foreign_world, load_world, read_scenario
@@ -91,6 +92,7 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
                 load_ahead(read.scenario.robot, read.scenario.collision)
                 if not is_foreign_world(read.scenario.world.name):
                     load_world(read.scenario.world.name, read.path.parent)
+    forget_inputs()
 
 
 def compute_here() -> None:
