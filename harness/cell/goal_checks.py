@@ -19,6 +19,12 @@ def check_goal(goal: GoalFields, group_name: str | None, at: At) -> None:
     if goal.position is not None:
         scope.check_frame(goal.position.frame, at.key("position", "frame"))
     scope.check_link_or_held(goal.link, at.key("link"))
+    if goal.position is not None and goal.link in scope.attached:
+        scope.problems.add(
+            at.key("link"),
+            f"`position` is a goal for a link, and '{goal.link}' is an attached object",
+            "give its `pose`, with a wide `tolerance` where the orientation is open",
+        )
     description = scope.description
     has_no_tip = group in description.groups and not description.groups[group].tip_link
     if (goal.pose or goal.position) and has_no_tip:

@@ -71,7 +71,8 @@ class GoalFields(SpecModel):
     )
     link: Name | None = Field(
         default=None,
-        description="The link that pose and position goals are about; the default is the TCP.",
+        description="The link that pose and position goals are about, or for a pose an attached "
+        "object; the default is the TCP.",
     )
     tolerance: GoalTolerance | None = Field(
         default=None, description="How close to a pose or position goal the motion must end."

@@ -112,10 +112,15 @@ BandLength = Annotated[Length, Field(ge=0.0005)]
 
 
 class OrientationConstraint(SpecModel):
-    """Keep a link turned as given, within a tolerance about each axis."""
+    """Keep a link, or an attached object, turned as given within a tolerance about each axis.
+
+    Where any turn about one axis is allowed, and the other two tolerances are equal, they limit the
+    tilt of that axis: with `[0.1, 0.1, 3.15]` the z axis stays within 0.1 rad of that of `pose`.
+    """
 
     link: Name | None = Field(
-        default=None, description="The link that is constrained; the default is the TCP."
+        default=None,
+        description="The link or the attached object that is constrained; the default is the TCP.",
     )
     pose: Pose = Field(description="The pose whose rotation the link keeps.")
     tolerance: tuple[BandAngle, BandAngle, BandAngle] = Field(
@@ -125,10 +130,11 @@ class OrientationConstraint(SpecModel):
 
 
 class PositionConstraint(SpecModel):
-    """Keep a link's origin inside a box."""
+    """Keep the origin of a link, or of an attached object, inside a box."""
 
     link: Name | None = Field(
-        default=None, description="The link that is constrained; the default is the TCP."
+        default=None,
+        description="The link or the attached object that is constrained; the default is the TCP.",
     )
     center: Position = Field(description="The centre of the box.")
     size: tuple[BandLength, BandLength, BandLength] = Field(
@@ -152,10 +158,10 @@ class PathConstraintsSpec(SpecModel):
     """The moveit_msgs/Constraints that hold along the path; at least one is given."""
 
     orientation: OrientationConstraint | None = Field(
-        default=None, description="The orientation constraint of a link."
+        default=None, description="The orientation constraint of a link or an attached object."
     )
     position: PositionConstraint | None = Field(
-        default=None, description="The position constraint of a link."
+        default=None, description="The position constraint of a link or an attached object."
     )
     joints: dict[Name, JointConstraint] | None = Field(
         default=None, description="The joint constraints by joint name."

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -13,7 +11,8 @@ from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.curve_timing import RatedCurve, time_curve
-from harness.planning.ik.numeric import sample_group_positions
+from harness.planning.search.balanced_connect import search_connect
+from harness.planning.search.planner_names import FAST_PLANNER
 from harness.planning.task import PlanningTask
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
@@ -25,10 +24,11 @@ from harness.planning.verification.verify import (
     Defect,
 )
 from harness.ports.motion_planning import MotionPlan
+from harness.ports.path_planning import PathRequest, PathResult
 from harness.recording.motion_failures import SearchFailure
 from harness.recording.plan_statistics import SearchStatistics
 
-PLANNER_ID = "RRTConnect, projected"
+PLANNER_ID = f"{FAST_PLANNER}, projected"
 
 LONGEST_STEP = 0.1
 """Largest distance between adjacent states of a tree [rad]; smaller for narrow tolerances."""
@@ -37,9 +37,11 @@ RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, VERIFIED_RESOLUTION)
 """Distances between checked states during a search [rad]; finer after a path has failed."""
 
 _LEAST_STEP = 0.01
-_SHORTCUTS = 60
-_SMOOTHINGS = 8
-_MOST_ROUNDS = 20_000
+_SHORTCUTS = 20
+_SMOOTHINGS = 4
+
+WORTH = 0.05
+"""Share of a part of the path that a shortcut must be able to save."""
 
 
 def find_constrained_motion(
@@ -73,16 +75,17 @@ def find_constrained_motion(
                 return MotionPlan(trajectory, Details.of(statistics), explanation)
     defect: Defect | None = None
     for attempt in range(task.options.attempts):
+        budget_end = task.checker.checks + held.checks + task.options.max_state_checks
         for level, resolution in enumerate(RESOLUTIONS):
-            rng = np.random.default_rng([task.options.seed % 2**63, attempt, level])
-            search = _Search(task, held, rng, resolution)
-            path = search.connect(goals)
-            if path is None:
+            seeds = np.random.SeedSequence([task.options.seed % 2**63, attempt, level])
+            search = _Search(task, held, seeds, resolution, budget_end)
+            found = search.connect(goals)
+            if found.waypoints is None:
                 break
-            short = search.smooth(search.shorten(path))
-            timed = _timed(task, short)
+            short = search.smooth(search.shorten(list(found.waypoints)))
+            timed = _timed(task, short, with_stops=resolution == RESOLUTIONS[-1])
             if isinstance(timed, JointTrajectory):
-                statistics = task.statistics(PLANNER_ID, timed, short, np.array(path))
+                statistics = task.statistics(PLANNER_ID, timed, short, found.waypoints)
                 details = Details.of(statistics, SearchStatistics(attempt + 1))
                 return MotionPlan(timed, details, explanation)
             defect = timed
@@ -102,145 +105,113 @@ def find_constrained_motion(
     )
 
 
-def _timed(task: PlanningTask, path: FloatArray) -> JointTrajectory | Defect:
-    """Time the path as a smooth curve, otherwise as a polyline with a stop at every corner."""
+def _timed(task: PlanningTask, path: FloatArray, *, with_stops: bool) -> JointTrajectory | Defect:
+    """Time the path as a smooth curve; with stops, otherwise as a polyline at rest at corners."""
     names, end = task.space.joint_names, path[-1]
     spline = JointSpline(path)
+    curve = RatedCurve(spline, "", [None] * len(spline.knots))
     try:
-        curve = RatedCurve(spline, "", [None] * len(spline.knots))
         trajectory = time_curve(curve, names, task.space, task.limits)
-        if task.defect(trajectory, end) is None:
+    except TimingError as problem:
+        defect = Defect(str(problem), problem.details)
+    else:
+        defect = task.defect(trajectory, end)
+        if defect is None:
             return trajectory
-    except TimingError:
-        pass
+    if not with_stops:
+        return defect
     trajectory = time_stopping(names, path, task.limits)
     return task.defect(trajectory, end) or trajectory
 
 
-@dataclass
-class _Tree:
-    nodes: list[FloatArray]
-    parents: list[int]
-
-    def nearest(self, positions: FloatArray, metric: FloatArray) -> int:
-        """Index of the node nearest to group positions."""
-        away = (np.array(self.nodes) - positions) * metric
-        return int(np.argmin((away**2).sum(axis=1)))
-
-    def branch(self, index: int) -> list[FloatArray]:
-        """The states from the root to a node."""
-        found: list[FloatArray] = []
-        while index >= 0:
-            found.append(self.nodes[index])
-            index = self.parents[index]
-        return found[::-1]
-
-
 class _Search:
+    """A search of a path whose states are projected, with checks at one resolution."""
+
     def __init__(
         self,
         task: PlanningTask,
         held: HeldConstraints,
-        rng: np.random.Generator,
+        seeds: np.random.SeedSequence,
         resolution: float,
+        budget_end: int,
     ) -> None:
-        self.task, self.held, self.rng, self.resolution = task, held, rng, resolution
+        self.task, self.held, self.resolution = task, held, resolution
+        self.budget_end = budget_end
+        self.seed = int(seeds.generate_state(1)[0])
+        self.rng = np.random.default_rng(seeds)
         # a chord leaves a curve of radius 1 rad by an eighth of its length squared
-        self.step = float(np.clip(np.sqrt(held.narrowest), _LEAST_STEP, LONGEST_STEP))
-        self._budget_end = self._spent + task.options.max_state_checks
+        step = float(np.clip(np.sqrt(held.narrowest), _LEAST_STEP, LONGEST_STEP))
+        self.step = step * resolution / RESOLUTIONS[0] if resolution > 1e-4 else step / 4
 
     @property
-    def _spent(self) -> int:
+    def checks(self) -> int:
+        """The states checked by the planning call, for collisions and for the constraints."""
         return self.task.checker.checks + self.held.checks
 
-    @property
-    def _is_over(self) -> bool:
-        return self._spent >= self._budget_end
-
-    def connect(self, goals: Sequence[FloatArray]) -> list[FloatArray] | None:
+    def connect(self, goals: Sequence[FloatArray]) -> PathResult:
         """Grow a tree from the start and one from the goals until they meet."""
-        space, metric = self.task.space, self.task.space.metric
-        first = _Tree([self.task.start], [-1])
-        second = _Tree(list(goals), [-1] * len(goals))
-        from_start = True
-        for _ in range(_MOST_ROUNDS):
-            if self._is_over:
-                return None
-            sample = sample_group_positions(space, self.rng)
-            reached = self._extend(first, first.nearest(sample, metric), sample)
-            target = first.nodes[reached]
-            met = self._extend(second, second.nearest(target, metric), target)
-            if space.distance(second.nodes[met], target) < 1e-9:
-                branches = first.branch(reached), second.branch(met)
-                forth, back = branches if from_start else branches[::-1]
-                return [*forth, *back[::-1][1:]]
-            first, second = second, first
-            from_start = not from_start
-        return None
+        checker, before = self.task.checker, self.checks
+        request = PathRequest(
+            planner_id=FAST_PLANNER,
+            space=self.task.space,
+            start=self.task.start,
+            goals=tuple(goals),
+            is_state_free=checker.state_free,
+            is_edge_free=self._passable,
+            state_checks=lambda: self.checks - before,
+            max_state_checks=self.budget_end - before,
+            resolution=self.resolution,
+            seed=self.seed,
+            parameters={},
+        )
+        return search_connect(request, self.extend)
 
-    def _extend(self, tree: _Tree, index: int, target: FloatArray) -> int:
-        """Extend a tree from a node towards a target as far as possible; the last node's index."""
-        for positions in self._walk(tree.nodes[index], target):
-            tree.nodes.append(positions)
-            tree.parents.append(index)
-            index = len(tree.nodes) - 1
-        return index
-
-    def _walk(self, start: FloatArray, target: FloatArray) -> list[FloatArray]:
+    def extend(self, here: FloatArray, target: FloatArray, longest: float) -> list[FloatArray]:
         """Free states that satisfy the constraints, one step apart, towards a target."""
-        space, here, found = self.task.space, start, list[FloatArray]()
+        space, found, travelled = self.task.space, list[FloatArray](), 0.0
         left = space.distance(here, target)
-        while left > 1e-9 and not self._is_over:
-            if left <= self.step:
-                new: FloatArray | None = target
-            else:
+        while left > 1e-9 and travelled < longest and self.checks < self.budget_end:
+            new: FloatArray | None = target
+            if left > self.step:
                 new = self.held.project(here + (target - here) * (self.step / left))
-            if new is None or not self._passable(here, new):
+            elif not self.held.hold(target):
+                new = self.held.project(target)
+            if new is None:
                 break
-            rest = space.distance(new, target)
-            if rest > left - 0.1 * self.step and rest > 1e-9:
+            rest, moved = space.distance(new, target), space.distance(here, new)
+            is_nearer = rest < left - 0.1 * self.step or rest < 1e-9
+            if not is_nearer or moved > 2 * self.step or not self._passable(here, new):
                 break
             found.append(new)
-            here, left = new, rest
+            here, left, travelled = new, rest, travelled + moved
         return found
 
     def _passable(self, first: FloatArray, second: FloatArray) -> bool:
-        if self.task.space.distance(first, second) > 2 * self.step:
-            return False
-        return self.held.hold_between(first, second, self.step / 4) and (
-            self.task.checker.edge_free(first, second, self.resolution)
-        )
+        return self.task.checker.edge_free(first, second, self.resolution)
 
     def shorten(self, path: list[FloatArray]) -> list[FloatArray]:
-        """Replace parts of a path by shorter walks between their ends."""
-        space = self.task.space
+        """Replace parts of a path by shorter ways between their ends."""
+        space, metric = self.task.space, self.task.space.metric
         for _ in range(_SHORTCUTS):
-            if len(path) < 4:
-                break
-            low, high = np.sort(self.rng.choice(len(path), 2, replace=False))
-            if high - low < 2:
+            low, high = np.sort(self.rng.choice(len(path), 2)).tolist()
+            length = _length(metric, path[low : high + 1])
+            if space.distance(path[low], path[high]) > (1 - WORTH) * length:
                 continue
-            walk = [path[low], *self._walk(path[low], path[high])]
-            if space.distance(walk[-1], path[high]) > 1e-9:
-                continue
-            if _length(space.metric, walk) < _length(space.metric, path[low : high + 1]) - 1e-6:
-                path = [*path[:low], *walk, *path[high + 1 :]]
+            way = [path[low], *self.extend(path[low], path[high], length)]
+            is_there = space.distance(way[-1], path[high]) < 1e-9
+            if is_there and _length(metric, way) < length:
+                path = [*path[:low], *way, *path[high + 1 :]]
         return path
 
     def smooth(self, path: list[FloatArray]) -> FloatArray:
-        """Smooth the corners of a path and project every state again, while the path stays free."""
-        points = list(_resampled(np.array(path), 0.5 * self.step))
+        """Round the corners of a path state by state, where the way through it stays free."""
+        points = list(_resampled(np.array(path), self.step))
         for _ in range(_SMOOTHINGS):
-            middles = [points[0]]
-            for before, here, after in zip(points, points[1:], points[2:], strict=False):
-                middles.append(self.held.project(0.25 * before + 0.5 * here + 0.25 * after))
-            middles.append(points[-1])
-            if any(point is None for point in middles):
-                break
-            smoother = [point for point in middles if point is not None]
-            if not all(self._passable(*edge) for edge in pairwise(smoother)):
-                break
-            points = smoother
+            for index in range(1, len(points) - 1):
+                before, here, after = points[index - 1 : index + 2]
+                new = self.held.project(0.25 * before + 0.5 * here + 0.25 * after)
+                if new is not None and self._passable(before, new) and self._passable(new, after):
+                    points[index] = new
         return np.array(points)
 
 

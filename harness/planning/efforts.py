@@ -58,14 +58,17 @@ class InverseDynamics:
         """Compute the efforts of a motion, shape (N, dof), from its states, shape (N, dof) each."""
         space, model, data = self._space, self._model, self._model.createData()
         columns = space.robot.velocity_columns
-        found = np.empty_like(positions)
-        velocity, acceleration = np.zeros(model.nv), np.zeros(model.nv)
-        for row, position in enumerate(positions):
-            velocity[columns] = space.matrix @ velocities[row]
-            acceleration[columns] = space.matrix @ accelerations[row]
-            efforts = pin.rnea(model, data, space.configuration(position), velocity, acceleration)
-            found[row] = space.matrix.T @ efforts[columns]
-        return found
+        q = space.robot.configuration(space.whole(positions))
+        v, a, found = np.zeros((3, len(positions), model.nv))
+        v[:, columns], a[:, columns] = velocities @ space.matrix.T, accelerations @ space.matrix.T
+        for row, state in enumerate(zip(q, v, a, strict=True)):
+            found[row] = pin.rnea(model, data, *state)
+        return found[:, columns] @ space.matrix
+
+    def can_hold(self, positions: FloatArray) -> bool:
+        """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
+        still = np.zeros_like(positions)
+        return bool(np.all(np.abs(self.efforts(positions, still, still)) <= self.limits))
 
     def standing_overload(self, positions: FloatArray) -> tuple[str, Details]:
         """Message and details of the joint with the largest static overload at positions (dof,).

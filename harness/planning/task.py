@@ -119,7 +119,7 @@ def make_task(
 
     Raises:
         PlanningFailed: INVALID_GROUP_NAME, START_STATE_INVALID, START_STATE_IN_COLLISION,
-            START_STATE_VIOLATES_PATH_CONSTRAINTS.
+            START_STATE_VIOLATES_PATH_CONSTRAINTS, INVALID_LINK_NAME.
     """
     if group not in scene.description.groups:
         known = ", ".join(scene.description.groups)
@@ -136,19 +136,19 @@ def make_task(
     )
     dynamics = InverseDynamics.of(space, scene.payloads())
     limits = replace(limits, jerk=options.max_jerk, dynamics=dynamics)
-    held = None if constraints is None else _held(constraints, space, positions)
+    held = None if constraints is None else _held(constraints, scene, space, positions)
     return PlanningTask(space, checker, positions, limits, options, held)
 
 
 def _held(
-    constraints: PathConstraints, space: GroupSpace, positions: FloatArray
+    constraints: PathConstraints, scene: CoalScene, space: GroupSpace, positions: FloatArray
 ) -> HeldConstraints:
     """Path constraints that hold at the start.
 
     Raises:
-        PlanningFailed: START_STATE_VIOLATES_PATH_CONSTRAINTS, when they do not.
+        PlanningFailed: START_STATE_VIOLATES_PATH_CONSTRAINTS, when they do not; INVALID_LINK_NAME.
     """
-    held = HeldConstraints(constraints, space)
+    held = HeldConstraints(constraints, space, scene.frame)
     broken = held.violation(positions)
     if broken is not None:
         raise PlanningFailed(

@@ -63,11 +63,13 @@ class AnyGoal:
 
 @dataclass(frozen=True, eq=False)
 class OrientationBand:
-    """A link stays turned as given.
+    """A link or an attached object stays turned as given.
 
     Attributes:
         rotation: R_world_link in the middle of the band, shape (3, 3).
-        tolerance: The tolerances about its x, y, z [rad]; pi and more allow any turn.
+        tolerance: The tolerances about its x, y, z [rad]; pi and more allow any turn. Where they
+            allow it about one axis, and are equal about both others, they limit the tilt of that
+            axis.
     """
 
     link: str
@@ -77,7 +79,7 @@ class OrientationBand:
 
 @dataclass(frozen=True, eq=False)
 class PositionBox:
-    """A link's origin stays in a box.
+    """The origin of a link or an attached object stays in a box.
 
     Attributes:
         pose: T_world_box, of its middle.

@@ -65,10 +65,10 @@ def _check_constraints(constraints: PathConstraintsSpec, group_name: str | None,
     scope = at.scope
     band, box = constraints.orientation, constraints.position
     if band is not None:
-        scope.check_link(band.link, at.key("path_constraints", "orientation", "link"))
+        scope.check_link_or_held(band.link, at.key("path_constraints", "orientation", "link"))
         at.check_pose(band.pose, "path_constraints", "orientation", "pose")
     if box is not None:
-        scope.check_link(box.link, at.key("path_constraints", "position", "link"))
+        scope.check_link_or_held(box.link, at.key("path_constraints", "position", "link"))
         frame = at.key("path_constraints", "position", "center", "frame")
         scope.check_frame(box.center.frame, frame)
     group = scope.check_group(group_name, at.key("group"))

@@ -27,11 +27,16 @@ def test_a_tree_in_a_narrow_bend_grows_by_shorter_steps_until_it_is_outside():
         along_y = (np.abs(x - 1.0) < 0.1) & (y > -0.1)
         return bool(np.all(along_x | along_y | (y > 1.0)))
 
+    def extend(here, target, longest):
+        way = target - here
+        there = here + min(1.0, longest / np.linalg.norm(way)) * way
+        return [there] if in_the_bend(here, there) else []
+
     rng = np.random.default_rng(1)
     for _ in range(2000):
         angle = rng.uniform(0.0, 2 * np.pi)
         sample = 4.0 * np.array([np.cos(angle), np.sin(angle)])
-        tree.grow(sample, in_the_bend)
+        tree.grow(sample, extend)
     assert tree.points[: tree.count, 1].max() > 2.0
 
 
@@ -42,7 +47,7 @@ def test_samples_are_drawn_about_the_tree_and_inside_the_limits():
     assert np.allclose(drawn.min(axis=0), [-BEYOND, -BEYOND], atol=0.05)
     assert np.allclose(drawn.max(axis=0), [1.0 + BEYOND, 1.2 + BEYOND], atol=0.05)
     for sample in ([2.4, 1.2], [1.0, 2.6], [-1.0, -1.0]):
-        assert tree.grow(np.array(sample), lambda *_: True) is not None
+        assert tree.grow(np.array(sample), lambda _, target, __: [target]) is not None
     drawn = np.array([tree.draw(samples) for _ in range(400)])
     assert np.allclose(drawn.min(axis=0), limits[0], atol=0.05)
     assert np.allclose(drawn.max(axis=0), [2.4 + BEYOND, 3.0], atol=0.05)

@@ -72,7 +72,7 @@ def test_a_tool_held_level_stays_in_its_cone_on_every_sample(cell, tolerance):
     unheld = [
         tilt(start, cell.kinematics.link_pose(cell.with_arm(q), TCP), up) for q in dense(free)
     ]
-    assert max(tilts) <= tolerance * np.sqrt(2)
+    assert max(tilts) <= tolerance + 1e-6
     assert max(unheld) > tolerance
     end = cell.kinematics.link_pose(cell.with_arm(plan.trajectory.positions[-1]), TCP)
     assert end.distance_to(beyond(cell).pose)[0] < 1e-6
@@ -98,7 +98,7 @@ def test_the_same_seed_gives_the_same_constrained_plan(cell):
         cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(beyond(cell), held), OPTIONS))
         for _ in range(2)
     )
-    assert first.statistics.find(PlanStatistics).planner_id == "RRTConnect, projected"
+    assert first.statistics.find(PlanStatistics).planner_id == "BalancedConnect, projected"
     assert first.trajectory.positions.tobytes() == second.trajectory.positions.tobytes()
 
 

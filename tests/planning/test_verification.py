@@ -90,7 +90,10 @@ def test_efforts_and_constraints_are_part_of_it(task, good):
     assert broken(task, good, limits=limits) == "effort limit"
     pan = task.space.joint_names[0]
     held = PathConstraints(joints=(JointBand(pan, START[0] - 0.1, START[0] + 0.4),))
-    assert broken(task, good, held=HeldConstraints(held, task.space)) == "path constraints"
+    assert (
+        broken(task, good, held=HeldConstraints(held, task.space, task.checker.scene.frame))
+        == "path constraints"
+    )
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.97, True), (0.995, False), (1.03, False)])

@@ -124,7 +124,12 @@ def test_a_broken_constraint_is_dated_by_its_sample_or_the_middle_of_two(place, 
     """The first joint is at 0.2 at 0.4 s and at 0.25 at 0.5 s; between them at 0.225."""
     record = ConstraintFailure(place, 0.0, 0.1)
     broken = SimpleNamespace(what="it is broken", record=record)
-    held = SimpleNamespace(violation=lambda q: broken if abs(q[0] - place) < 1e-9 else None)
+
+    def first_violation(states):
+        rows = np.flatnonzero(np.abs(states[:, 0] - place) < 1e-9)
+        return (int(rows[0]), broken) if len(rows) else None
+
+    held = SimpleNamespace(first_violation=first_violation)
     found = find_defect(moving(), Checker(), START, END, LIMITS, held)
     assert (found is None) is (time is None)
     assert time is None or found.message == f"at {time} s it is broken"

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 import pinocchio as pin
 
-from harness.core.errors import StepFailed
+from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Plane, Shape
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
@@ -160,6 +160,21 @@ class CoalScene:
         if found.link is None:
             return found.pose
         return self.robot.link_pose(np.asarray(joint_positions, float), found.link) @ found.pose
+
+    def frame(self, name: str) -> tuple[str, SE3]:
+        """The link that carries a link or an attached object, and T_link_frame.
+
+        Raises:
+            PlanningFailed: INVALID_LINK_NAME.
+        """
+        if name in self.description.link_names:
+            return name, SE3.identity()
+        held = self._objects.get(name)
+        if held is None or held.link is None:
+            raise PlanningFailed(
+                "INVALID_LINK_NAME", f"'{name}' is neither a link nor an attached object"
+            )
+        return held.link, held.pose
 
     def touches(self, joint_positions: FloatArray, padding: float = 0.0) -> Sequence[Touch]:
         """Pairs closer than allowed at a state, nearest first."""

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 import pinocchio as pin
@@ -15,11 +16,13 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.collision.wording import counted_noun
+from harness.planning.goals.goal_study import MOST_GOALS
 from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.planning.ik.numeric import sample_group_positions
 from harness.planning.task import PlanningTask
 from harness.planning.verification.path_constraints import HeldConstraints
-from harness.ports.goals import AnyGoal, Goal, PoseGoal
+from harness.ports.goals import AnyGoal, Goal, PoseGoal, PositionBox, PositionGoal
 from harness.recording.explanation import Alternative, Alternatives, GoalRegion
 
 SAMPLES = 24
@@ -32,6 +35,9 @@ WIDE = 0.2
 """Angle tolerance from which all poses of a region are equivalent to its centre [rad]."""
 
 MOST_CANDIDATES = 16
+
+PROJECTIONS = 64
+"""Number of random positions that are projected to a goal and to path constraints."""
 
 
 def choose_goals(
@@ -56,7 +62,7 @@ def choose_goals(
 
     def find(one: Goal) -> GoalCandidates:
         found = find_goals(kinematics, task.checker, start, one, task.options.seed)
-        return found if held is None else _holding(found, held)
+        return found if held is None else _holding(found, held, task, one)
 
     if isinstance(goal, AnyGoal):
         every = goal.goals
@@ -110,11 +116,18 @@ def _limited(goal: PoseGoal) -> FloatArray:
     return np.minimum(np.array(_tolerances(goal)), np.pi)
 
 
-def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
-    """The candidates that satisfy the path constraints."""
-    kept = tuple(positions for positions in found.positions if held.hold(positions))
+def _holding(
+    found: GoalCandidates, held: HeldConstraints, task: PlanningTask, goal: Goal
+) -> GoalCandidates:
+    """The candidates that satisfy the path constraints.
+
+    A position leaves the orientation open: its candidates are projected to the constraints.
+    """
+    kept = [positions for positions in found.positions if held.hold(positions)]
+    if not kept and isinstance(goal, PositionGoal) and goal.pitch is None:
+        kept = _projected(found, held, task, goal)
     if kept:
-        return replace(found, positions=kept)
+        return replace(found, positions=tuple(kept))
     broken = held.violation(found.positions[0])
     why = "" if broken is None else f": {broken.what}"
     raise PlanningFailed(
@@ -124,6 +137,26 @@ def _holding(found: GoalCandidates, held: HeldConstraints) -> GoalCandidates:
         *found.explanation,
         *(() if broken is None else (broken.record,)),
     )
+
+
+def _projected(
+    found: GoalCandidates, held: HeldConstraints, task: PlanningTask, goal: PositionGoal
+) -> list[FloatArray]:
+    """Free positions at the goal that satisfy the constraints, least effort first.
+
+    They are sought from the candidates, then from random positions.
+    """
+    side = 2 * goal.position_tolerance / np.sqrt(3)
+    at_goal = held.at(PositionBox(goal.link, SE3(np.eye(3), goal.position), (side, side, side)))
+    rng, kept = np.random.default_rng(task.options.seed % 2**63), list[FloatArray]()
+    drawn = (sample_group_positions(task.space, rng) for _ in range(PROJECTIONS))
+    for start in chain(found.positions, drawn):
+        positions = at_goal.project(start)
+        if positions is not None and task.checker.state_free(positions):
+            kept.append(positions)
+        if len(kept) == MOST_GOALS:
+            break
+    return sorted(kept, key=lambda positions: round(task.space.effort(task.start, positions), 9))
 
 
 def _one_of(

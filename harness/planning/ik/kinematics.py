@@ -21,7 +21,7 @@ from harness.planning.ik.numeric import LinkGoal, LinkTask
 from harness.planning.ik.task import WHOLE_POSE_JOINTS, task_of
 from harness.planning.ik.third_party import solve_with_third_party
 from harness.planning.model.robot_model import GroupSpace, RobotModel
-from harness.planning.model.turns import is_within, turn_from
+from harness.planning.model.turns import is_within, turns_from
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.kinematics import IkRequest, IkSolver
 from harness.recording.goal_failures import LinkFailure
@@ -263,8 +263,8 @@ def meets_tolerance(goal: LinkGoal, pose: SE3) -> bool:
             return False
         if goal.axis_tolerances is None:
             return angle <= goal.orientation_tolerance
-        turn = turn_from(goal.pose.rotation, pose.rotation, goal.axis_tolerances)
-        return is_within(turn, goal.axis_tolerances)
+        turns = turns_from(goal.pose.rotation, pose.rotation[None], goal.axis_tolerances)
+        return is_within(turns[0], goal.axis_tolerances)
     shift = float(np.linalg.norm(goal.position - pose.translation))
     if shift > goal.position_tolerance:
         return False

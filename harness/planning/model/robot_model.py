@@ -48,12 +48,15 @@ class RobotModel:
         self._has_circular = bool(self.is_circular.any())
 
     def configuration(self, joint_positions: FloatArray) -> FloatArray:
-        """Pinocchio's configuration of joint positions in description order."""
-        configuration = np.empty(self.model.nq)
-        configuration[self.rows] = joint_positions
+        """Pinocchio's configuration of joint positions in description order, (nq,) or (N, nq)."""
+        configuration = np.empty((*joint_positions.shape[:-1], self.model.nq))
+        configuration[..., self.rows] = joint_positions
         if self._has_circular:
-            first, angles = self.rows[self.is_circular], joint_positions[self.is_circular]
-            configuration[first], configuration[first + 1] = np.cos(angles), np.sin(angles)
+            first, angles = self.rows[self.is_circular], joint_positions[..., self.is_circular]
+            configuration[..., first], configuration[..., first + 1] = (
+                np.cos(angles),
+                np.sin(angles),
+            )
         return configuration
 
     def frame_id(self, link: str) -> int:

@@ -1,42 +1,61 @@
-"""How far one rotation is turned from another, about the axes of the first."""
+"""How far rotations are turned from another one, about the axes of that one."""
+
+# pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
+import pinocchio as pin
 
-from harness.core.spatial import quat_wxyz_from_rotation
 from harness.core.types import FloatArray
+from harness.robot.forward_kinematics import quats_wxyz
 
 FREE = np.pi - 1e-6
 """A tolerance about one axis from which on any turn about it is allowed [rad]."""
 
 
-def turn_from(middle: FloatArray, rotation: FloatArray, tolerance: Sequence[float]) -> FloatArray:
-    """How a rotation is turned away from a middle one, about the middle's axes [rad], shape (3,).
+def free_axis(tolerance: Sequence[float]) -> int | None:
+    """The only axis about which any turn is allowed; None where it is none or several."""
+    free = [axis for axis in range(3) if tolerance[axis] >= FREE]
+    return free[0] if len(free) == 1 else None
+
+
+def turns_from(middle: FloatArray, rotations: FloatArray, tolerance: Sequence[float]) -> FloatArray:
+    """How rotations are turned away from a middle one, about the middle's axes [rad], shape (N, 3).
 
     The rotation vector; where one axis alone is free, the vector of what is left when the turn
     about that axis is taken out, so that a cone about it stays a cone however far it is turned.
 
     Args:
-        middle: The rotation from which the turn is measured, shape (3, 3).
-        rotation: The rotation at the end of the turn, shape (3, 3).
+        middle: The rotation from which turns are measured, shape (3, 3).
+        rotations: The rotations at the ends of the turns, shape (N, 3, 3).
         tolerance: The tolerance about x, y, z [rad], which says which axes are free.
     """
-    quat = quat_wxyz_from_rotation(middle.T @ rotation)
-    free = [axis for axis in range(3) if tolerance[axis] >= FREE]
-    if len(free) != 1:
-        return _rotation_vector(quat)
-    axis = free[0]
-    w, v = quat[0], quat[1:]
-    size = float(np.hypot(w, v[axis]))
-    if size < 1e-9:
-        return _rotation_vector(quat)
-    cosine, sine = w / size, v[axis] / size
-    unit = np.eye(3)[axis]
-    swing_vector = cosine * v - sine * w * unit - np.cross(v, sine * unit)
-    return _rotation_vector(np.concatenate([[cosine * w + sine * v[axis]], swing_vector]))
+    relative = middle.T @ rotations
+    axis = free_axis(tolerance)
+    if axis is None:
+        return _rotation_vectors(quats_wxyz(relative))
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    sines = np.hypot(relative[:, first, axis], relative[:, second, axis])
+    angles = np.arctan2(sines, relative[:, axis, axis])
+    swings = np.zeros((len(relative), 3))
+    scale = angles / np.maximum(sines, 1e-300)
+    swings[:, first] = -scale * relative[:, second, axis]
+    swings[:, second] = np.where(sines > 0, scale * relative[:, first, axis], angles)
+    return swings
+
+
+def turn_rates(turn: FloatArray, tolerance: Sequence[float]) -> FloatArray:
+    """Derivative of a turn, as of `turns_from`, by the angular velocity in the middle's axes."""
+    rotation = pin.exp3(turn)
+    rates: FloatArray = pin.Jlog3(rotation).T
+    axis = free_axis(tolerance)
+    if axis is None:
+        return rates
+    about = rates @ rotation[:, axis]
+    return rates - np.outer(about, rates[axis]) / about[axis]
 
 
 def is_within(turn: FloatArray, tolerance: Sequence[float]) -> bool:
@@ -47,9 +66,8 @@ def is_within(turn: FloatArray, tolerance: Sequence[float]) -> bool:
     )
 
 
-def _rotation_vector(quat_wxyz: FloatArray) -> FloatArray:
-    size = float(np.linalg.norm(quat_wxyz[1:]))
-    if size < 1e-12:
-        return np.zeros(3)
-    angle = 2 * np.arctan2(size, abs(quat_wxyz[0]))
-    return np.sign(quat_wxyz[0] or 1.0) * angle * quat_wxyz[1:] / size
+def _rotation_vectors(quats_wxyz: FloatArray) -> FloatArray:
+    size = np.linalg.norm(quats_wxyz[:, 1:], axis=1, keepdims=True)
+    angle = 2 * np.arctan2(size, np.abs(quats_wxyz[:, :1]))
+    sign = np.where(quats_wxyz[:, :1] < 0, -1.0, 1.0)
+    return sign * angle * quats_wxyz[:, 1:] / np.maximum(size, 1e-12)

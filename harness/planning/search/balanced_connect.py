@@ -37,19 +37,25 @@ to 950 with that of another one.
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Multiples of it, modulo 1, are spread evenly: they select the vertices that samples surround."""
 
-_EdgeCheck = Callable[[FloatArray, FloatArray], bool]
-_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
+Extend = Callable[[FloatArray, FloatArray, float], Sequence[FloatArray]]
+"""Returns states on the way from a state towards another one, at most a distance away [rad]: each
+is joined to the one before it, and the last one is the other one where that is reached."""
+
 _BLOCK = 256
 
 PARAMETERS = ("range",)
 
 
-def search_connect(request: PathRequest) -> PathResult:
+def search_connect(request: PathRequest, extend: Extend | None = None) -> PathResult:
     """Search a path.
 
     RRT-Connect [1] in which the smaller tree grows [2], towards samples near it from a Halton
     sequence, whose first index follows from the seed.
     Distances are measured in the group's metric.
+
+    Args:
+        request: What is searched.
+        extend: How trees are extended; along free straight lines by default.
 
     Raises:
         ValueError: The parameter is unknown.
@@ -68,16 +74,24 @@ def search_connect(request: PathRequest) -> PathResult:
         _Tree([np.asarray(goal) * metric for goal in goals], step, limits),
     )
 
-    def is_free(first: FloatArray, second: FloatArray) -> bool:
-        return request.is_edge_free(first / metric, second / metric)
+    def straight(here: FloatArray, target: FloatArray, longest: float) -> Sequence[FloatArray]:
+        distance = space.distance(here, target)
+        there = target if distance <= longest else here + longest / distance * (target - here)
+        return [there] if request.is_edge_free(here, there) else []
+
+    def scaled(here: FloatArray, target: FloatArray, longest: float) -> list[FloatArray]:
+        way = (extend or straight)(here / metric, target / metric, longest)
+        return [state * metric for state in way]
 
     def outcome(path: FloatArray | None) -> PathResult:
         count = trees[0].count + trees[1].count
         return PathResult(path, count, 0.0 if path is not None else _gap(*trees))
 
     for goal in goals:
-        if is_free(trees[0].points[0], np.asarray(goal) * metric):
-            return outcome(np.array([start, goal], dtype=float))
+        met = trees[0].connect(np.asarray(goal) * metric, scaled, math.inf)
+        if met is not None:
+            way = trees[0].branch(met)[-2::-1] / metric
+            return outcome(_ending_exactly(np.vstack([start, way if met else goal]), goals))
     samples = _Samples(space.dof, 1 + request.seed % 1_000_003)
     growing = blocked = 0
     stalled = max(STALLED, STALLED_PER_CHECK * request.max_state_checks)
@@ -85,13 +99,13 @@ def search_connect(request: PathRequest) -> PathResult:
         if trees[growing].count > trees[1 - growing].count:
             growing = 1 - growing
         tree = trees[growing]
-        vertex = tree.grow(tree.draw(samples), is_free)
+        vertex = tree.grow(tree.draw(samples), scaled)
         if vertex is None:
             blocked += 1
             continue
         blocked = 0
         other = trees[1 - growing]
-        met = other.connect(trees[growing].points[vertex], is_free)
+        met = other.connect(trees[growing].points[vertex], scaled, step)
         if met is not None:
             halves = [trees[growing].branch(vertex), other.branch(met)]
             first, last = halves if growing == 0 else halves[::-1]
@@ -120,17 +134,9 @@ def step_length(planner_id: str, parameters: Mapping[str, float]) -> float:
 
 
 def halton(first: int, count: int, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Compute points of the Halton sequence in a box, from an index on, shape (count, dof).
-
-    Raises:
-        ValueError: There are more dimensions than primes in the list.
-    """
-    if len(lower) > len(_PRIMES):
-        raise ValueError(
-            f"the group has {len(lower)} joints; the planner supports at most {len(_PRIMES)}"
-        )
+    """Compute points of the Halton sequence in a box, from an index on, shape (count, dof)."""
     points = np.empty((count, len(lower)))
-    for column, base in enumerate(_PRIMES[: len(lower)]):
+    for column, base in enumerate(_primes(len(lower))):
         index = np.arange(first, first + count)
         share, value = 1.0, np.zeros(count)
         while index.any():
@@ -139,6 +145,16 @@ def halton(first: int, count: int, lower: FloatArray, upper: FloatArray) -> Floa
             index //= base
         points[:, column] = value
     return lower + (upper - lower) * points
+
+
+def _primes(count: int) -> list[int]:
+    found: list[int] = []
+    number = 2
+    while len(found) < count:
+        if all(number % prime for prime in found):
+            found.append(number)
+        number += 1
+    return found
 
 
 class _Samples:
@@ -200,35 +216,38 @@ class _Tree:
         around = self.points[vertex] + BEYOND * (2.0 * share - 1.0)
         return np.clip(around, *self._limits)
 
-    def grow(self, sample: FloatArray, is_free: _EdgeCheck) -> int | None:
-        """Add a vertex one step from the nearest one towards a sample; None where that is blocked.
+    def grow(self, sample: FloatArray, extend: Extend) -> int | None:
+        """Extend from the nearest vertex towards a sample, by at most a step; None where blocked.
 
-        Every blocked edge shortens the steps from its vertex a little, so that a tree leaves a
+        Every blocked extension shortens the steps from its vertex a little, so that a tree leaves a
         place where no longer edge is free.
         """
         near, distance = self.nearest(sample)
         if distance < 1e-9:
             return None
-        here, step = self.points[near], self._steps[near]
-        there = here + min(1.0, step / distance) * (sample - here)
-        if is_free(here, there):
-            return self._add(there, near)
-        self._steps[near] = max(SHORTER * step, SHORTEST * self._step)
-        return None
+        vertex = self._extended(near, sample, self._steps[near], extend)
+        if vertex is None:
+            self._steps[near] = max(SHORTER * self._steps[near], SHORTEST * self._step)
+        return vertex
 
-    def connect(self, point: FloatArray, is_free: _EdgeCheck) -> int | None:
+    def connect(self, point: FloatArray, extend: Extend, longest: float) -> int | None:
         """Extend step by step to a point of the other tree; the vertex that reaches it, or None."""
-        near, distance = self.nearest(point)
-        while True:
-            here = self.points[near]
-            is_last = distance <= self._step
-            there = point if is_last else here + self._step / distance * (point - here)
-            if not is_free(here, there):
+        vertex, distance = self.nearest(point)
+        while distance > 1e-9:
+            there = self._extended(vertex, point, longest, extend)
+            if there is None:
                 return None
-            near = self._add(there, near)
-            if is_last:
-                return near
-            distance -= self._step
+            vertex, distance = there, math.dist(self.points[there], point)
+        return vertex
+
+    def _extended(
+        self, vertex: int, target: FloatArray, longest: float, extend: Extend
+    ) -> int | None:
+        """Add the states on the way from a vertex towards a target; the last one, None if none."""
+        way = extend(self.points[vertex], target, longest)
+        for state in way:
+            vertex = self._add(state, vertex)
+        return vertex if way else None
 
     def branch(self, index: int) -> FloatArray:
         """Points from a vertex to its root, shape (K, dof)."""

@@ -46,6 +46,10 @@ class Dynamics(Protocol):
         """Efforts of a motion, (N, dof) each."""
         ...
 
+    def can_hold(self, positions: FloatArray) -> bool:
+        """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
+        ...
+
     def standing_overload(self, positions: FloatArray) -> tuple[str, Details]:
         """Message and details of a joint whose effort does not suffice to stand still, (dof,)."""
         ...

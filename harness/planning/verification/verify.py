@@ -222,17 +222,17 @@ def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
 def _constraints(trajectory: JointTrajectory, held: HeldConstraints | None) -> Defect | None:
     if held is None:
         return None
-    positions = trajectory.positions
-    middles = 0.5 * (positions[1:] + positions[:-1])
-    times = np.concatenate([trajectory.times, 0.5 * (trajectory.times[1:] + trajectory.times[:-1])])
-    for time, state in zip(times, np.concatenate([positions, middles]), strict=True):
-        broken = held.violation(state)
-        if broken is not None:
-            return Defect(
-                f"at {time:.2f} s {broken.what}",
-                Details.of(TrajectoryFailure("path constraints"), broken.record),
-            )
-    return None
+    positions, times = trajectory.positions, trajectory.times
+    states = np.vstack([positions, 0.5 * (positions[1:] + positions[:-1])])
+    found = held.first_violation(states)
+    if found is None:
+        return None
+    row, broken = found
+    time = np.append(times, 0.5 * (times[1:] + times[:-1]))[row]
+    return Defect(
+        f"at {time:.2f} s {broken.what}",
+        Details.of(TrajectoryFailure("path constraints"), broken.record),
+    )
 
 
 def _collision(trajectory: JointTrajectory, checker: MotionChecker) -> Defect | None:
