@@ -2,7 +2,7 @@
 
 A body has moved as far as the point of it that moved furthest. Where it is, is its middle: the
 centre of its mass, which is the point that counts of a mesh. How high it is, is its lowest point
-(`support.lowest_points`). The origin of a frame is where a designer put it.
+(`lowest_points`). The origin of a frame is where a designer put it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from harness.assertions.poses import put_samples
 from harness.assertions.temporal import first_within, trailing_max
 from harness.assertions.window import object_record
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere, reach
 from harness.core.pose_arrays import rotate, rotations_of, times_each, turn_between
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import TIME_RESOLUTION, ObjectRecord, Run
@@ -95,6 +95,19 @@ def middles(record: ObjectRecord, poses: FloatArray) -> FloatArray:
     return poses[:, :3] + rotate(poses[:, 3:], middle_of(record))
 
 
+def lowest_points(record: ObjectRecord, poses: FloatArray) -> FloatArray:
+    """Height of an object's lowest point [m], shape (N,); of its middle where a shape is a mesh."""
+    lowest = [middles(record, poses)[:, 2]] if not record.shapes else []
+    for shape in record.shapes:
+        centre = poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2]
+        vertical = np.stack(  # height of the shape's axes
+            [rotate(poses[:, 3:], shape.pose.rotation[:, axis])[:, 2] for axis in range(3)], axis=1
+        )
+        below = reach(shape.geometry, vertical)
+        lowest.append(middles(record, poses)[:, 2] if below is None else centre - below)
+    return np.min(lowest, axis=0)
+
+
 def frame_speeds(
     run: Run, name: str, poses: FloatArray, here: BoolArray | None = None
 ) -> FloatArray:
@@ -111,9 +124,9 @@ def body_speeds(
 ) -> tuple[FloatArray, FloatArray]:
     """Speed of a body's fastest point [m/s] and its turning speed [rad/s], shape (N,) each.
 
-    In the first `STILL` seconds after it appeared or was put somewhere the speeds are what it has
-    moved since, divided by `STILL`: a body that stands exactly on its support falls for one step of
-    the physics, until a contact begins, and what begins is no motion that lasts.
+    In the first `STILL` seconds after it appeared or was put somewhere the speeds are at most what
+    it has moved since, divided by `STILL`: a body that stands exactly on its support falls for one
+    step of the physics until a contact begins.
 
     Args:
         run: The run, whose times count.
@@ -131,7 +144,7 @@ def body_speeds(
         for first in np.union1d(appears, put_samples(run, name)).tolist():
             last = int(np.searchsorted(times, times[first] + STILL + TIME_RESOLUTION))
             settled = way(poses[first : first + 1], poses[first + 1 : last]) / STILL
-            speeds[first + 1 : last] = np.where(np.isnan(speeds[first + 1 : last]), np.nan, settled)
+            speeds[first + 1 : last] = np.minimum(speeds[first + 1 : last], settled)
         found.append(speeds)
     return found[0], found[1]
 

@@ -23,6 +23,8 @@ from harness.recording.verdict import VerdictWarning
 
 TOUCH_FORCE = 1e-3
 """A tenth of the weight of one gram; less is no support and no grip [N]."""
+OVERLAP = 0.001
+"""Depth from which an overlap is no rounding of shapes: convex hulls are off by as much [m]."""
 DEBOUNCE = 0.010
 """Longest gap inside one contact [s]: ten physics steps of 1 ms."""
 
@@ -184,7 +186,7 @@ def pairs_of(firsts: Collection[str], seconds: Collection[str]) -> frozenset[tup
 def unseen_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
     """Warnings of contacts between bodies that the physics cannot have, or may have missed."""
     names = {name for pair in pairs for name in pair}
-    return (*shapeless(run, names), *_skipped_contacts(run, pairs))
+    return (*shapeless(run, names), *_skipped_contacts(run, pairs), *_skipped_by_links(run, pairs))
 
 
 def shapeless(run: Run, names: Collection[str]) -> tuple[VerdictWarning, ...]:
@@ -224,6 +226,40 @@ def _skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Ver
                 )
             )
     return tuple(found)
+
+
+def _skipped_by_links(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[VerdictWarning, ...]:
+    """A warning for each object that a link of the robot overlapped without a recorded contact.
+
+    Distances are interpolated between two samples where bodies are fast, contacts are not.
+    """
+    if "clearances" in run.unrecorded or "contact_forces" in run.unrecorded:
+        return ()
+    links, every = run.robot.link_names, set(run.robot.link_names)
+    found: list[VerdictWarning] = []
+    for (first, name), distance in sorted(run.signals.clearances.items()):
+        if first != "robot" or name == "robot" or not _is_physical(run, name):
+            continue
+        nearest = run.signals.clearance_links.get((first, name), np.full(len(distance), -1))
+        among = [links.index(link) for link in every if (min(link, name), max(link, name)) in pairs]
+        touching = np.append(force_between(run, every, {name}) > 0, False)
+        missed = (distance < -OVERLAP) & np.isin(nearest, among)
+        missed &= ~(touching[:-1] | touching[1:])
+        if missed.any():
+            worst = int(np.argmin(np.where(missed, distance, 0.0)))
+            found.append(
+                VerdictWarning(
+                    "contact may be missed",
+                    f"{links[int(nearest[worst])]} is {-1000 * float(distance[worst]):.1f} mm"
+                    f" inside {name} between two samples at t={run.signals.times[worst]:.3f} s,"
+                    " and no contact was recorded",
+                )
+            )
+    return tuple(found)
+
+
+def _is_physical(run: Run, name: str) -> bool:
+    return any(record.name == name and record.in_simulation for record in run.objects)
 
 
 def _least_known_width(run: Run, name: str) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.assertions.body_motion import middles
 from harness.assertions.hold import held_by_fingers
 from harness.assertions.poses import link_poses, object_poses
 from harness.assertions.window import NotObservable, NotReached, object_record
@@ -75,8 +76,10 @@ def drift_in_hand(run: Run, name: str) -> tuple[str, FloatArray, FloatArray, Boo
         first = int(gripped[0])
         held = (np.arange(count) >= first) & (times < released_at(run, record))
         is_held |= held
-        drift[held] = np.linalg.norm(error[held, :3] - zero[:3], axis=1)
-        if equal_turns(object_record(run, record.represents).shapes, np.eye(3)) == ANY:
+        body = object_record(run, record.represents)
+        places = middles(body, error)
+        drift[held] = np.linalg.norm(places[held] - places[first], axis=1)
+        if equal_turns(body.shapes, np.eye(3)) == ANY:
             axis = np.array([0.0, 0.0, 1.0])
             turned = angle_between(rotate(error[:, 3:], axis), rotate(zero[3:], axis))
         else:

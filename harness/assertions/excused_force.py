@@ -20,11 +20,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.assertions.body_motion import middles
 from harness.assertions.contacts import force_between, gripper_of
 from harness.assertions.hold import recent_mean, weight_of
-from harness.assertions.poses import object_poses
+from harness.assertions.poses import object_poses, put_samples
 from harness.assertions.support import riders
-from harness.assertions.window import NotObservable
+from harness.assertions.window import NotObservable, object_record
 from harness.core.pose_arrays import relative
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
@@ -105,10 +106,23 @@ def leaving_limit(run: Run, samples: slice, force: FloatArray, limit: FloatArray
 
 
 def dragged(run: Run, name: str, other: str, start: int, stop: int) -> FloatArray:
-    """How far an object has been moved along another since a sample [m], shape (stop - start,)."""
+    """How far an object has slid along another since a sample [m], shape (stop - start,).
+
+    The way of the points at which they touch counts: the ends of a ruler that turns where it lies
+    are dragged, and a rod that is raised at one end is not. In the gaps of one contact it slides as
+    before. Where that was not recorded it is how far the middle of the object has moved.
+    """
+    pair = (min(name, other), max(name, other))
+    if pair in run.signals.slides:
+        slid = run.signals.slides[pair].copy()
+        slid[[*put_samples(run, name), *put_samples(run, other), start]] = 0.0
+        touching = force_between(run, {name}, {other})[start:stop] > 0
+        latest = np.maximum.accumulate(np.where(touching, np.arange(stop - start), 0))
+        return np.cumsum(slid[start:stop][latest])
     poses = object_poses(run, name)[start:stop]
     try:
         seen = relative(object_poses(run, other)[start:stop], poses)
     except NotObservable:
         seen = poses
-    return np.linalg.norm(seen[:, :3] - seen[0, :3], axis=1)
+    places = middles(object_record(run, name), seen)
+    return np.linalg.norm(places - places[0], axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.assertions.body_motion import lowest_points, middle_of
 from harness.assertions.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
@@ -249,7 +250,7 @@ def moves_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
 def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, FloatArray]:
     """How far an object moved [m] and turned [rad] in the hand since earlier samples, (N,) each.
 
-    It moves as its point that was between the fingers; its origin may be far from them. The origin
+    It moves as its point that was between the fingers; its origin may be far from them. Its middle
     counts where the fingers did not press it, or no direction was recorded.
 
     Args:
@@ -268,25 +269,28 @@ def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, Floa
 def _poses_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """T_tcp_object, shape (N, 7), and the object's point between the fingers, its axes, (N, 3)."""
     poses = object_poses(run, name)
-    points = np.zeros((len(poses), 3))
+    middle = middle_of(object_record(run, name))
+    points = np.broadcast_to(middle, (len(poses), 3))
     if sides := _side_presses(run, name):
         pressed = np.all([side[:, 3:].any(axis=1) for side in sides], axis=0)
         offset = np.mean([side[:, :3] for side in sides], axis=0) - poses[:, :3]
-        points = np.where(pressed[:, None], rotate(conjugate(poses[:, 3:]), offset), 0.0)
+        points = np.where(pressed[:, None], rotate(conjugate(poses[:, 3:]), offset), middle)
     return relative(run.signals.tcp_pose, poses), points
 
 
 def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
     """Height that the motion of the hand gives an object since it holds it [m], shape (N,).
 
-    It is that of the object if it stood in the hand as it did when the hold began. Gaps shorter
-    than `BRIDGE` do not end a hold.
+    It is that of the object's lowest point if it stood in the hand as it did when the hold began.
+    Gaps shorter than `BRIDGE` do not end a hold.
     """
     poses, tcp = object_poses(run, name), run.signals.tcp_pose
+    record = object_record(run, name)
     raised = np.zeros(len(poses))
     for start, stop in bridged(run.signals.times, episodes(held)):
         in_hand = relative(tcp[start], poses[start])
-        raised[start:stop] = compose(tcp[start:stop], in_hand)[:, 2] - poses[start, 2]
+        heights = lowest_points(record, compose(tcp[start:stop], in_hand))
+        raised[start:stop] = heights - heights[0]
     return raised
 
 

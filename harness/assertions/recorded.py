@@ -18,6 +18,7 @@ WORDS = {
     "contact_forces": "contacts",
     "presses": "the directions in which the fingers press",
     "support_forces": "what carries what",
+    "slides": "how far objects slide",
     "clearances": "distances",
     "planned_clearances": "planned distances",
     "frictions": "the friction forces of the robot",

@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
+from harness.assertions.body_motion import lowest_points
 from harness.assertions.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
@@ -22,10 +23,9 @@ from harness.assertions.hold import gripped, weight_of
 from harness.assertions.poses import object_poses
 from harness.assertions.temporal import without_gaps
 from harness.assertions.window import NotObservable, object_record
-from harness.core.geometry import reach
 from harness.core.pose_arrays import rotate
 from harness.core.types import BoolArray, FloatArray
-from harness.recording.run import ObjectRecord, Run
+from harness.recording.run import Run
 
 SINKING = 0.005
 """How far a soft contact may let an object sink, and still be above [m]."""
@@ -33,19 +33,6 @@ SUPPORT_SHARE = 0.5
 """Share of its weight with which something rests on what carries it."""
 ROUNDING = 0.01
 """Part of that share which may be missing: a solver's forces of two equal supports differ."""
-
-
-def lowest_points(record: ObjectRecord, poses: FloatArray) -> FloatArray:
-    """Height of an object's lowest point [m], shape (N,); of its origin where a shape is a mesh."""
-    lowest = [poses[:, 2]] if not record.shapes else []
-    for shape in record.shapes:
-        centre = poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2]
-        vertical = np.stack(  # height of the shape's axes
-            [rotate(poses[:, 3:], shape.pose.rotation[:, axis])[:, 2] for axis in range(3)], axis=1
-        )
-        below = reach(shape.geometry, vertical)
-        lowest.append(centre if below is None else centre - below)
-    return np.min(lowest, axis=0)
 
 
 def is_below(run: Run, support: str, name: str) -> BoolArray:

@@ -42,6 +42,9 @@ class Clearance(Predicate):
     own, whether or not a step has attached it; where it comes nearer to an object than the links
     may, a verdict that passes has a warning, unless it is taken from the object or put on it.
 
+    Links whose contact the SRDF excludes count as distances of the robot to itself where they are
+    nearer than with every joint at zero, and apart there: what is near by design says nothing.
+
     Distances are measured every 5 ms, at every sample around the smallest, and wherever two bodies
     could come nearer by more than 2 mm in between, by the bound of their motion; where they could
     between two samples, at interpolated positions too. A recorded distance is therefore at most

@@ -174,6 +174,8 @@ class Collision(Predicate):
             value = float(distance[index])
             measure = measured(LEFT, value, 0.0, ">=", window.time(index), name)
             text = f"no collision; {amount(value, 'm')} were left between {name}"
+            if value < 0:
+                text = f"no contact, though {name} are {amount(-value, 'm')} inside each other"
             return Evidence(text, (measure,))
 
         return MarginSignal(-np.maximum(spoken, LEAST_DISTANCE), "m", evidence)

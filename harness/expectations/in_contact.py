@@ -20,6 +20,7 @@ from harness.assertions.contacts import (
 )
 from harness.assertions.expectation import SPECIAL_BODIES, Predicate
 from harness.assertions.margins import MarginSignal, Part, all_of
+from harness.assertions.observations import Observations
 from harness.assertions.temporal import without_gaps
 from harness.assertions.text import amount
 from harness.assertions.window import Window, lasting
@@ -56,6 +57,9 @@ class InContact(Predicate):
         for index, name in enumerate(self.between):
             at.scope.check_body(name, at.key("between", index), special=SPECIAL_BODIES)
         check_contact(at.scope, *self.between, at.key("between"))
+
+    def observations(self) -> Observations:
+        return Observations(clearance_cutoff=0.0)
 
     def signal(self, window: Window) -> MarginSignal:
         """Force between the two bodies [N], sample by sample, while both are in the physics.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from harness.assertions.body_motion import lowest_points
 from harness.assertions.contacts import (
     TOUCH_FORCE,
     bodies_touching,
@@ -61,9 +62,9 @@ class Lifted(ObjectPredicate):
     opposite sides for 0.1 s, as `grasped` defines it; on average over that time the hand carries at
     least half of its weight, friction included; and within it the object moves in the hand by at
     most 5 mm and 0.1 rad. What is struck, bounces, or is thrown through the open hand fails one of
-    them. The height above the object's own start counts as far as the motion of the hand has given
-    it since the hold began. An object that lies on fingers that do not press it is not lifted
-    unless `cradled` says so.
+    them. The height is that of the object's lowest point (the centre of mass of meshes) above where
+    it was at the start, as far as the motion of the hand has given it since the hold began. An
+    object that lies on fingers that do not press it is not lifted unless `cradled` says so.
     """
 
     judged = "eventually"
@@ -71,7 +72,7 @@ class Lifted(ObjectPredicate):
     is_change = True
 
     above: PositiveLength = Field(
-        default=0.01, description="The height above the object's own start height [m]."
+        default=0.01, description="The height of its lowest point above that at its own start [m]."
     )
     cradled: Flag = Field(
         default=False,
@@ -91,7 +92,9 @@ class Lifted(ObjectPredicate):
         run, name = window.run, self.object
         gripper = gripper_of(run)
         hand = hand_links(gripper)
-        rise = object_poses(run, name)[:, 2] - start_poses(run, name)[:, 2]
+        record = object_record(run, name)
+        rise = lowest_points(record, object_poses(run, name))
+        rise -= lowest_points(record, start_poses(run, name))
         sides = side_forces(run, name)
         loads = riders(run, name)
         others = {
@@ -121,7 +124,7 @@ class Lifted(ObjectPredicate):
                 why = f"{name} touches {' and '.join(carriers)}"
             text += f"; {why}" if why else ""
             text += weld_note(run, name)
-            if not object_record(run, name).in_simulation:
+            if not record.in_simulation:
                 text += f"; {name} is not in the physics"
             measures = [measured(HEIGHT, gained, self.above, ">=", time, name), *more]
             measures += [

@@ -11,7 +11,7 @@ from harness.core.types import FloatArray, Floats, IntArray, Pair
 
 UNPUBLISHED = (
     *("contact_forces", "presses", "frictions", "support_forces"),
-    *("link_overlaps", "planned_clearances"),
+    *("slides", "link_overlaps", "planned_clearances"),
 )
 """Signals that no topic of a robot carries, and that no recording of its topics contains."""
 
@@ -114,9 +114,13 @@ class Signals:
         support_forces: Upward part of the normal force [N] that the first of two objects exerts on
             the second; negative where the second carries the first. (N,) each; keys as in
             `contact_forces`, of objects alone. A pair that is not in it was recorded without.
+        slides: How far two objects slid along each other since the sample before [m]: the largest
+            way along the surface of any point at which they press each other. (N,) each; zero
+            without contact; keys as in `support_forces`, of pairs with an object that the robot
+            touches, or that touches such. A pair that is not in it was recorded without.
         clearances: Distance [m] between the robot (key `robot`), or a held object (its name), and
-            an object, or `robot` and itself: (N,) each; NaN while either is absent. Capped at
-            `clearance_cutoff`: a value there means "at least that far".
+            an object, or `robot` and itself: (N,) each; NaN while either is absent, and of what the
+            hand grips. Capped at `clearance_cutoff`: a value there means "at least that far".
         clearance_links: The robot link that was nearest, as an index into the robot's link_names,
             (N,) each, for keys of `clearances` that start with `robot`; -1 where none.
         link_overlaps: How deep two links are inside each other [m] whose contact the SRDF excludes
@@ -143,6 +147,7 @@ class Signals:
     support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )
+    slides: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearances: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     clearance_links: Mapping[Pair, IntArray] = field(
         default_factory=dict[tuple[str, str], np.ndarray]

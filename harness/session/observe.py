@@ -41,17 +41,18 @@ def observed_run(
     """
     from harness.observation.clearance import CoalClearance
     from harness.observation.held_clearance import with_held_distances
-    from harness.observation.link_overlaps import with_link_overlaps
+    from harness.observation.link_overlaps import with_excluded_links
 
     description, needed = prepared.program.description, prepared.observations
     cutoff, bodies = needed.recorded_cutoff, (executed.objects, executed.attachments)
     observer = CoalClearance(description)
     signals = observer.observe(executed.signals, *bodies, cutoff, measured)
-    run = replace(executed, signals=with_link_overlaps(signals, description))
+    run = replace(executed, signals=with_excluded_links(signals, description))
     run = replace(run, signals=with_held_distances(run, observer))
     if not needed.planned_clearances:
         return run
-    planned = observer.observe(as_commanded(run, prepared.ports.kinematics), *bodies, cutoff)
+    commanded = as_commanded(run, prepared.ports.kinematics)
+    planned = with_excluded_links(observer.observe(commanded, *bodies, cutoff), description)
     return replace(run, signals=replace(run.signals, planned_clearances=planned.clearances))
 
 

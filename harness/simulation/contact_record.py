@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Set
 
 import mujoco
 import numpy as np
 
+from harness.core.pose_arrays import conjugate, rotate
 from harness.core.types import FloatArray
 from harness.simulation.copied_contacts import Array, CopiedContacts, SampleContacts
 from harness.simulation.model import PhysicsModel
@@ -173,6 +174,33 @@ class ContactRecord:
             _add(sums, rows, self._signs(contacts, below) * upward)
         return {pair: found[pair] for pair in sorted(found)}
 
+    def slides(
+        self, count: int, poses: Mapping[str, FloatArray], chosen: Set[str]
+    ) -> dict[BodyPair, FloatArray]:
+        """How far objects slide along each other since the sample before [m], shape (count,) each.
+
+        It is the largest way along the surface of any point at which they press each other.
+
+        Args:
+            count: Number of samples, counted from the first.
+            poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
+            chosen: Objects; pairs without any of them are left out.
+        """
+        found: dict[BodyPair, FloatArray] = {}
+        for numbers, rows, contacts in self._by_pair(0, count):
+            pair = self._pair(*numbers)
+            if chosen.isdisjoint(pair) or not poses.keys() >= set(pair):
+                continue
+            presses = (self._forces[contacts] > 0) & (rows > 0)
+            rows, contacts = rows[presses], contacts[presses]
+            points, normals = self._points[contacts], self._normals[contacts]
+            ways = [_way_of_points(poses[name], rows, points) for name in pair]
+            way = np.nan_to_num(ways[0] - ways[1])
+            way -= np.sum(way * normals, axis=1, keepdims=True) * normals
+            slid = found.setdefault(pair, np.zeros(count))
+            np.maximum.at(slid, rows, np.linalg.norm(way, axis=1))
+        return {pair: found[pair] for pair in sorted(found)}
+
     def _by_link(self, first: int, last: int) -> Iterator[tuple[BodyPair, int, Array, Array]]:
         """Contacts of a link of the robot with any other body, as `_by_pair` yields them.
 
@@ -237,6 +265,19 @@ class ContactRecord:
             )
         a, b = sorted((names[first], names[second]))
         return a, b
+
+
+def _way_of_points(poses: FloatArray, rows: Array, points: Array) -> FloatArray:
+    """How far points of a body moved since the sample before [m], shape (C, 3).
+
+    Args:
+        poses: T_world_body at each sample, shape (N, 7).
+        rows: The sample of each point, from 1, shape (C,).
+        points: Where the points are now, in the world [m], shape (C, 3).
+    """
+    now, before = poses[rows], poses[rows - 1]
+    in_body = rotate(conjugate(now[:, 3:]), points - now[:, :3])
+    return points - before[:, :3] - rotate(before[:, 3:], in_body)
 
 
 def _add(sums: FloatArray, rows: Array, values: Array) -> None:

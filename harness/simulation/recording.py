@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import mujoco
 import numpy as np
@@ -248,7 +248,19 @@ class Recording:
             support_forces=self._contacts.support_forces(count),
             presses=self._contacts.presses(0, count),
             frictions=self._contacts.frictions(count),
+            slides=self._contacts.slides(count, object_poses, self._moved_by_robot(contacts)),
         )
+
+    def _moved_by_robot(self, pairs: Collection[BodyPair]) -> set[str]:
+        """Free objects that the robot touches, or that touch such: it may hold or carry them."""
+        links = {self._physics.body_names[body] for body in self._physics.robot_bodies}
+        free = {name for name, place in self._physics.objects.items() if place.qpos >= 0}
+        found, added = set[str](), links
+        while added:
+            near = {name for pair in pairs if added & set(pair) for name in pair}
+            added = (near & free) - found
+            found |= added
+        return found
 
     def free_poses(self, qpos: int) -> FloatArray:
         """Recorded poses of a free body, shape (N, 7)."""

@@ -30,8 +30,9 @@ RULES = (
         "Excused contact has a bound",
         "A contact that gripping, carrying or putting down excuses is a [collision]"
         f"({EXPECTATIONS}#collision) where its mean force over 50 ms exceeds twice the weight and"
-        " the grip, plus 1 N, or where the object is dragged by 2 cm along one contact. What leaves"
-        " its support may press it with the grip, too, for at most 0.1 s in all. 50 ms are"
+        " the grip, plus 1 N, or where the object is dragged by 2 cm along one contact: by the way"
+        " of the points at which the two touch. What leaves its support may press it with the grip,"
+        " too, for at most 0.1 s in all. 50 ms are"
         " longer than any blow; an object is accelerated with at most gravity's; 1 N is a position"
         " error of a tenth of a millimetre; points of contact wander less than 2 cm while an object"
         " tilts and leaves; the fingers press it onto its support until it is free, which takes two"
@@ -42,12 +43,15 @@ RULES = (
             "gripped box pressed onto its stand with less than the grip",
             "held box dragged along a rug",
             "box dragged bit by bit",
+            "plate turned where it lies",
+            "can dragged around the arm, with its frame on the arm's axis",
             "welded box that no finger touches hits a beam",
         ),
         (
             "box put down as usual",
             "box gripped twice where it stands",
             "box lifted off the bench that the fingers press it onto",
+            "rod raised at one end",
         ),
     ),
     Rule(
@@ -114,10 +118,11 @@ RULES = (
         f" shapes. [`static`]({EXPECTATIONS}#static) and `placed`: the speed is that of the fastest"
         " point. [`grasped`]"
         f"({EXPECTATIONS}#grasped): the object slips as its point between the fingers does, and"
-        " what is fixed in the world is not held. `displaced`: the way of the centre of mass. Where"
-        " a designer put the origin says nothing; the signals x(), y(), z() and speed() of a"
-        " formula are those of the origin, and say so. What a step puts somewhere has no speed and"
-        " no distance on the way.",
+        " what is fixed in the world is not held. `displaced`: the way of the centre of mass."
+        f" [`lifted`]({EXPECTATIONS}#lifted): the height of the lowest point. Where a"
+        " designer put the origin says nothing; the signals x(), y(), z() and speed() of a formula"
+        " are those of the origin, and say so. What a step puts somewhere has no speed and no"
+        " distance on the way.",
         (
             "hoop on the floor around a bin",
             "cover over a block",
@@ -125,10 +130,12 @@ RULES = (
             "plank of 4 m that turns slowly",
             "post fixed in the world between the fingers",
             "part that sags in the grip, with its frame far away",
+            "can raised by its frame",
         ),
         (
             "part whose origin is above the bin that it lies in",
             "plank of 4 m that lies still",
+            "can raised whose frame sinks",
         ),
     ),
     Rule(
@@ -143,11 +150,13 @@ RULES = (
         "Pairs that the physics leaves out are measured",
         "Links whose contact the SRDF excludes and that are apart with every joint at zero are a"
         " finding where they overlap by more than 1 mm, and with `count_allowed` a"
-        f" [collision]({EXPECTATIONS}#collision): convex hulls are not exact to less.",
+        f" [collision]({EXPECTATIONS}#collision): convex hulls are not exact to less. Where they"
+        " are nearer than with every joint at zero they count as distances of the robot to itself.",
         (
             "arm folded into its base",
             "hand folded through the upper arm",
             "lower arm through the base",
+            "arm folded to within 5 mm of its base",
         ),
         ("links that overlap at their joints",),
     ),
@@ -332,9 +341,10 @@ RULES = (
     ),
     Rule(
         "What is not checked is said",
-        "`contact may be missed` is a warning where an object moves between two samples by more"
-        " than both least widths: it is before the other at one and past it at the next. An inertia"
-        " beyond that of the whole mass at the far end of the shapes is a note. The"
+        "`contact may be missed` is a warning where a point of an object moves between two samples"
+        " by more than both least widths: it is before the other at one and past it at the next;"
+        " and where a link overlaps an object there, and no contact was recorded. An inertia beyond"
+        " that of the whole mass at the far end of the shapes is a note. The"
         " [list below](#what-the-verdicts-do-not-claim) has the rest.",
         (
             "ball that passes through a plate between two samples",

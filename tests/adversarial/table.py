@@ -13,6 +13,7 @@ from tests.adversarial.container_scenes import CONTAINER_SCENES
 from tests.adversarial.file_scenes import FILES
 from tests.adversarial.fixture_scenes import FIXTURE_SCENES
 from tests.adversarial.folder_scenes import ENVIRONMENTS, FOLDERS, ROBOTS, report_on, saved_run
+from tests.adversarial.frame_scenes import FRAME_SCENES
 from tests.adversarial.overlap_scenes import OVERLAP_SCENES
 from tests.adversarial.recording_scenes import RECORDINGS, graded_scene, recorded_run
 from tests.adversarial.rules import RULES, rule_row
@@ -30,6 +31,7 @@ ALL_SCENES = (
     *TRICK_SCENES,
     *FIXTURE_SCENES,
     *CARRIED_SCENES,
+    *FRAME_SCENES,
 )
 
 PAGE = Path(__file__).parents[2] / "docs/reference/verdicts.md"
@@ -93,9 +95,11 @@ machines: nothing on standard error, and the exit code of any other run.
 LIMITS = """
 ## What the verdicts do not claim
 
-- **Between two samples** (1 ms of physics) contacts are not looked for. Where an object moves by
-  more than its own and the other's least width in one, `never: in_contact` and `never: collision`
-  carry the warning `contact may be missed`. Distances are interpolated there, to within 2 mm.
+- **Between two samples** (1 ms of physics) contacts are not looked for. Where a point of an object
+  moves by more than its own and the other's least width in one, or a link overlaps an object by
+  more than 1 mm without a recorded contact, `never: in_contact` and `never: collision` carry the
+  warning `contact may be missed`. Distances are interpolated there, to within 2 mm: what is thinner
+  than that together with a link may pass without a warning, and objects of meshes have none.
 - **Resting** is slow motion, at most 5 mm/s and 0.05 rad/s for 50 ms, not a proof of equilibrium:
   what creeps more slowly rests.
 - **`sees`** reads pictures. What a transparent body covers is hidden in the segmentation
@@ -104,6 +108,9 @@ LIMITS = """
   `placed`, `upright` and `lifted` keep that meaning.
 - **`on` on slopes**: forces are counted by their upward part; on a slope steeper than 45 degrees
   less than half of the weight may be carried as normal force, and friction is not counted.
+- **Distances of the robot to itself** leave out links that a joint connects, that touch with every
+  joint at zero, or that a hand consists of, and of other pairs that the SRDF excludes what is not
+  nearer than with every joint at zero.
 - **`robot` in `clearance` and distance()** means its links: what it holds is named on its own, and
   where it comes nearer a warning says so. What is taken from an object, or put on it, has none.
 - **force()** is a sum of normal forces: on a slope it is less than the weight, in a vice more than

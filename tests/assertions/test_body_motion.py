@@ -72,12 +72,12 @@ def test_a_bar_that_turns_about_its_middle_is_as_fast_as_its_ends():
     assert linear[10:] == pytest.approx(np.full(N - 10, 2 * 0.25 * np.sin(0.005) / DT))
 
 
-def test_in_the_first_50_ms_a_speed_is_what_the_body_has_moved_since():
+def test_in_the_first_50_ms_a_speed_is_at_most_what_the_body_has_moved_since():
     """One step of fall until a contact begins is no motion; a fall that goes on is one."""
     poses = at(N)
     poses[1:, 2] = -1e-4
     settles, _ = body_speeds(make_run(N), "box", poses)
-    assert settles == pytest.approx([0, *[1e-4 / 0.05] * 5, *[0] * (N - 6)])
+    assert settles == pytest.approx([0, 1e-4 / 0.05, *[0] * (N - 2)])
     poses[:, 2] = -4.9 * (DT * np.arange(N)) ** 2
     falls, _ = body_speeds(make_run(N), "box", poses)
     assert falls[5] == pytest.approx(4.9 * 0.05**2 / 0.05)

@@ -22,7 +22,8 @@ from harness.assertions.contacts import (
     was_in_robot,
 )
 from harness.assertions.window import NotObservable
-from harness.core.geometry import Mesh
+from harness.core.geometry import Box, Mesh
+from harness.core.spatial import SE3
 from tests.assertions.synthetic_run import (
     BOX,
     CYLINDER,
@@ -195,3 +196,39 @@ def test_the_sample_time_is_the_usual_one():
     holes = replace(make_run(4).signals, times=np.array([0.0, 0.1, 0.2, 5.0]))
     assert sample_time(replace(make_run(4), signals=holes)) == pytest.approx(0.1)
     assert sample_time(make_run(2)) == pytest.approx(0.01)
+
+
+def overlapped(depth, link, *, touches=()):
+    """Warnings of a run in which a link is inside the box at sample 20 [m]."""
+    distance, links = np.full(N, 0.1), np.full(N, -1)
+    distance[20], links[20] = -depth, ROBOT.link_names.index(link)
+    run = make_run(
+        N,
+        contact_forces={("palm", "box"): force(N, touches)} if touches else {},
+        clearances={("robot", "box"): distance},
+        clearance_links={("robot", "box"): links},
+    )
+    return run, unseen_contacts(run, [("box", "palm"), ("Table", "palm")])
+
+
+def test_a_link_that_overlaps_an_object_without_contact_may_have_passed_through_it():
+    run, (warning,) = overlapped(0.004, "palm")
+    assert warning.name == "contact may be missed"
+    assert "palm is 4.0 mm inside box between two samples at t=0.200 s" in warning.message
+    assert unseen_contacts(replace(run, unrecorded=("clearances",)), [("box", "palm")]) == ()
+    assert overlapped(0.0005, "palm")[1] == (), "shapes are off by as much"
+    assert overlapped(0.004, "arm_link")[1] == (), "another link than the one that is named"
+    for touches, is_missed in (((19, 20), True), ((20, 21), False), ((21, 22), False),
+                               ((22, 23), True)):  # fmt: skip
+        assert bool(overlapped(0.004, "palm", touches=touches)[1]) == is_missed, touches
+
+
+@pytest.mark.parametrize(("turn", "is_missed"), [(0.21, True), (0.15, False)])
+def test_the_ends_of_a_bar_that_turns_in_its_place_may_pass_through_something(turn, is_missed):
+    """They move by 52 and by 37 mm at once; bar and box are 1 and 4 cm thick."""
+    bar = thing("bar", Box((0.5, 0.01, 0.01)))
+    poses = at(N)
+    for row in range(N):
+        poses[row, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, turn * row)).quat_wxyz
+    run = make_run(N, objects=(BOX, bar), object_poses={"bar": poses})
+    assert bool(unseen_contacts(run, [("bar", "box")])) == is_missed

@@ -14,6 +14,7 @@ from harness.assertions.excused_force import (
     load_of,
     mean_force,
 )
+from harness.core.spatial import SE3
 from tests.assertions.synthetic_run import (
     BOX,
     ROBOT,
@@ -99,3 +100,26 @@ def test_an_object_is_dragged_by_its_motion_relative_to_the_other_since_a_sample
     along = make_run(N, object_poses={"box": poses, "Table": moving})
     assert dragged(along, "box", "Table", 0, N) == pytest.approx(0.0)
     assert DRAG == 0.02
+
+
+def test_an_object_slides_in_the_gaps_of_a_contact_as_before_and_not_where_a_step_puts_it():
+    slid = np.zeros(N)
+    slid[12:18] = 0.004
+    touching = force(N, (10, 14)) + force(N, (16, 18))
+    run = make_run(N, slides={("Table", "box"): slid}, contact_forces={("Table", "box"): touching})
+    whole = [0, 0, 0.004, 0.008, 0.012, 0.016, 0.02, 0.024]
+    assert dragged(run, "box", "Table", 10, 18) == pytest.approx(whole)
+    assert dragged(run, "Table", "box", 10, 18) == pytest.approx(whole)
+    assert dragged(run, "box", "Table", 13, 18) == pytest.approx([0, 0, 0, 0.004, 0.008])
+    put = replace(BOX, present=((0.0, 0.12), (0.12, 1e9)))
+    there = replace(run, objects=(TABLE, put))
+    assert dragged(there, "box", "Table", 10, 18)[3] == pytest.approx(0.004)
+
+
+def test_without_a_record_of_slides_the_middle_of_an_object_is_dragged():
+    """It turns about its origin, 30 cm from its middle."""
+    far = replace(BOX, center_of_mass=(0.3, 0.0, 0.0))
+    poses = at(N)
+    poses[20:, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, 0.1)).quat_wxyz
+    run = make_run(N, objects=(TABLE, far), object_poses={"box": poses})
+    assert dragged(run, "box", "Table", 10, 30)[-1] == pytest.approx(0.6 * np.sin(0.05))

@@ -149,3 +149,42 @@ def test_a_world_without_contacts_has_no_forces(gripper_over_table):
     signals = MujocoSimulator(gripper_over_table, [], ()).finish()
     assert (signals.contact_forces, signals.support_forces, signals.presses) == ({}, {}, {})
     assert signals.frictions == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "velocity", "turning", "expected"),
+    [
+        ("box", (0.2, 0.1, 0), (0, 0, 0), np.hypot(0.2, 0.1)),
+        ("box", (0, 0, 0), (0, 0, 2.0), 2.0 * 0.025 * np.sqrt(2)),  # the way of its corners
+        ("cylinder", (0.3, 0, 0), (0, 0, 0), 0.3),
+        ("sphere", (0.3, 0, 0), (0, 10.0, 0), 0),  # it rolls
+        ("sphere", (0, 0, 0), (0, 0, 5.0), 0),  # it spins about the point that touches
+        ("box", (0, 0, 0.3), (0, 0, 0), 0),  # it leaves
+    ],
+)
+def test_objects_slide_as_far_as_the_points_at_which_they_touch(
+    gripper_over_table, name, velocity, turning, expected
+):
+    world, timestep, samples = [FLOOR, resting(name)], 1e-3, 30
+    physics = build_model(
+        gripper_over_table,
+        world,
+        [each.name for each in world],
+        gravity=(0.0, 0.0, -9.8),
+        timestep=timestep,
+    )
+    data, place = mujoco.MjData(physics.model), physics.objects[name]
+    record, poses = ContactRecord(physics, data), np.empty((samples, 7))
+    data.qpos[place.qpos + 2] -= 2e-4  # into the soft floor, so that all corners press
+    for row in range(samples):
+        data.qvel[place.dof : place.dof + 6] = *velocity, *turning
+        mujoco.mj_forward(physics.model, data)
+        record.keep(row)
+        poses[row] = data.qpos[place.qpos : place.qpos + 7]
+        mujoco.mj_integratePos(physics.model, data.qpos, data.qvel, timestep)
+    floor = np.tile(FLOOR.pose.as_vector(), (samples, 1))
+    every = {name: poses, "a floor": floor}
+    assert record.slides(samples, every, set()) == {}
+    (slid,) = record.slides(samples, every, {name}).values()
+    assert slid[0] == 0
+    assert slid[1:] == pytest.approx(np.full(samples - 1, expected * timestep), abs=2e-6)
