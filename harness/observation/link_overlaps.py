@@ -1,4 +1,4 @@
-"""How near links come to each other whose contact the SRDF excludes from planner and physics."""
+"""Distances and overlaps of links whose contact the SRDF excludes from planner and physics."""
 
 from __future__ import annotations
 
