@@ -172,7 +172,7 @@ def refuse_unrecorded_steps(run: Run) -> None:
     """Refuse a run whose steps are unknown, so that it is not taken for one without results.
 
     Raises:
-        NotObservable: The steps were not recorded.
+        NotObservable: The steps, or their results, were not recorded.
     """
-    if "steps" in run.unrecorded:
+    if {"steps", "step_results"} & set(run.unrecorded):
         raise NotObservable("what the steps reported was not recorded")

@@ -32,13 +32,24 @@ def add_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
     add_plugin(command)
-    text = "a rosbag2 folder, .mcap or .db3 file; or give --node"
+    text = "a rosbag2 folder, an .mcap, .db3 or ROS 1 .bag file; or give --node"
     add("bag", metavar="BAG", nargs="?", default="", help=text)
     add_served_robot(command)
     text = "give the nodes this simulated time where no step is `external` (default: 60)"
     add("--timeout", metavar="SECONDS", type=seconds, default=60.0, help=text)
     text = "read the joint positions from this topic (default: /joint_states)"
     add("--joint-states", metavar="TOPIC", default="/joint_states", help=text)
+    text = "what the recorded names of joints and links begin with, and the robot's do not"
+    add("--joint-prefix", metavar="PREFIX", default="", help=text)
+    add(
+        "--joint",
+        metavar="NAME=RECORDED",
+        dest="joints",
+        action="append",
+        type=_recorded_joint,
+        default=[],
+        help="read a joint of the robot under another name",
+    )
     text = (
         "read poses of objects by name from this topic: TFMessage, as Gazebo's bridge sends them,"
         " or ModelStates"
@@ -76,6 +87,11 @@ def _object_topic(text: str) -> tuple[str, str]:
     return name, topic.strip()
 
 
+def _recorded_joint(text: str) -> tuple[str, str]:
+    """`NAME=RECORDED` of a joint."""
+    return pair(text, "NAME=RECORDED", "elbow_joint=left_elbow")
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Judge a recording and print points with reasons."""
     if bool(arguments.bag) == bool(arguments.nodes):
@@ -87,7 +103,11 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.grading.grade import grade_bag
 
     topics = BagTopics(
-        arguments.joint_states, tuple(arguments.objects), dict(arguments.object_poses)
+        arguments.joint_states,
+        arguments.joint_prefix,
+        {recorded: name for name, recorded in arguments.joints},
+        tuple(arguments.objects),
+        dict(arguments.object_poses),
     )
     options = dict(arguments.overrides), arguments.allowed
     grade = grade_bag(scenario, Path(arguments.bag), topics, *options)
@@ -179,9 +199,9 @@ def _print_grade(grade: Grade) -> None:
 
 
 def _points(row: Graded) -> str:
-    if row.verdict.status == "not observable":
+    if row.verdict.status == "not observable" and not row.is_withheld:
         return f"?/{row.points:g}"
-    mark = "*" if row.withheld and row.verdict.status == "passed" else ""
+    mark = "*" if row.is_withheld else ""
     return f"{row.earned:g}{mark}/{row.points:g}"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -30,12 +29,20 @@ class Graded:
         points: The points that can be earned; 0 where only other rows have points.
         earned: The points that were earned.
         withheld: The doubts about the recording for which points are withheld.
+        is_measured: Whether what the recording shows was measured; distances are not where points
+            are withheld.
     """
 
     verdict: Verdict
     points: float
     earned: float
     withheld: tuple[str, ...] = ()
+    is_measured: bool = True
+
+    @property
+    def is_withheld(self) -> bool:
+        """Whether points are withheld that the recording may have earned."""
+        return bool(self.withheld) and (self.verdict.status == "passed" or not self.is_measured)
 
 
 @dataclass(frozen=True)
@@ -65,13 +72,13 @@ class Grade:
     @property
     def withheld(self) -> float:
         """Points that are withheld, because what the recording shows is doubtful."""
-        passed = (row for row in self.rows if row.withheld and row.verdict.status == "passed")
-        return sum(row.points for row in passed)
+        return sum(row.points for row in self.rows if row.is_withheld)
 
     @property
     def open(self) -> float:
         """Points of what this recording cannot show: neither earned nor lost."""
-        return sum(row.points for row in self.rows if row.verdict.status == "not observable")
+        unknown = (row for row in self.rows if row.verdict.status == "not observable")
+        return sum(row.points for row in unknown if row.is_measured)
 
 
 def grade_bag(
@@ -106,27 +113,37 @@ def grade_bag(
         gravity=program.world.gravity,
     )
     run = run_of_bag(bag, topics or BagTopics(), known)
-    if prepared.observations.reads_distances:
-        run = _with_distances(prepared, run)
     notes = tuple(finding.message for finding in run.findings)
     doubts = [
         finding.values
         for finding in run.findings
         if finding.kind == DOUBT and finding.values["doubt"] not in allowed
     ]
+    withheld = [_withheld(expectation, doubts) for expectation in prepared.expectations]
+    needs_distances = [
+        expectation.spec.observations().reads_distances for expectation in prepared.expectations
+    ]
+    # whatever they are, distances of doubtful motions earn nothing, and they take time
+    is_measured = any(
+        needs and not kinds for needs, kinds in zip(needs_distances, withheld, strict=True)
+    )
+    if is_measured:
+        run = _with_distances(prepared, run)
     rows = [
-        _withheld(row, expectation, doubts)
-        for row, expectation in zip(
-            graded(judge(run, prepared.expectations)), prepared.expectations, strict=True
+        replace(row, earned=0.0, withheld=kinds, is_measured=is_measured or not needs)
+        if kinds
+        else row
+        for row, kinds, needs in zip(
+            graded(judge(run, prepared.expectations)), withheld, needs_distances, strict=True
         )
     ]
     return Grade(run, tuple(rows), notes)
 
 
 def _withheld(
-    row: Graded, expectation: PlacedExpectation, doubts: Sequence[Mapping[str, Any]]
-) -> Graded:
-    """A row without its points where a doubt concerns what it expects."""
+    expectation: PlacedExpectation, doubts: Sequence[Mapping[str, Any]]
+) -> tuple[str, ...]:
+    """The doubts that concern what is expected."""
     spec = expectation.spec
     is_of_step = bool(expectation.step) or any(
         part.during for part in (spec, *spec.predicates().values())
@@ -134,11 +151,10 @@ def _withheld(
     kinds: list[str] = []
     for doubt in doubts:
         kind, names = doubt["doubt"], doubt["names"]
-        is_named = any(re.search(rf"(?<!\w){re.escape(name)}(?!\w)", row.verdict.expectation)
-                       for name in names)  # fmt: skip
-        if is_of_step if kind == "steps" else is_named or not names:
+        is_named = not spec.names().isdisjoint(names)
+        if is_named or (not names and (is_of_step or kind != "steps")):
             kinds.append(kind)
-    return replace(row, earned=0.0, withheld=tuple(dict.fromkeys(kinds))) if kinds else row
+    return tuple(dict.fromkeys(kinds))
 
 
 def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:

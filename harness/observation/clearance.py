@@ -39,6 +39,8 @@ from harness.robot.description import RobotDescription
 from harness.robot.forward_kinematics import LinkPoses
 
 ROBOT = "robot"
+AT_ONCE = 5000
+"""Positions between samples that are measured at once, so that memory does not grow with them."""
 
 Bodies = tuple[Sequence[MovingBody], MovingBody]
 """Bodies whose distances from another one are measured."""
@@ -139,14 +141,17 @@ def _look_between(
     fast = np.flatnonzero((dips > LARGEST_ERROR) & (np.diff(samples) == 1))
     if not len(fast):
         return
-    owners, shares = parts_of(samples[fast], dips[fast])
-    finer = replace(scene, only=distances.keys()).measured(motion.between(owners, shares))
+    every, shares = parts_of(samples[fast], dips[fast], len(motion.times))
+    scene = replace(scene, only=distances.keys())
     put = {record.name: record.put_samples(motion.times) - 1 for record in scene.objects}
-    for key, values in finer.distances.items():
-        unknown = np.isnan(distances[key][owners])
-        for name in key:  # what a step puts somewhere was nowhere in between
-            unknown |= np.isin(owners, put.get(name, ()))
-        np.fmin.at(distances[key], owners, np.where(unknown, np.nan, values))
+    for start in range(0, len(every), AT_ONCE):
+        owners = every[start : start + AT_ONCE]
+        finer = scene.measured(motion.between(owners, shares[start : start + AT_ONCE]))
+        for key, values in finer.distances.items():
+            unknown = np.isnan(distances[key][owners])
+            for name in key:  # what a step puts somewhere was nowhere in between
+                unknown |= np.isin(owners, put.get(name, ()))
+            np.fmin.at(distances[key], owners, np.where(unknown, np.nan, values))
 
 
 class _Robot:

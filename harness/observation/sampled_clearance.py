@@ -34,6 +34,11 @@ AROUND = 2
 MOST_PARTS = 200
 """Positions between two samples: enough for 800 m/s at 1 ms."""
 
+MOST_PARTS_PER_SAMPLE, FEW_PARTS = 10, 20_000
+"""Positions between samples, on average over a run: 20 m/s all along at 1 ms; and as many as are
+measured in any case. Where everything jumps all the time, they are further apart than
+`LARGEST_ERROR`: the time that a recording takes is linear in its messages."""
+
 
 def knots(
     times: FloatArray, objects: Sequence[ObjectRecord], attachments: Sequence[AttachmentRecord]
@@ -114,9 +119,19 @@ def inside_of(samples: IntArray, chosen: BoolArray) -> IntArray:
     return np.concatenate([*parts, np.zeros(0, dtype=np.int64)]).astype(np.int64)
 
 
-def parts_of(samples: IntArray, dips: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Positions between samples and the next ones: the sample before each, and the share."""
-    counts = np.clip(np.ceil(dips / LARGEST_ERROR).astype(int), 1, MOST_PARTS)
+def parts_of(samples: IntArray, dips: FloatArray, count: int) -> tuple[IntArray, FloatArray]:
+    """Positions between samples and the next ones: the sample before each, and the share.
+
+    Args:
+        samples: The samples after which bodies move that far, fewer than `count`.
+        dips: By how much a distance may be smaller after each of them [m].
+        count: The number of samples of the run.
+    """
+    wanted = np.ceil(dips / LARGEST_ERROR)
+    limits = np.arange(MOST_PARTS, 0, -1)
+    most = max(MOST_PARTS_PER_SAMPLE * count, FEW_PARTS)
+    fits = [np.minimum(wanted, limit).sum() <= most for limit in limits]
+    counts = np.clip(wanted, 1, limits[int(np.argmax(fits))]).astype(int)
     owners = np.repeat(samples, counts)
     shares = [np.arange(1, count + 1) / (count + 1) for count in counts.tolist()]
     return owners, np.concatenate(shares)

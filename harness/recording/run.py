@@ -142,7 +142,8 @@ class Run:
         versions: The version of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
         unrecorded: Names of `Signals`' fields that were not recorded, as a bag has no contacts, and
-            `attachments` and `steps`; an expectation that needs one is not observable.
+            `attachments`, `steps` and `step_results`; an expectation that needs one is not
+            observable.
         meshes: The triangles of mesh files, for pictures where the files are not.
         cameras: Every camera of robot, world and scenario.
         captures: Pictures taken, in order of time.

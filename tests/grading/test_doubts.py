@@ -1,5 +1,7 @@
 """What a recording says of itself that cannot be, and what is no reason to doubt it."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -218,3 +220,55 @@ def test_a_static_pose_of_a_fixture_is_no_doubt(tmp_path):
     scenario = SCENARIO.replace("mass: 0.1", "static: true")
     found = grade(fixed, tmp_path, IN_RANGE, topics=BagTopics(), scenario=scenario)
     assert found.notes == ()
+
+
+# -- what a program says of itself ----------------------------------------------------------------
+
+
+def say(recording, time, **event):
+    """A message on the topic of events."""
+    content = {"data": json.dumps(event)}
+    recording.add("/armharness/events", "std_msgs/msg/String", time, content)
+    return recording
+
+
+@pytest.mark.parametrize("event", ["run_started", "run_finished", "verdict", "attached"])
+def test_no_event_lifts_a_doubt(event, tmp_path):
+    """Anybody can publish them."""
+    once = add_box(add_joints(Recording(), times(50)), [1.0], lambda _: box_pose())
+    jumps = recorded(lambda t: box_pose(x=0.3 if t < 1 else 0.6))
+    joint = recorded(position=lambda t: 0.6 * (t >= 1))
+    for recording, doubt in ((once, "once"), (jumps, "jumps"), (joint, "jumps")):
+        say(recording, 0.0, event=event, scenario="made", case="", seed=0, object="box",
+            link="link5", pose_in_link=[0, 0, 0, 1, 0, 0, 0])  # fmt: skip
+        assert outcomes(grade(recording, tmp_path, STANDS)) == [doubt]
+
+
+def test_a_program_that_hides_an_object_is_doubted_about_it(tmp_path):
+    """The box lies on its side for a second, in which it is said not to be there."""
+    fallen = recorded(lambda t: box_pose(tilt=1.5 * np.clip(min(5 * (t - 1), 5 * (2 - t)), 0, 1)))
+    assert outcomes(grade(fallen, tmp_path, STANDS, IN_RANGE)) == ["failed", "passed"]
+    say(fallen, 0.9, event="object_removed", object="box")
+    say(fallen, 2.1, event="object_added", object="box")
+    assert outcomes(grade(fallen, tmp_path, STANDS, IN_RANGE)) == ["steps", "passed"]
+
+
+def test_results_that_a_program_reports_of_its_steps_are_not_recorded(tmp_path):
+    done = recorded(position=ramp(0.4))
+    say(done, 0.5, event="step_started", step="weld", verb="cartesian_path")
+    say(done, 2.5, event="step_finished", step="weld", verb="cartesian_path", status="passed",
+        result={"fraction": 1.0})  # fmt: skip
+    assert outcomes(grade(done, tmp_path, "fraction: 0.9")) == ["not observable"]
+
+
+@pytest.mark.parametrize("other", [0.0, -0.9])
+def test_distances_of_doubtful_joints_are_not_measured(other, tmp_path):
+    """A forgotten node publishes each joint elsewhere, 4 ms after each message."""
+    two = add_joints(recorded(position=ramp(0.6)), times(50) + 0.004, lambda _: other)
+    near = "clearance: {between: [robot, box], at_least: 1 cm}"
+    found = grade(two, tmp_path, near, IN_RANGE)
+    assert outcomes(found) == ["publishers", "publishers"]
+    assert (found.withheld, found.open, found.earned) == (2, 0, 0)
+    assert not found.run.signals.clearances
+    allowed = grade(two, tmp_path, near, allowed=["publishers"])
+    assert ("robot", "box") in allowed.run.signals.clearances

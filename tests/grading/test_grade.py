@@ -35,7 +35,8 @@ def test_a_bag_of_the_harness_gets_the_verdicts_of_its_run_wherever_they_can_be_
 ):
     write_bag(tmp_path / "bag", stored, BagOptions(storage=kind))
     grade = grade_bag(SCENARIO, tmp_path / "bag")
-    assert grade.notes == ()
+    [note] = grade.notes
+    assert note.startswith("the recorded program chose when these steps began: start, pick")
     assert len(grade.rows) == len(stored.verdicts)
     for row, judged in zip(grade.rows, stored.verdicts, strict=True):
         seen = row.verdict
@@ -179,7 +180,11 @@ def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
     rows = re.findall(r"(?m)^\| (?:needs )?([^|]+?) \| (.*) \|$", page)
     said = {what: set(re.findall(r"`([a-z_]+)`", kinds)) & set(EACH) for what, kinds in rows}
     seen = said["joints"] | said["poses of objects"]
-    unseen = (said["commands"] | said["events of a harness run"] | said["contacts"]) - seen
+    unseen = (
+        said["commands"]
+        | said["what the planner attached, and results of steps"]
+        | said["contacts"]
+    ) - seen
     assert seen | unseen == set(EACH)
     file = tmp_path / "each.scenario.yaml"
     text = SCENARIO.read_text()
@@ -195,7 +200,7 @@ def test_the_page_says_what_a_recording_can_show(recording, tmp_path):
 
 def test_what_a_recording_lacks_is_named_as_a_run_has_it(recording, tmp_path):
     run = grade_bag(SCENARIO, recording.write(tmp_path / "student.mcap"), GAZEBO).run
-    known = {entry.name for entry in fields(Signals)} | {"attachments", "steps"}
+    known = {entry.name for entry in fields(Signals)} | {"attachments", "steps", "step_results"}
     assert {"contact_forces", "presses", "support_forces"} <= set(run.unrecorded) <= known
 
 

@@ -82,12 +82,23 @@ def test_chosen_intervals_are_filled_with_their_samples():
 
 
 def test_positions_between_two_samples_divide_what_a_dip_could_be():
-    owners, shares = parts_of(np.array([4, 7, 9]), np.array([0.0, 0.0021, 0.0061]))
+    owners, shares = parts_of(np.array([4, 7, 9]), np.array([0.0, 0.0021, 0.0061]), 20)
     assert owners.tolist() == [4, 7, 7, 9, 9, 9, 9]
     assert shares == pytest.approx([1 / 2, 1 / 3, 2 / 3, 1 / 5, 2 / 5, 3 / 5, 4 / 5])
-    owners, shares = parts_of(np.array([1]), np.array([9.0]))
+    owners, shares = parts_of(np.array([1]), np.array([9.0]), 2)
     assert len(owners) == MOST_PARTS
     assert shares[[0, -1]] == pytest.approx([1 / (MOST_PARTS + 1), MOST_PARTS / (MOST_PARTS + 1)])
+
+
+@pytest.mark.parametrize("count", [3000, 30_000])
+def test_positions_between_samples_are_as_many_as_the_samples_where_everything_jumps(count):
+    """Every joint jumps by a metre from each sample to the next; a few hundred samples may."""
+    every = np.arange(count - 1)
+    owners, shares = parts_of(every, np.full(count - 1, 1.0), count)
+    assert len(owners) == len(shares) <= 10 * count
+    assert np.bincount(owners, minlength=count - 1).min() >= 5
+    owners, _ = parts_of(every[:50], np.full(50, 1.0), count)
+    assert len(owners) == 50 * MOST_PARTS
 
 
 def test_distances_are_linear_between_measured_samples_and_unknown_next_to_a_missing_one():

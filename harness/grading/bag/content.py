@@ -82,14 +82,19 @@ class BagContent:
 
 @dataclass(frozen=True)
 class BagTopics:
-    """The topics to read.
+    """The topics to read, and what they call the robot's joints.
 
     Attributes:
         joint_states: Topic of the measured joints.
+        joint_prefix: Recorded names of joints and links begin with it; those of the scenario lack
+            it.
+        joint_names: The scenario's name of a joint, by its recorded name.
         objects: Topics whose messages contain object names and poses.
         object_poses: Topic of the pose of one object, by the object's name.
     """
 
     joint_states: str = "/joint_states"
+    joint_prefix: str = ""
+    joint_names: Mapping[str, str] = field(default_factory=dict[str, str])
     objects: tuple[str, ...] = ()
     object_poses: Mapping[str, str] = field(default_factory=dict[str, str])

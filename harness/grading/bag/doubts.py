@@ -70,12 +70,11 @@ class Doubt:
     names: tuple[str, ...] = ()
 
 
-def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iterator[Doubt]:
+def joint_doubts(messages: Mapping[str, JointMessages]) -> Iterator[Doubt]:
     """Joints whose messages jump: there and back, as those of two publishers do, or once.
 
     Args:
         messages: What was recorded of the joints.
-        is_own: Whether this program made the recording, and its faults may make a sensor jump.
     """
     for name, recorded in messages.items():
         joint, spans = recorded.joint, np.diff(recorded.times)
@@ -87,7 +86,7 @@ def joint_doubts(messages: Mapping[str, JointMessages], *, is_own: bool) -> Iter
             yield Doubt("publishers", f"{name} {_two_values(recorded.times[both])}")
             continue
         far = sizes > slack + fastest * np.maximum(spans, SHORTEST_TIME)
-        if far.any() and not is_own:
+        if far.any():
             first = int(np.argmax(far))
             factor, unit = (1000, "mm") if joint.kind == "prismatic" else (180 / np.pi, "deg")
             when = f"by {factor * sizes[first]:.0f} {unit} at t={recorded.times[first + 1]:.3f} s"
@@ -139,8 +138,6 @@ def object_doubts(
     edges: Tracks,
     timeline: Timeline,
     objects: Mapping[str, tuple[Shape, ...]],
-    *,
-    is_own: bool,
 ) -> Iterator[Doubt]:
     """Objects whose messages jump or flip there and back, or once, as exchanged ones do.
 
@@ -148,7 +145,6 @@ def object_doubts(
         edges: Tracks of poses, by parent and child frame.
         timeline: The times of the messages.
         objects: Shapes of the objects by name.
-        is_own: Whether this program made the recording, and its steps may put objects somewhere.
     """
     parents: dict[str, list[str]] = {}
     for (parent, child), track in sorted(edges.items()):
@@ -167,7 +163,7 @@ def object_doubts(
         far |= _is_at_rest(ways) & (ways > OBJECT_SLACK + FROM_REST * spans**2 / 2)
         turned = turns > TURN_SLACK + FASTEST_TURN * spans
         turned |= _is_at_rest(turns) & (turns > TURN_SLACK + TURN_FROM_REST * spans**2 / 2)
-        if (far | turned).any() and not is_own:
+        if (far | turned).any():
             first = int(np.argmax(far | turned))
             jump = f"{1000 * ways[first]:.0f} mm and {np.degrees(turns[first]):.0f} deg"
             yield Doubt(

@@ -1,4 +1,4 @@
-"""Steps and attachments from a recording's events."""
+"""When steps ran and objects were there, as a recording's events say."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ import numpy as np
 from harness.core.types import BoolArray, FloatArray
 from harness.grading.bag.clocks import Timeline
 from harness.grading.bag.content import BagContent
-from harness.recording.run import AttachmentRecord
 from harness.recording.step_record import StepRecord, StepStatus
-from harness.recording.step_results import SavedResult, SceneChange
 
 RESOLUTION = 1e-6
 """Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
@@ -83,32 +81,6 @@ def is_present(intervals: Sequence[StepInterval], times: FloatArray) -> BoolArra
     return inside
 
 
-def attachments_of(events: list[Timed]) -> tuple[AttachmentRecord, ...]:
-    """Objects that were attached to links in the planning scene."""
-    records: list[AttachmentRecord] = []
-    for number, (begin, event) in enumerate(events):
-        pose: Any = event.get("pose_in_link")
-        if event.get("event") != "attached" or not _is_pose(pose):
-            continue
-        name = str(event.get("object"))
-        ends = (
-            time
-            for time, other in events[number + 1 :]
-            if other.get("event") == "detached" and str(other.get("object")) == name
-        )
-        records.append(
-            AttachmentRecord(
-                object=name,
-                link=str(event.get("link")),
-                start_time=begin,
-                end_time=next(ends, float("inf")),
-                pose_in_link=tuple(float(value) for value in pose),
-                represents=str(event.get("represents", name)),
-            )
-        )
-    return tuple(records)
-
-
 def _end(event: dict[str, Any], later: list[Timed], last: float) -> Timed:
     """Time at which a step ended, and its last event."""
     for time, other in later:
@@ -116,14 +88,6 @@ def _end(event: dict[str, Any], later: list[Timed], last: float) -> Timed:
             return time, other
     begins = (time for time, other in later if other.get("event") == "step_started")
     return next(begins, last), {}
-
-
-def _is_pose(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and len(value) == 7
-        and all(isinstance(each, int | float) for each in value)
-    )
 
 
 def _moment(timed: Timed) -> float:
@@ -144,12 +108,8 @@ def _step(
     name, path = str(event["step"]), _path(event)
     line, summary = known.get(name, known.get(path, (0, "")))
     begin, end = span
-    result = _result(event)
-    # a step without duration is judged on the first sample after it, which windows add themselves
-    # where it changes the scene
+    # a step without duration is judged on the first sample after it
     start = min(int(np.searchsorted(times, begin - RESOLUTION)), len(times) - 1)
-    if result.find(SceneChange) is not None:
-        start = max(int(np.searchsorted(times, begin + RESOLUTION)) - 1, 0)
     return StepRecord(
         id=name,
         path=path,
@@ -163,10 +123,4 @@ def _step(
         end_index=max(int(np.searchsorted(times, end + RESOLUTION)), start + 1),
         error_code=str(event.get("error_code", "")),
         message=str(event.get("message", "")),
-        result=result,
     )
-
-
-def _result(event: Mapping[str, Any]) -> SavedResult:
-    saved: Mapping[str, Any] = event["result"] if isinstance(event.get("result"), dict) else {}
-    return SavedResult(verb=str(event.get("verb", "")), saved=saved)

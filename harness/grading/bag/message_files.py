@@ -27,13 +27,14 @@ class RawMessage:
 
     Attributes:
         log_time: Time of receipt by the recorder's clock [ns].
-        data: The message in CDR.
+        data: The message in CDR, or as ROS 1 serializes it.
     """
 
     topic: str
     msgtype: str
     log_time: int
     data: bytes
+    is_ros1: bool = False
 
 
 def bag_error(path: Path, message: str, hint: str = "") -> SpecError:

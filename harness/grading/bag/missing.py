@@ -61,10 +61,13 @@ def no_joints(
     """The error of a recording without the expected joints; names those that it has."""
     if content.joints:
         seen = sorted({name for names in content.joints for name in names})
+        prefixed = [name for name in seen if expected and name.endswith(expected[0])]
+        prefix = prefixed[0].removesuffix(expected[0]) if prefixed else ""
+        hint = f"expected: {', '.join(expected)}; --joint NAME=RECORDED names one"
         return bag_error(
             path,
             f"{topics.joint_states} names none of the robot's joints, but {', '.join(seen[:12])}",
-            f"expected: {', '.join(expected)}",
+            f"--joint-prefix {prefix}" if prefix else hint,
         )
     others = [n for n, (kind, _) in sorted(content.topics.items()) if kind.endswith("/JointState")]
     if others:

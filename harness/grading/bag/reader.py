@@ -28,12 +28,14 @@ FRAMES = {"/tf": False, "/tf_static": True}
 """Topics of the frame tree, and whether their transforms are static."""
 
 MODEL_STATES = "gazebo_msgs/msg/ModelStates"
-TYPES = get_typestore(Stores.ROS2_JAZZY)
-TYPES.register(
-    get_types_from_msg(
-        "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist", MODEL_STATES
+TYPES, ROS1_TYPES = get_typestore(Stores.ROS2_JAZZY), get_typestore(Stores.ROS1_NOETIC)
+ROS1_TYPES.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", TF))
+for _store in (TYPES, ROS1_TYPES):
+    _store.register(
+        get_types_from_msg(
+            "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist", MODEL_STATES
+        )
     )
-)
 NAMED_POSES = (TF, MODEL_STATES)
 """Types whose messages contain object names."""
 SINGLE_POSES = (
@@ -81,7 +83,8 @@ class _Reader:
         try:
             if message.log_time > LATEST:
                 raise _Unusable("its time is beyond the year 2262")  # noqa: TRY301
-            keep(TYPES.deserialize_cdr(message.data, message.msgtype), message)
+            read = ROS1_TYPES.deserialize_ros1 if message.is_ros1 else TYPES.deserialize_cdr
+            keep(read(message.data, message.msgtype), message)
         except Exception as error:  # noqa: BLE001 - a damaged message may raise anything
             reason = str(error) if isinstance(error, _Unusable) else "it is damaged"
             self._malformed.setdefault(message.topic, []).append(reason)
@@ -135,7 +138,7 @@ class _Reader:
         self._put_joints(self._content.commands, content, message)
 
     def _put_joints(self, tracks: Tracks, content: Any, message: RawMessage) -> None:
-        names = tuple(map(str, content.name))
+        names = tuple(map(self._joint, content.name))
         count = len(names)
         if not count:
             raise _Unusable("it names no joint")
@@ -151,6 +154,11 @@ class _Reader:
             raise _Unusable("it has infinite numbers")
         self._put(self._track(tracks, names, 3 * count), content.header, message, row)
 
+    def _joint(self, name: str) -> str:
+        """The scenario's name of a joint."""
+        known = self._topics.joint_names
+        return known[name] if name in known else name.removeprefix(self._topics.joint_prefix)
+
     def _frames(self, content: Any, message: RawMessage) -> None:
         is_static = FRAMES[message.topic]
         edges = self._content.static_edges if is_static else self._content.edges
@@ -164,7 +172,11 @@ class _Reader:
     ) -> None:
         for each in transforms:
             pose = each.transform
-            edge = _frame(each.header.frame_id), _frame(each.child_frame_id)
+            prefix = self._topics.joint_prefix
+            edge = (
+                _frame(each.header.frame_id).removeprefix(prefix),
+                _frame(each.child_frame_id).removeprefix(prefix),
+            )
             self._put_pose(edges, edge, each.header, message, pose.translation, pose.rotation)
 
     def _models(self, content: Any, message: RawMessage) -> None:

@@ -21,7 +21,6 @@ from harness.grading.bag.doubts import (
     velocity_doubts,
 )
 from harness.grading.bag.events import (
-    attachments_of,
     is_present,
     presence_of,
     steps_of,
@@ -122,7 +121,6 @@ class _Recording:
         self._links = replayed_link_poses(robot, self._measured.positions, self._links_needed())
         self._events = timed_events(content, timeline, float(times[0]))
         self._steps = steps_of(self._events, times, known.steps)
-        self._is_own = any(event.get("event") == "run_started" for _, event in self._events)
         self._present = {
             obj.name: presence_of(self._events, obj.name, times) for obj in known.objects
         }
@@ -158,7 +156,7 @@ class _Recording:
             seed=0,
             robot=known.robot,
             objects=tuple(map(self._object_record, known.objects)),
-            attachments=attachments_of(self._events),
+            attachments=(),
             steps=self._steps,
             signals=signals,
             gravity=known.gravity,
@@ -205,9 +203,9 @@ class _Recording:
         content, timeline = self._content, self._timeline
         times, shapes = self._times, self._shapes
         doubts = [
-            *joint_doubts(self._messages, is_own=self._is_own),
-            *object_doubts(content.edges, timeline, shapes, is_own=self._is_own),
-            *object_doubts(content.objects, timeline, shapes, is_own=self._is_own),
+            *joint_doubts(self._messages),
+            *object_doubts(content.edges, timeline, shapes),
+            *object_doubts(content.objects, timeline, shapes),
             *self._once_doubts(),
             *self._unknown_roots(),
             *self._step_doubts(),
@@ -229,7 +227,7 @@ class _Recording:
     def _once_doubts(self) -> Iterator[Doubt]:
         """Movable objects of which a single pose counts at all times."""
         for name in self._movable:
-            if name in self._shapes and self._frames.is_published_once(name) and not self._is_own:
+            if name in self._shapes and self._frames.is_published_once(name):
                 reason = f"{name} has one pose in all, or one in /tf_static; it counts all along"
                 yield Doubt("once", reason, (name,))
 
@@ -240,16 +238,19 @@ class _Recording:
             yield Doubt("frames", reason, tuple(names))
 
     def _step_doubts(self) -> Iterator[Doubt]:
-        """Steps that the recorded program itself said had begun and ended."""
-        if self._steps and not self._is_own:
+        """What the recorded program itself said: when steps ran, and when objects were there."""
+        if self._steps:
             names = ", ".join(step.id for step in self._steps[:5])
             yield Doubt("steps", f"the recorded program chose when these steps began: {names}")
+        for name, spans in self._present.items():
+            if spans != ((self._times[0], self._times[-1]),):
+                reason = f"the recorded program chose when {name} was there"
+                yield Doubt("steps", reason, (name,))
 
     def _unrecorded(self, signals: Signals) -> tuple[str, ...]:
-        """Signals that are missing; events of other programs than this one may have steps alone."""
+        """Signals that are missing; what programs say of themselves is not recorded."""
         names = [name for name in JOINT_SIGNALS if np.isnan(getattr(signals, name)).all()]
-        if not self._is_own:
-            names += ["attachments"] if self._steps else ["attachments", "steps"]
+        names += ["attachments", "step_results" if self._steps else "steps"]
         return (*names, *UNPUBLISHED, "clearances")
 
     def _object_record(self, obj: WorldObject) -> ObjectRecord:

@@ -20,9 +20,11 @@ from harness.grading.bag.message_files import (
     sqlite_messages,
     unzstd,
 )
+from harness.grading.bag.ros1_messages import ros1_messages
 
 METADATA = "metadata.yaml"
 SUFFIXES = (".mcap", ".db3")
+ROS1 = ".bag"
 LARGEST_FILE = 16 * 2**30
 """Largest unpacked size of a file that is compressed as a whole [bytes]."""
 LARGEST_METADATA = 4 * 2**20  # [bytes]
@@ -43,14 +45,15 @@ class BagFiles:
 
 
 def bag_files(path: Path) -> BagFiles:
-    """The files of a recording: a rosbag2 folder, or a single file.
+    """The files of a recording: a rosbag2 folder, or a single file, of ROS 1 too.
 
     Raises:
         SpecError: There is no recording, or its metadata cannot be read.
     """
     if path.is_file():
-        if _suffix(path) not in SUFFIXES:
-            raise bag_error(path, "is not a recording", f"known: folders, {' and '.join(SUFFIXES)}")
+        if _suffix(path) not in (*SUFFIXES, ROS1):
+            known = f"known: folders, {', '.join(SUFFIXES)} and {ROS1}"
+            raise bag_error(path, "is not a recording", known)
         return BagFiles((path,))
     if not path.is_dir():
         raise bag_error(path, "there is no such recording")
@@ -76,13 +79,15 @@ def messages(files: BagFiles) -> Iterator[RawMessage]:
             file = _unpacked(path, Path(place)) if path.suffix == ".zstd" else path
             if not file.stat().st_size:
                 raise bag_error(path, "is empty")
-            read = mcap_messages if _suffix(path) == ".mcap" else sqlite_messages
-            for message in read(file, path):
+            for message in READERS[_suffix(path)](file, path):
                 if files.has_packed_messages:
                     data = unzstd(message.data, LARGEST_RECORD, path)
                     yield replace(message, data=data)
                 else:
                     yield message
+
+
+READERS = {".mcap": mcap_messages, ".db3": sqlite_messages, ROS1: ros1_messages}
 
 
 def _of_metadata(folder: Path) -> BagFiles:
