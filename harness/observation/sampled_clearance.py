@@ -127,11 +127,11 @@ def parts_of(samples: IntArray, dips: FloatArray, count: int) -> tuple[IntArray,
         dips: By how much a distance may be smaller after each of them [m].
         count: The number of samples of the run.
     """
-    wanted = np.ceil(dips / LARGEST_ERROR)
+    needed = np.ceil(dips / LARGEST_ERROR)
     limits = np.arange(MOST_PARTS, 0, -1)
     most = max(MOST_PARTS_PER_SAMPLE * count, FEW_PARTS)
-    fits = [np.minimum(wanted, limit).sum() <= most for limit in limits]
-    counts = np.clip(wanted, 1, limits[int(np.argmax(fits))]).astype(int)
+    fits = [np.minimum(needed, limit).sum() <= most for limit in limits]
+    counts = np.clip(needed, 1, limits[int(np.argmax(fits))]).astype(int)
     owners = np.repeat(samples, counts)
     shares = [np.arange(1, count + 1) / (count + 1) for count in counts.tolist()]
     return owners, np.concatenate(shares)
