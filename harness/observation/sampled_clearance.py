@@ -124,7 +124,7 @@ def parts_of(samples: IntArray, dips: FloatArray, count: int) -> tuple[IntArray,
 
     Args:
         samples: The samples after which bodies move that far, fewer than `count`.
-        dips: By how much a distance may be smaller after each of them [m].
+        dips: The length by which a distance may be smaller after each of them [m].
         count: The number of samples of the run.
     """
     needed = np.ceil(dips / LARGEST_ERROR)
