@@ -7,11 +7,11 @@ import os
 import shutil
 import sys
 import time
-import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
+from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, RobotError, SpecError
 from harness.core.interruption import is_interrupted
 from harness.core.printable import cropped, fitted, printable, printable_lines, terminal_text
@@ -212,7 +212,7 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
     except Exception as error:
         if is_interrupted():
             raise KeyboardInterrupt from error
-        complain(traceback.format_exc().rstrip())
+        complain(error_text(error).rstrip())
         return EXIT_CODES["error"]
 
 

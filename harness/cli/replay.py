@@ -11,9 +11,6 @@ from harness.cli.shared_options import add_json, add_plugin
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
 
-EXTERNAL = "external"
-"""The verb of the step in which nodes command the robot."""
-
 
 def add_options(command: argparse.ArgumentParser) -> None:
     """Add the options of `harness replay`."""
@@ -29,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run a recorded command stream again; exit code 1 when the digest differs.
 
     Raises:
-        UsageError: The run's scenario has no step of nodes, and no command is recorded.
+        UsageError: No command is recorded.
     """
     folder = run_folder(arguments.run)
     from harness.recording.read_run import read_run
@@ -38,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     target = Path(arguments.report_dir) if arguments.report_dir else None
     recorded = read_run(folder)
-    if not recorded.run.commands and all(each.verb != EXTERNAL for each in recorded.run.steps):
+    if not recorded.run.commands:
         raise UsageError(
             f"'{folder}' has no recorded commands of ROS 2 nodes, which are what is replayed; a"
             f" scenario without nodes runs again with `harness run {folder / RESOLVED}`"

@@ -128,6 +128,11 @@ class Registry(Mapping[str, P]):
         self[name]
         return self._plugins[name].package
 
+    def modules(self) -> set[str]:
+        """The modules of the registered classes and functions that are not built in."""
+        others = (each for each in self._plugins.values() if each.package != OWN_PACKAGE)
+        return {getattr(each.value, "__module__", "") for each in others}
+
     def find(self, name: str) -> P:
         """The plug-in of this name.
 
@@ -214,6 +219,13 @@ def raised(error: BaseException) -> str:
 def registry(kind: str) -> Registry[Any]:
     """The registry of a kind of plug-in."""
     return _registries[kind]
+
+
+def plugin_files() -> frozenset[Path]:
+    """The files of the modules whose plug-ins are registered, without those that are built in."""
+    names = set[str]().union(*(each.modules() for each in _registries.values()))
+    found = (getattr(sys.modules.get(name), "__file__", None) for name in names)
+    return frozenset(Path(file).resolve() for file in found if file)
 
 
 def register(plugin: P, *, kind: str = "", name: str = "") -> P:
@@ -373,7 +385,7 @@ def _load_module(name: str) -> None:
     except PluginError:
         raise
     except Exception as error:
-        raise PluginError(name, f"{type(error).__name__}: {error}") from error
+        raise PluginError(name, raised(error)) from error
 
 
 def _module_of_file(path: Path) -> ModuleType:

@@ -75,16 +75,9 @@ def held_finding(run: Run, record: AttachmentRecord) -> Finding | None:
         _, drift, turn, is_held = drift_in_hand(run, record.object)
         gripped = np.flatnonzero(held_by_fingers(run, name) & during)
     except (NotReached, NotObservable):
-        return (
-            Finding(
-                "held",
-                f"the planner believed that it held {name}; the fingers never did",
-                record.start_time,
-                values={"object": name, "believed": True, "held": False},
-            )
-            if _is_physical(run, name)
-            else None
-        )
+        return _belief_alone(run, record)
+    if not len(gripped):
+        return _belief_alone(run, record)
     rows = np.flatnonzero(during & is_held)
     if not len(rows):
         return None
@@ -102,6 +95,26 @@ def held_finding(run: Run, record: AttachmentRecord) -> Finding | None:
         return Finding("held", message, last, values={**values, "held": False, "lost_at": last})
     message = f"{name} moved {moved} in the hand against where the planner carried it"
     return Finding("held", message, float(times[worst]), values=values)
+
+
+def never_held(run: Run) -> tuple[str, ...]:
+    """What the user should know of physical objects that were attached and never held."""
+    found = (held_finding(run, record) for record in run.attachments)
+    return tuple(each.message for each in found if each and each.values.get("believed"))
+
+
+def _belief_alone(run: Run, record: AttachmentRecord) -> Finding | None:
+    """An attachment of something in the physics that no finger holds."""
+    name = record.represents
+    if not _is_physical(run, name):
+        return None
+    return Finding(
+        "held",
+        f"the planner believed that it held {name}; the fingers never did, and an attachment"
+        " carries nothing in the physics: close the gripper on it first, as `grasp` does",
+        record.start_time,
+        values={"object": name, "believed": True, "held": False},
+    )
 
 
 def _is_physical(run: Run, name: str) -> bool:

@@ -13,6 +13,7 @@ from harness.cell.program import ProgramStep
 from harness.core.errors import HarnessError, SpecError
 from harness.core.memory import free_memory
 from harness.engine.execute import ProgramExecution, StepEvent
+from harness.observation.tracking import never_held
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
 from harness.recording.files import write_files
@@ -170,7 +171,7 @@ def _result(
         steps=tuple(StepLine.of(step) for step in judged.run.steps),
         verdicts=judged.verdicts,
         message=refusal if judged.outcome == "error" else message,
-        notes=(*warned, *_notes(prepared, overlaps)),
+        notes=(*warned, *_notes(prepared, overlaps), *never_held(judged.run)),
         overlap=-overlaps[0].distance if overlaps else 0.0,
         redraws=draw,
         values=request.redraw.redrawn(draw).values if request.redraw is not None and draw else {},

@@ -6,11 +6,11 @@ import os
 import re
 import signal
 import time
-import traceback
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 
+from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, SpecError
 from harness.core.interruption import is_interrupted
 from harness.reporting.result import CaseResult, ProgressEvent
@@ -119,7 +119,7 @@ def run_here(
         except Exception as error:
             if is_interrupted():
                 raise KeyboardInterrupt from error
-            result = error_result(job, traceback.format_exc())
+            result = error_result(job, error_text(error))
         yield index, result
 
 

@@ -208,8 +208,10 @@ def _child(call: bytes, arguments: bytes, pipe: int, log: int) -> None:
                 result = function(*pickle.loads(arguments), notify)
                 connection.send(("result", result))
                 code = 0
-            except BaseException:  # noqa: BLE001 - the child's last words
-                connection.send(("raised", traceback.format_exc()))
+            except BaseException as error:  # noqa: BLE001 - the child's last words
+                from harness.core.error_text import error_text
+
+                connection.send(("raised", error_text(error)))
         sys.stdout.flush()
         sys.stderr.flush()
     finally:

@@ -141,6 +141,16 @@ def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
     assert main(["replay", str(folder)]) == 2
 
 
+@pytest.mark.parametrize("timeout", ["20 ms", "300"])
+def test_a_step_of_nodes_that_no_node_took_has_nothing_to_replay(tmp_path, capsys, timeout):
+    """Five minutes of simulated time would pass before that shows."""
+    file = scenario(tmp_path, f"- external: {{}}\n  timeout: {timeout}")
+    main(["run", str(file), "--report-dir", str(tmp_path / "r"), "--in-process", "--no-page"])
+    [folder] = [path.parent for path in (tmp_path / "r").rglob("run.json")]
+    assert main(["replay", str(folder)]) == 2
+    assert "has no recorded commands of ROS 2 nodes" in capsys.readouterr().err
+
+
 def test_ctrl_c_ends_a_served_session_which_is_then_judged(tmp_path, capsys):
     file = scenario(tmp_path, "- external: {}")
     with free_domain() as domain:

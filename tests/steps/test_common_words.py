@@ -111,3 +111,18 @@ def test_the_gripper_is_a_body_that_may_touch(tmp_path):
     [(line, message)] = problems(tmp_path, allowed, robot="ur3e", rest=rest)
     assert line == 5
     assert "gripper" in message
+
+
+@pytest.mark.parametrize(
+    ("steps", "is_noted"),
+    [
+        ("- attach_object: part\n- move_to: {joints: {joint1: 0.3}}", True),
+        ("- attach_object: part\n- detach_object: part", True),
+        ("- pick: part", False),
+    ],
+)
+def test_an_attachment_of_what_no_finger_holds_is_noted(tmp_path, steps, is_noted):
+    rest = OBJECTS.split("  - {name: table")[0].replace("0.35, 0.1", "0.2, 0")
+    result, _ = run(tmp_path, steps, robot=OM, rest=rest)
+    noted = [note for note in result.notes if "carries nothing in the physics" in note]
+    assert len(noted) == int(is_noted), (result.notes, [s.message for s in result.steps])

@@ -104,3 +104,40 @@ def test_links_that_nothing_joins_are_objects_of_their_own(tmp_path):
     world = load(tmp_path, text).world
     assert [item.name for item in world.objects] == ["m::l", "m::lid", "crate"]
     assert world.objects[1].pose.xyz == (0, 0, 1)
+
+
+@pytest.mark.parametrize("stated", ["crate_3", "lyd", "crate::lid"])
+def test_a_placement_frame_that_is_not_there_is_reported_where_it_is_named(tmp_path, stated):
+    """In the including file; the included one has no mistake."""
+    (tmp_path / "crate.sdf").write_text(
+        "<sdf version='1.9'><model name='crate'><link name='body'/><frame name='lid'/></model>"
+        "</sdf>"
+    )
+    include = f"""<include>
+        <name>crate_3</name><uri>crate.sdf</uri>
+        <placement_frame>{stated}</placement_frame>
+      </include>"""
+    file = tmp_path / "cell.sdf"
+    file.write_text(f"<sdf version='1.9'><world name='cell'>\n{include}\n</world></sdf>")
+    with pytest.raises(SpecError) as caught:
+        load_sdf(file)
+    [problem] = caught.value.problems
+    assert (problem.path, problem.line) == (str(file), 4)
+    assert problem.message == f"there is no frame '{stated}' in the model 'crate'"
+    assert problem.hint.endswith("frames: __model__, body, lid")
+
+
+def test_a_placement_frame_of_the_model_itself_is_reported_there(tmp_path):
+    (tmp_path / "crate.sdf").write_text(
+        "<sdf version='1.9'>\n<model name='crate' placement_frame='lyd'><link name='body'/></model>"
+        "</sdf>"
+    )
+    file = tmp_path / "cell.sdf"
+    file.write_text(
+        "<sdf version='1.9'><world name='c'><include><uri>crate.sdf</uri></include></world></sdf>"
+    )
+    with pytest.raises(SpecError) as caught:
+        load_sdf(file)
+    [problem] = caught.value.problems
+    assert (problem.path, problem.line) == (str(tmp_path / "crate.sdf"), 2)
+    assert problem.message == "there is no frame 'lyd' here"

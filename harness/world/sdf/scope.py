@@ -12,7 +12,8 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
 from harness.world.sdf.values import PlacedPose, text_of
 
-OWN = ("", "__model__")
+MODEL_FRAME = "__model__"
+OWN = ("", MODEL_FRAME)
 WORLD = "world"
 MOST_FRAMES_DEEP = 50
 
@@ -45,6 +46,8 @@ class SdfScope:
         parent: The scope that encloses it.
         is_static: Whether it or an enclosing scope is static.
         placement_frame: The frame that its pose places; empty for its own frame.
+        placed_by: The element that names that frame, which may be in another file; None where the
+            model itself does.
         canonical_link: The link that represents the model in joints; empty for the first link.
         named: Its links, joints, frames and nested models, in file order.
         nested: Scopes of its nested models.
@@ -57,6 +60,7 @@ class SdfScope:
     parent: SdfScope | None = None
     is_static: bool = False
     placement_frame: str = ""
+    placed_by: XmlElement | None = None
     canonical_link: str = ""
     named: dict[str, Named] = field(default_factory=dict[str, Named])
     nested: dict[str, SdfScope] = field(default_factory=dict[str, "SdfScope"])
@@ -97,6 +101,10 @@ class SdfScope:
             self._open.discard(name)
         return self._located[name]
 
+    def placement(self) -> SE3:
+        """T_scope_frame of the frame that the scope's pose places."""
+        return self.locate(self.placement_frame, self.placed_by or self.element)
+
     def in_world(self) -> SE3:
         """T_world_scope."""
         if self.parent is None:
@@ -126,18 +134,19 @@ class SdfScope:
             T_scope_item = self.pose_in(item.pose, item.base)
             if item.kind != "model":
                 return T_scope_item
-            nested = self.nested[name]
-            frame = nested.placement_frame
-            return T_scope_item @ nested.locate(frame, item.element).inverse()
+            return T_scope_item @ self.nested[name].placement().inverse()
         first, _, rest = name.partition("::")
         if rest and first in self.nested:
             return self.locate(first, element) @ self.nested[first].locate(rest, element)
         for nested in self.nested.values():
             if nested.is_merged and nested.has(first):
                 return self.locate(nested.name, element) @ nested.locate(name, element)
-        known = [*self.named, *(f"{name}::" for name in self.nested)]
+        own = WORLD if self.parent is None else MODEL_FRAME
+        known = [own, *self.named, *(f"{name}::" for name in self.nested)]
         hint = did_you_mean(name, known, "frames")
-        raise SpecError([element.problem(f"there is no frame '{name}' here", hint)])
+        is_here = element.place.source.path == self.element.place.source.path
+        where = "here" if is_here else f"in the model '{self.element.get('name').strip()}'"
+        raise SpecError([element.problem(f"there is no frame '{name}' {where}", hint)])
 
 
 def check_frames(scope: SdfScope) -> None:

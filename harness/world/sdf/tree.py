@@ -163,7 +163,7 @@ class SdfTree:
             parent,
             is_flag(element, "static") or parent.is_static,
             element.get("placement_frame").strip(),
-            element.get("canonical_link").strip(),
+            canonical_link=element.get("canonical_link").strip(),
         )
         self._name(parent, Named("model", element, pose_of(element)))
         self._add(parent, scope, files)
@@ -175,9 +175,7 @@ class SdfTree:
         note_unread_elements(scope.element, "model", self.notes)
         parent.nested[scope.name] = scope
         self._fill(scope, files)
-        if not scope.placement_frame:
-            return
-        scope.locate(scope.placement_frame, scope.element)
+        scope.placement()
 
     def _include(self, parent: SdfScope, element: XmlElement, files: tuple[Path, ...]) -> None:
         """A model of another file, with the include's elements in place of its own."""
@@ -208,9 +206,10 @@ class SdfTree:
         model = self._model_of(sdf, path, uri)
         name = text_of(element, "name") or model.need("name").strip()
         is_merged = is_true(element, element.get("merge", "false"))
-        frame = text_of(element, "placement_frame") or (
-            "" if given else model.get("placement_frame").strip()
-        )
+        stated = element.find("placement_frame")
+        frame = stated.text.strip() if stated is not None else ""
+        if not frame and not given:
+            frame = model.get("placement_frame").strip()
         scope = SdfScope(
             f"{MERGED}{name}" if is_merged else name,
             model,
@@ -218,6 +217,7 @@ class SdfTree:
             parent,
             is_flag(element, "static", is_flag(model, "static")) or parent.is_static,
             frame,
+            stated,
             model.get("canonical_link").strip(),
             is_merged=is_merged,
         )
