@@ -107,7 +107,14 @@ def _bead(mass: float) -> Inertial:
 
 def _with_mass(link: Link) -> Link:
     solids = [solid for shape in link.collisions for solid in _solids(shape)]
-    return replace(link, inertial=solid_inertial(solids or link.visuals))
+    return replace(link, inertial=solid_inertial(solids or [*map(_hull, link.visuals)]))
+
+
+def _hull(shape: Shape) -> Shape:
+    """A shape, where a mesh is no more than its hull: what is only seen is not cut into parts."""
+    if not isinstance(shape.geometry, Mesh):
+        return shape
+    return replace(shape, geometry=replace(shape.geometry, collision="hull"))
 
 
 def _solids(shape: Shape) -> Sequence[Shape]:

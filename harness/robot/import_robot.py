@@ -11,11 +11,13 @@ from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
+from harness.robot.decomposed_meshes import decompose_meshes
 from harness.robot.description import WORLD, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import files_around, find_file, find_folder
-from harness.robot.imported_part import imported_part
+from harness.robot.imported_part import imported_part, refuse_unknown_links
 from harness.robot.mjcf.mjcf import read_mjcf
+from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
 from harness.robot.srdf.check import checked_srdf
 from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
@@ -59,16 +61,31 @@ def read_robot(
         urdf, states, excluded = parse_urdf(document, path.parent, str(path), packages), (), {}
     urdf = _without_world(urdf)
     urdf = replace(urdf, links=with_collision_modes(urdf.links, spec.collision, collision))
-    if srdf_path is None:
-        srdf = _default_srdf(spec, urdf, states)
-    else:
+    srdf = None
+    if srdf_path is not None:
         around = PackagePath.of_file(srdf_path, (*given, packages.home))
         parsed = read_srdf(srdf_path, read_bounded(srdf_path), spec.args, around)
         srdf = _srdf(parsed, urdf, states, str(srdf_path))
+    refuse_unknown_links(spec, urdf)
+    _check_limits(spec, urdf, base_dir)
+    decompose_meshes(urdf.links, urdf.mesh_elements)  # what needs no shapes is checked before
+    srdf = srdf or _default_srdf(spec, urdf, states)
     urdf = with_estimated_masses(urdf)
     part = imported_part(spec, urdf, srdf, path, str(srdf_path or path))
     allowed = {**excluded, **part.srdf.disabled}
     return replace(part, srdf=replace(part.srdf, disabled=allowed))
+
+
+def _check_limits(spec: RobotSpec, urdf: Urdf, base_dir: Path) -> None:
+    """Check MoveIt's joint limits, which are applied after a gripper is mounted.
+
+    Raises:
+        SpecError: The file has mistakes, or names joints that do not exist.
+        RobotError: It does not exist.
+    """
+    if spec.moveit.joint_limits is not None and spec.gripper is None:
+        path = find_file(spec.moveit.joint_limits, "moveit", base_dir, ())
+        with_joint_limits(urdf.joints, path, urdf.name, [])
 
 
 def _default_srdf(spec: RobotSpec, urdf: Urdf, states: Sequence[NamedState]) -> Srdf:

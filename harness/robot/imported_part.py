@@ -13,7 +13,7 @@ from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
 from harness.robot.acceleration import ACCELERATION, VELOCITY
 from harness.robot.compose import RobotPart
-from harness.robot.description import Joint, Link, PlanningGroup
+from harness.robot.description import Joint, PlanningGroup
 from harness.robot.gripper.find_hand import hand_candidates, named_hand
 from harness.robot.gripper.inferred_gripper import IntegratedGripper, NoGripperError, recognise
 from harness.robot.gripper.inferred_tcp import tcp_without_gripper, with_integrated_gripper
@@ -73,8 +73,6 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     urdf = replace(urdf, joints=limited)
     groups = planning_groups(srdf, urdf.joints, source)
     arm = _arm_group(spec, srdf, groups, source)
-    for key in ("tcp_link", "flange_link"):
-        _refuse_unknown_link(getattr(spec, key), key, urdf.links)
     last = next(j.child for j in urdf.joints[::-1] if j.name == arm.joint_names[-1])
     tip = arm.tip_link or last
     start = _start(urdf.joints, srdf, arm)
@@ -200,11 +198,18 @@ def _arm_group(
     return max(candidates, key=lambda group: len(group.joint_names))
 
 
-def _refuse_unknown_link(name: str | None, key: str, links: Sequence[Link]) -> None:
-    names = [link.name for link in links]
-    if name is not None and name not in names:
-        hint = did_you_mean(name, names, "links")
-        raise RobotOptionError(key, f"the robot has no link '{name}'; {hint}")
+def refuse_unknown_links(spec: RobotSpec, urdf: Urdf) -> None:
+    """Refuse a TCP or a flange that is no link of the robot.
+
+    Raises:
+        RobotOptionError: One is not known.
+    """
+    names = [link.name for link in urdf.links]
+    for key in ("tcp_link", "flange_link"):
+        name = getattr(spec, key)
+        if name is not None and name not in names:
+            hint = did_you_mean(name, names, "links")
+            raise RobotOptionError(key, f"the robot has no link '{name}'; {hint}")
 
 
 def _start(joints: Sequence[Joint], srdf: Srdf, arm: PlanningGroup) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from collections import ChainMap
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -20,8 +21,9 @@ from harness.language.scenario import RobotSpec
 from harness.robot.acceleration import with_assumed_limits_listed, with_possible_accelerations
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
-from harness.robot.collision_shapes import with_collision_shapes
+from harness.robot.collision_shapes import with_collision_modes, with_collision_shapes
 from harness.robot.compose import RobotPart, compose_robot
+from harness.robot.decomposed_meshes import decompose_meshes
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
@@ -143,6 +145,9 @@ def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) ->
         for part in filter(None, (main, tool)):
             own |= part.facts.collision
         links = own | (links or {})
+    described = with_collision_modes(description.links, links, collision)
+    elements = [part.urdf.mesh_elements for part in (main, tool) if part is not None]
+    decompose_meshes(described, dict(ChainMap(*map(dict, elements))))
     return with_collision_shapes(description, links, collision)
 
 

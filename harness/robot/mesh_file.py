@@ -201,14 +201,17 @@ def hull_of(points: FloatArray) -> Any:
 def decomposition_of(geometry: Mesh) -> Decomposition:
     """The convex parts of a mesh, from the cache where they are known.
 
+    One that collides as its hull is not cut: the hull is its only part.
+
     Raises:
         RobotError: As `convex_hull`.
     """
-    return _decomposition(Mesh(geometry.path, geometry.scale))
+    is_hull = geometry.collision == "hull"
+    return _decomposition(Mesh(geometry.path, geometry.scale), is_hull=is_hull)
 
 
 @lru_cache(maxsize=512)
-def _decomposition(geometry: Mesh) -> Decomposition:
+def _decomposition(geometry: Mesh, *, is_hull: bool) -> Decomposition:
     def triangles() -> FloatArray:
         mesh = read_triangles(geometry)
         if _is_flat(mesh.vertices):  # Qhull can crash on such points
@@ -217,7 +220,8 @@ def _decomposition(geometry: Mesh) -> Decomposition:
 
     factors = np.array(geometry.scale) * metres_per_unit(geometry)
     with _hull_errors(geometry):
-        return stored_decomposition(read_input(geometry.path), factors, triangles)
+        content = read_input(geometry.path)
+        return stored_decomposition(content, factors, triangles, is_hull=is_hull)
 
 
 def hull_points(geometry: Mesh) -> FloatArray:

@@ -76,7 +76,7 @@ def test_a_goal_in_the_hull_of_a_bin_says_that_this_is_its_hull(tmp_path):
     result, _ = run(tmp_path, INTO_THE_BIN, robot=ARM, rest=BIN % "" + "collision: hull\n")
     assert result.steps[0].error_code == "GOAL_IN_COLLISION"
     assert "bin collides as its convex hull, at most" in result.steps[0].message
-    assert "(`collision: parts` is closer)" in result.steps[0].message
+    assert "(a `collision` of `parts` or `exact` is closer)" in result.steps[0].message
 
 
 def distance(objects, poses):

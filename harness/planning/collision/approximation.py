@@ -43,10 +43,9 @@ def _convex(shapes: Sequence[Shape]) -> list[Mesh]:
 def _said(name: str, shapes: Sequence[Shape]) -> str:
     worst = max(_convex(shapes), key=_mesh_excess)
     count = len(decomposition_of(worst).parts)
-    is_hull = worst.collision == "hull" or count == 1
-    other = "parts" if is_hull and count > 1 else "exact"
-    kind = "its convex hull" if is_hull else f"{count} convex parts"
+    other = "`parts` or `exact`" if worst.collision == "hull" else "`exact`"
+    kind = "its convex hull" if count == 1 else f"{count} convex parts"
     return (
         f"{name} collides as {kind}, at most {length_text(_mesh_excess(worst))} larger than the "
-        f"mesh (`collision: {other}` is closer)"
+        f"mesh (a `collision` of {other} is closer)"
     )

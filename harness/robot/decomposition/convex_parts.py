@@ -39,7 +39,7 @@ class Decomposition:
 
 
 def stored_decomposition(
-    content: bytes, factors: FloatArray, triangles: Callable[[], FloatArray]
+    content: bytes, factors: FloatArray, triangles: Callable[[], FloatArray], *, is_hull: bool
 ) -> Decomposition:
     """The convex parts of a mesh; computed where the cache does not have them.
 
@@ -50,16 +50,17 @@ def stored_decomposition(
         content: The bytes of the mesh file.
         factors: The factors from its coordinates to metres, shape (3,).
         triangles: Reads the corners [m], shape (M, 3, 3).
+        is_hull: Whether the hull is the only part in any case.
     """
     key = hashlib.sha256(content)
     key.update(repr((factors.tolist(), METHOD, *_versions())).encode())
-    name = f"convex_parts/{key.hexdigest()}.npz"
+    name = f"convex_{'hulls' if is_hull else 'parts'}/{key.hexdigest()}.npz"
     stored = cached(name)
     if stored is not None:
         return _read(stored)
     from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
 
-    found = decompose(triangles())
+    found = decompose(triangles(), is_hull=is_hull)
     store(name, _content(found))
     return found
 

@@ -103,11 +103,12 @@ PEEL = 0.5
 """What a volume that is not cut into convex parts yet costs, next to that of its empty space."""
 
 
-def decompose(triangles: FloatArray) -> Decomposition:
+def decompose(triangles: FloatArray, *, is_hull: bool = False) -> Decomposition:
     """Cut a mesh into convex parts; one part where its hull is within `HULL_TOLERANCE`.
 
     Args:
         triangles: Corners [m], shape (M, 3, 3); they need not be connected or closed.
+        is_hull: Whether the hull is the only part in any case, so that nothing is cut.
     """
     hull = ConvexHull(triangles.reshape(-1, 3))
     longest = float(np.ptp(hull.points, axis=0).max())
@@ -119,7 +120,7 @@ def decompose(triangles: FloatArray) -> Decomposition:
     grid = solid_grid(triangles, tolerance * FINENESS)
     search = _Search(grid, max(tolerance - DIAGONAL * grid.edge, 0.5 * tolerance, grid.edge))
     hull_excess = _excess(grid, corners)
-    if hull_excess <= HULL_TOLERANCE * share:
+    if is_hull or hull_excess <= HULL_TOLERANCE * share:
         return Decomposition(corners, (corners,), hull_excess, hull_excess, grid.is_closed)
     pieces = _merged(search, _cut(search, search.piece(triangles)))
     parts = tuple(

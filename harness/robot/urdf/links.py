@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.core.errors import RobotError, SpecError, collected
+from harness.core.errors import SpecError, collected
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, Shape, Sphere
 from harness.core.solids import TRIANGLE_SLACK
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Inertial, Link
-from harness.robot.mesh_file import KINDS, SUFFIXES, decomposition_of
+from harness.robot.mesh_file import KINDS, SUFFIXES
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.urdf.values import lengths, number, pose, rgba, three
 
@@ -58,6 +58,7 @@ class LinkReader:
         notes: Collects notes on corrected elements.
         undrawn: Collects the links of visuals that cannot be drawn, with the reason.
         sizeless: Collects the links of shapes without a thickness, with the shape.
+        meshes: Collects the elements of meshes that collide, with their links.
     """
 
     folder: Path
@@ -66,6 +67,9 @@ class LinkReader:
     notes: list[str] = field(default_factory=list[str])
     undrawn: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
     sizeless: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+    meshes: dict[Mesh, tuple[XmlElement, str]] = field(
+        default_factory=dict[Mesh, tuple[XmlElement, str]]
+    )
 
     def left_out(self) -> list[str]:
         """Notes on the shapes that are left out."""
@@ -194,11 +198,8 @@ class LinkReader:
                 return None
             item.refuse(f"link '{link}': mesh {error}", at="filename")
         mesh = Mesh(path, scale)
-        try:
-            if not is_visual:
-                decomposition_of(mesh)
-        except RobotError as error:
-            item.refuse(f"link '{link}': mesh {error}", at="filename")
+        if not is_visual:
+            self.meshes.setdefault(mesh, (item, link))
         return mesh
 
 

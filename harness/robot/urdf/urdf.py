@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from harness.core.errors import collected
+from harness.core.geometry import Mesh
 from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
@@ -47,6 +48,9 @@ READ = {
 """The elements that are known, by the element that they are in."""
 
 
+MeshElements = Mapping[Mesh, tuple[XmlElement, str]]
+
+
 @dataclass(frozen=True, eq=False)
 class Urdf:
     """A robot's tree: links with parents before children, joints in the order of their children.
@@ -55,6 +59,7 @@ class Urdf:
         notes: Notes on ignored and changed elements.
         elements: Elements of links and joints.
         root_element: The document, for readers of optional elements.
+        mesh_elements: Elements and links of the meshes that collide.
     """
 
     name: str
@@ -63,6 +68,7 @@ class Urdf:
     notes: tuple[str, ...] = ()
     elements: Elements = field(default_factory=dict[tuple[str, str], XmlElement])
     root_element: XmlElement | None = None
+    mesh_elements: MeshElements = field(default_factory=dict[Mesh, tuple[XmlElement, str]])
 
     @property
     def root(self) -> str:
@@ -124,7 +130,9 @@ def parse_urdf(
     joints = resolved_mimics(joints, elements)
     notes += packages.notes
     ordered = in_tree_order(links, joints, source, elements)
-    return Urdf(root.get("name"), *ordered, (*_ignored(root), *notes), elements, root)
+    return Urdf(
+        root.get("name"), *ordered, (*_ignored(root), *notes), elements, root, reader.meshes
+    )
 
 
 def _by_name(root: XmlElement) -> dict[tuple[str, str], XmlElement]:

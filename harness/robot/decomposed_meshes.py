@@ -1,0 +1,57 @@
+"""Decomposes the meshes of a robot, and reports on stderr what takes long."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+
+from harness.core.errors import RobotError
+from harness.core.geometry import Mesh
+from harness.robot.description import Link
+from harness.robot.mesh_file import decomposition_of
+from harness.robot.urdf.urdf import MeshElements
+
+PATIENCE = 2.0
+"""Time after which the mesh that is decomposed is reported [s]."""
+
+
+def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
+    """Decompose the meshes with which links collide, for later use in this process.
+
+    Args:
+        links: The links.
+        elements: Where the file of the robot names the meshes.
+
+    Raises:
+        SpecError: A mesh cannot be read, or is flat; at its element.
+        RobotError: The same, without an element.
+    """
+    shapes = (shape.geometry for link in links for shape in link.collisions)
+    meshes = list(dict.fromkeys(each for each in shapes if isinstance(each, Mesh)))
+    start = time.monotonic()
+    for number, mesh in enumerate(meshes, start=1):
+        left = max(PATIENCE - (time.monotonic() - start), 0.1)
+        text = f"computing convex parts of {mesh.path.name}, {number} of {len(meshes)}"
+        try:
+            with reported(text, after=left):
+                decomposition_of(mesh)
+        except RobotError as error:
+            element, link = elements.get(Mesh(mesh.path, mesh.scale), (None, ""))
+            if element is None:
+                raise
+            element.refuse(f"link '{link}': mesh {error}", at="filename")
+
+
+@contextmanager
+def reported(text: str, *, after: float) -> Generator[None]:
+    """Print a line on stderr if what runs inside takes longer than some seconds."""
+    timer = threading.Timer(after, print, (text,), {"file": sys.stderr, "flush": True})
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
