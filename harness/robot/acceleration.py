@@ -26,8 +26,44 @@ SAMPLES = 60
 SHARE = 0.7
 """Share of the effort beyond gravity that is available for acceleration."""
 
+LEAST_JOINTS = 3
+"""Fewest joints of an arm whose equal effort limits are no coincidence."""
+
 LEAST = 0.05
 """Smallest share of the assumed acceleration that remains."""
+
+
+def without_placeholder_efforts(description: RobotDescription) -> RobotDescription:
+    """The robot without the effort limits of its arm where they are a placeholder.
+
+    They are one if they are the same for all joints and do not hold the arm in a sampled
+    configuration.
+    """
+    names = description.groups[description.arm_group].joint_names
+    efforts = {description.joint_by_name[name].effort for name in names}
+    effort = min(efforts)
+    if len(names) < LEAST_JOINTS or len(efforts) > 1 or not np.isfinite(effort):
+        return description
+    driven = [joint.name for joint in description.movable_joints if joint.mimic is None]
+    gravity = dict(zip(driven, _efforts(description)[1].max(axis=0).tolist(), strict=True))
+    heaviest = max(names, key=gravity.__getitem__)
+    if gravity[heaviest] <= effort:
+        return description
+    joints = tuple(
+        replace(joint, effort=np.inf, effort_source="") if joint.name in names else joint
+        for joint in description.joints
+    )
+    note = (
+        f"the effort limit of {effort:g} of all joints of the arm counts as none: gravity alone"
+        f" needs up to {gravity[heaviest]:.3g} of {heaviest}; give those of the data sheet, as"
+        f" `joint_limits: {{{heaviest}: {{max_effort: ...}}}}` in `robot:`"
+    )
+    return replace(
+        description,
+        joints=joints,
+        urdf=write_urdf(description.name, description.links, joints),
+        notes=(*description.notes, note),
+    )
 
 
 def with_possible_accelerations(

@@ -22,7 +22,7 @@ def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
     """Decompose the meshes with which links collide, for later use in this process.
 
     Args:
-        links: The links.
+        links: All links of a robot, with whole meshes.
         elements: Where the file of the robot names the meshes.
 
     Raises:

@@ -104,9 +104,11 @@ def _narrowed(joint: Joint, limits: JointLimits) -> Joint:
         ("max_effort", limits.max_effort, joint.effort),
     ):
         if value is not None and value > widest:
+            larger = ", and its file has the `effort` to correct" if key == "max_effort" else ""
             raise RobotOptionError(
                 f"joint_limits.{joint.name}.{key}",
-                f"{value:.6g} is more than the robot's {widest:.6g}; limits can be narrowed only",
+                f"{value:.6g} is more than the robot's {widest:.6g}; limits can be narrowed only"
+                f"{larger}",
             )
     if limits.min_position is not None and limits.min_position < joint.lower:
         raise RobotOptionError(

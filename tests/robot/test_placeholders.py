@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.core.errors import SpecError
+from harness.core.errors import RobotError, SpecError
 from harness.robot.forward_kinematics import robot_poses
 from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
@@ -223,3 +223,44 @@ def test_an_end_effector_without_a_name_has_that_of_its_group(tmp_path):
     tool = '<end_effector parent_link="tool" group="hand"/>'
     arm = load(tmp_path, srdf=SRDF.replace(END, fingers + tool + END))
     assert noted(arm, "<end_effector>", "has no 'name': 'hand' is assumed")
+
+
+EQUAL = ('effort="80"', 'effort="30"')
+HEAVY = ('<mass value="1"/>', '<mass value="20"/>')
+
+
+@pytest.mark.parametrize("effort", ["30", "1", "100"])
+def test_equal_efforts_that_cannot_hold_the_arm_count_as_none(tmp_path, effort):
+    heavy = ('<mass value="1"/>', f'<mass value="{effort}"/>')
+    arm = load(tmp_path, EQUAL, ('effort="30"', f'effort="{effort}"'), heavy)
+    assert {arm.joint_by_name[name].effort for name in arm.joint_names} == {np.inf}
+    assert noted(arm, f"the effort limit of {effort} of all joints of the arm counts as none")
+    assert noted(arm, "`joint_limits: {reach: {max_effort: ...}}` in `robot:`")
+    known = load(tmp_path, EQUAL, heavy, joint_limits={"bend": {"max_effort": 4000}})
+    assert known.joint_by_name["bend"].effort == 4000
+
+
+@pytest.mark.parametrize("changes", [[EQUAL], [HEAVY]])
+def test_efforts_that_hold_the_arm_or_differ_stay(tmp_path, changes):
+    arm = load(tmp_path, *changes)
+    assert arm.joint_by_name["bend"].effort == 30
+    assert not noted(arm, "counts as none")
+
+
+def test_a_larger_effort_than_the_file_has_belongs_into_the_file(tmp_path):
+    with pytest.raises(RobotError, match="its file has the `effort` to correct"):
+        load(tmp_path, joint_limits={"bend": {"max_effort": 4000}})
+
+
+def test_an_arm_whose_efforts_are_a_placeholder_moves(tmp_path):
+    write_arm(tmp_path, URDF.replace(*EQUAL).replace(*HEAVY))
+    result, _ = run(
+        tmp_path,
+        "- move_to: {joints: {turn: 0.5, bend: 1.2}}",
+        robot="{urdf: arm.urdf, srdf: arm.srdf}",
+        rest="""
+        expect:
+          - always: within_limits
+        """,
+    )
+    assert result.outcome == "passed", [step.message for step in result.steps]

@@ -118,7 +118,8 @@ def _overload_advice(overload: OverloadFailure) -> str:
         )
     return (
         "no slower motion helps: keep the arm nearer to its base, or compare the robot's effort"
-        " limits and masses with its data sheet (`harness robot check` prints them)"
+        " limits and masses with its data sheet (`harness robot check` prints them) and correct the"
+        " `effort` of a joint's <limit>, or `joints: {JOINT: {max_effort: ...}}` of a robot.yaml"
     )
 
 
