@@ -82,7 +82,10 @@ NUMBER_AND_UNIT = re.compile(
     r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>|[^\W\d].*?|°.*?|%)\s*",
     re.DOTALL,
 )
-UNIT = re.compile(r"[A-Za-zµμ°_]+(?:\s*(?:\*\*|[*/^·])?\s*(?:[A-Za-zµμ°_]+|-?[1-4]))*")
+FACTOR = r"[A-Za-zµμ°_]++(?:\s*+(?:\*\*|\^)?+\s*+-?[1-4])?+"
+UNIT = re.compile(rf"{FACTOR}(?:\s*+[*/·]?+\s*+{FACTOR})*+")
+"""A product of units; each has one power at most, because pint computes powers of powers."""
+
 LONGEST = 60
 
 

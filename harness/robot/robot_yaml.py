@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-import yaml
 from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import ErrorDetails
 
@@ -15,7 +14,7 @@ from harness.core.geometry import CollisionMode
 from harness.language.base import Length, Name, RosName, Rpy, SpecModel, Xyz
 from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
-from harness.language.files.yaml_file import LOADER, parse_yaml, read_text
+from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.scenario import IkSolverName, JointLimits, StartState
 
 FILE = "robot.yaml"
@@ -45,7 +44,9 @@ class XacroFile(SpecModel):
         description="The xacro argument that gets `true` where the variant's meshes are installed.",
     )
     mesh_package: Name | None = Field(
-        default=None, description="The Python package that has the meshes."
+        default=None,
+        pattern=r"^[A-Za-z_]\w*$",  # the parents of a dotted name would be imported
+        description="The Python package that has the meshes.",
     )
     mesh_variants: tuple[Name, ...] = Field(
         default=(), description="The variants of which the package has meshes."
@@ -265,13 +266,12 @@ def read_robot_yaml(folder: Path) -> RobotYaml:
         SpecError: The file does not exist, is not YAML, or has mistakes; all of them, located.
     """
     text = read_text(folder / FILE)
+    content = parse_yaml(text, Source.of_text(str(folder / FILE), text)).plain()
     try:
-        content: Any = yaml.load(text, Loader=LOADER)
         return RobotYaml.model_validate(content)
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        errors = error.errors(include_url=False) if isinstance(error, ValidationError) else []
-        problems = [(item["loc"], _message(item)) for item in errors]
-        raise robot_yaml_error(folder, problems or [((), str(error))]) from error
+    except ValidationError as error:
+        problems = [(item["loc"], _message(item)) for item in error.errors(include_url=False)]
+        raise robot_yaml_error(folder, problems) from error
 
 
 def _message(error: ErrorDetails) -> str:

@@ -82,3 +82,21 @@ def test_no_unit_of_another_dimension_is_suggested(value, units):
     with pytest.raises(MistakeError) as caught:
         quantity(*units)(value)
     assert caught.value.hint.startswith("units: ")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "10 " + "m" * 55 + "!",
+        "10 " + "m " * 27 + "!",
+        "10 " + "m*" * 27 + "!",
+        "10 m^4^4^4^4^4",
+        "10 m**4**4**4**4",
+        "10 m^4 4 4 4 4 4^4^4^4",
+        "10 " + "m4 " * 18,
+    ],
+)
+def test_a_text_like_a_unit_is_refused_without_long_work(text):
+    """It took minutes to see that the first is none, and all memory to compute the powers."""
+    with pytest.raises(MistakeError, match="10 m"):
+        quantity("m")(text)

@@ -61,6 +61,44 @@ def test_joint_limits_narrow_the_robots_own(tmp_path, wrapper):
     assert 'upper="2.0"' in arm.urdf
 
 
+@pytest.mark.parametrize(
+    ("tagged", "position", "velocity"),
+    [
+        ("!degrees 150.0", np.deg2rad(150), np.deg2rad(90)),
+        ("!degrees '150'", np.deg2rad(150), np.deg2rad(90)),
+        ("!radians 1.25", 1.25, np.deg2rad(90)),
+        ("!radians pi/2", np.pi / 2, np.deg2rad(90)),
+    ],
+)
+def test_limits_with_the_tags_of_xacros_yaml_are_in_their_unit(
+    tmp_path, tagged, position, velocity
+):
+    text = f"""joint_limits:
+  elbow_joint: {{has_position_limits: true, min_position: !degrees -120, max_position: {tagged},
+    has_velocity_limits: true, max_velocity: !degrees 90.0}}
+"""
+    joint = load(tmp_path, joint_limits=text).joint_by_name["elbow_joint"]
+    assert (joint.upper, joint.velocity) == pytest.approx((position, velocity), abs=1e-12)
+    assert joint.lower == pytest.approx(np.deg2rad(-120))
+
+
+@pytest.mark.parametrize(
+    ("tagged", "words"),
+    [
+        ("!degrees wide", "`wide` is not a number"),
+        ("!degrees 1 rad", "`1 rad` has a unit and a tag"),
+        ("!degrees [1, 2]", "`!degrees` is a tag"),
+        ("!!python/object:os.system 1", "is a tag"),
+    ],
+)
+def test_a_tag_with_something_else_is_refused_at_its_place(tmp_path, tagged, words):
+    text = f"joint_limits:\n  elbow_joint:\n    max_velocity: {tagged}\n"
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path, joint_limits=text)
+    assert (caught.value.problems[0].line, caught.value.problems[0].column) == (3, 19)
+    assert words in caught.value.problems[0].message
+
+
 def test_limits_that_are_assumed_give_way_to_those_of_a_file(tmp_path):
     """A velocity of 0 in the URDF is none; what is assumed instead must not narrow a real limit."""
     write_arm(tmp_path, URDF.replace('velocity="0.3"', 'velocity="0"'))

@@ -134,3 +134,25 @@ def test_an_argument_that_the_file_does_not_take_is_reported(tmp_path):
     )
     with pytest.raises(RobotError, match="takes no argument 'lenght'"):
         load(tmp_path, args={"lenght": 1})
+
+
+NAMED = '<robot name="$(arg name)" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@pytest.mark.parametrize(
+    ("arm", "limb", "place"),
+    [
+        (ARM.replace(HEAD.splitlines()[1], NAMED), LIMB, "arm.xacro:2:16"),
+        (ARM, LIMB.replace("${length}", "$(arg name)"), "limb.xacro:7:26"),
+        (ARM.replace('"0.2"/>', '"$(arg name)"/>'), LIMB, "arm.xacro:3:39"),
+    ],
+)
+def test_an_argument_without_a_value_says_how_to_give_it(tmp_path, arm, limb, place):
+    write(tmp_path, arm, limb)
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path)
+    [problem] = caught.value.problems
+    assert place in str(problem)
+    assert problem.message == "the argument 'name' has no value here"
+    assert problem.hint == "give it: --args name=VALUE, or `args: {name: VALUE}` in `robot:`"
+    assert load(tmp_path, args={"name": "0.4"}).name

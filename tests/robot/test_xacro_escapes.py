@@ -6,6 +6,7 @@ import pytest
 
 from harness.core.errors import SpecError
 from harness.robot.packages import PackagePath
+from harness.robot.robot_yaml import read_robot_yaml
 from harness.robot.xacro.render import render
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -301,3 +302,42 @@ def test_no_other_file_or_program_is_reached(tmp_path, title):
         (tmp_path / name).write_text(text)
     (tmp_path / "link.xacro").symlink_to("/etc/passwd")
     refused(tmp_path, "b", FILES[title])
+
+
+@pytest.mark.parametrize("name", ["evil.meshes", "evil.meshes.fine", "..evil", "evil/meshes", ""])
+def test_no_module_is_imported_to_look_for_meshes(tmp_path, monkeypatch, name):
+    """Python finds `evil.meshes` by importing `evil`."""
+    (tmp_path / "evil.py").write_text(f"open({str(tmp_path / 'made')!r}, 'w')")
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "robot.yaml").write_text(
+        f"""robot: arm
+kind: arm
+xacro: {{file: arm.xacro, mesh_arg: meshes, mesh_package: "{name}", mesh_variants: [arm]}}
+srdf: arm.srdf
+arm_group: arm
+tcp_link: tool
+"""
+    )
+    with pytest.raises(SpecError) as caught:
+        read_robot_yaml(tmp_path)
+    assert "mesh_package" in str(caught.value)
+    assert not (tmp_path / "made").exists()
+
+
+@pytest.mark.parametrize(
+    "text", [YAML["brackets.yaml"], YAML["class.yaml"], YAML["aliases.yaml"], "robot: *gone"]
+)
+def test_a_robot_yaml_is_read_within_bounds(tmp_path, text):
+    (tmp_path / "robot.yaml").write_text(text)
+    with pytest.raises(SpecError) as caught:
+        read_robot_yaml(tmp_path)
+    assert caught.value.problems[0].line >= 1
+    assert not (tmp_path / "made").exists()
+
+
+@pytest.mark.parametrize(
+    "params", ["a:=" + "x" * 60 + "'", "a:=" + "'x'" * 60 + '"', "a:=${" * 2000]
+)
+def test_parameters_of_a_macro_are_read_without_long_work(tmp_path, params):
+    escaped = params.replace('"', "&quot;")
+    refused(tmp_path, "b", f'<xacro:macro name="m" params="{escaped}"/><xacro:m/>')

@@ -9,8 +9,9 @@ from harness.language.files.xml_file import XmlElement
 
 PARAMETER = re.compile(
     r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?"
-    r"(?P<default>\$\{.*?\}|\$\(.*?\)|(?:'.*?'|\".*?\"|[^\s'\"]+)+|)(?:\s+|$)"
+    r"(?P<default>\$\{.*?\}|\$\(.*?\)|(?:'[^']*+'|\"[^\"]*+\"|[^\s'\"]++)++|)(?:\s+|$)"
 )
+LONGEST = 10_000  # characters of all parameters
 BARE = re.compile(r"\s*(?P<name>\S+)\s*")
 
 
@@ -58,6 +59,8 @@ def read_macro(item: XmlElement) -> Macro:
         item.refuse(f"a macro cannot be called '{name}'", at="name")
     parameters: list[Parameter] = []
     text = item.get("params")
+    if len(text) > LONGEST:
+        item.refuse(f"the parameters have more than {LONGEST} characters", at="params")
     position = 0
     while text[position:].strip():
         found = PARAMETER.match(text, position)
