@@ -61,14 +61,17 @@ def find_constrained_motion(
     Raises:
         PlanningFailed: PLANNING_FAILED, when the budget is used up; INVALID_MOTION_PLAN, when no
             path passes verification after timing.
+        TimingError: The arm cannot stand still where it starts, or at any goal.
 
     References:
         D. Berenson, S. Srinivasa, D. Ferguson, J. Kuffner, "Manipulation planning on constraint
         manifolds", ICRA 2009: CBiRRT.
     """
     names = task.space.joint_names
+    goals = task.can_stand(goals)
     for end in goals:
-        if held.hold_between(task.start, end, FINAL_RESOLUTION):
+        ends = np.array([task.start, end])
+        if held.hold_between(*ends, FINAL_RESOLUTION) and task.overload(ends) is None:
             trajectory = time_straight(names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
                 statistics = task.statistics("straight line", trajectory, [task.start, end])
@@ -108,6 +111,9 @@ def find_constrained_motion(
 def _timed(task: PlanningTask, path: FloatArray, *, with_stops: bool) -> JointTrajectory | Defect:
     """Time the path as a smooth curve; with stops, otherwise as a polyline at rest at corners."""
     names, end = task.space.joint_names, path[-1]
+    overload = task.overload(path)
+    if overload is not None:
+        return overload
     spline = JointSpline(path)
     curve = RatedCurve(spline, "", [None] * len(spline.knots))
     try:

@@ -70,20 +70,24 @@ class InverseDynamics:
         still = np.zeros_like(positions)
         return bool(np.all(np.abs(self.efforts(positions, still, still)) <= self.limits))
 
-    def standing_overload(self, positions: FloatArray) -> tuple[str, Details]:
-        """Message and details of the joint with the largest static overload at positions (dof,).
+    def standing_overload(
+        self, positions: FloatArray, where: str = "on the way"
+    ) -> tuple[str, Details]:
+        """Message and details of the joint with the largest static overload at any of (N, dof).
 
         They are a TrajectoryFailure and an OverloadFailure.
         """
-        still = np.zeros((1, len(positions)))
-        standing = self.efforts(positions[None], still, still)[0]
-        joint = int(np.argmax(np.abs(standing) / self.limits))
+        efforts = self.efforts(positions, np.zeros_like(positions), np.zeros_like(positions))
+        shares = np.abs(efforts) / self.limits
+        row = int(np.argmax(shares.max(axis=1)))
+        standing, positions, still = efforts[row], positions[row], np.zeros((1, len(self.limits)))
+        joint = int(np.argmax(shares[row]))
         name, effort, limit = self.joint_names[joint], standing[joint], float(self.limits[joint])
         unit = "N m" if self._space.wraps[joint] else "N"
         needed, most = distinct(abs(effort), limit, lambda value, more: f"{value:.{1 + more}f}")
         what = " and ".join(f"{load.name} ({load.mass:g} kg)" for load in self.payloads)
         message = (
-            f"the arm cannot hold {what or 'itself'} still on the way: {name} needs {needed} {unit}"
+            f"the arm cannot hold {what or 'itself'} still {where}: {name} needs {needed} {unit}"
             f" and has at most {most} {unit}"
         )
         overload = OverloadFailure(float(abs(effort)), limit)

@@ -73,7 +73,9 @@ def find_motion(
     Raises:
         PlanningFailed: PLANNING_FAILED, when the budget is used up; INVALID_MOTION_PLAN, when no
             path passes verification.
+        TimingError: The arm cannot stand still where it starts, or at any goal.
     """
+    goals = task.can_stand(goals)
     try:
         found = _straight(task, goals) or _searched(task, goals, explanation)
         found = _cheapest(task, goals, found)
@@ -88,10 +90,10 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
     """A verified straight motion to the first goal for which there is one, or None."""
     space, checker = task.space, task.checker
     for end in goals:
-        if checker.edge_free(task.start, end, FINAL_RESOLUTION):
+        ends = np.array([task.start, end])
+        if checker.edge_free(*ends, FINAL_RESOLUTION) and task.overload(ends) is None:
             trajectory = time_straight(space.joint_names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
-                ends = [task.start, end]
                 statistics = task.statistics("straight line", trajectory, ends)
                 return _Motion(trajectory, end, space.effort(task.start, end), statistics)
     return None
@@ -118,10 +120,7 @@ def _cheapest(task: PlanningTask, goals: Sequence[FloatArray], found: _Motion) -
             break
         effort = Effort()
         options = replace(task.options, max_state_checks=budget, attempts=1)
-        try:
-            other = _first_verified_motion(task, untried, options, effort)
-        except TimingError:  # the motion found is timed already
-            break
+        other = _first_verified_motion(task, untried, options, effort)
         if not isinstance(other, _Motion):
             break
         budget -= effort.checks
@@ -146,7 +145,10 @@ def _first_verified_motion(
     for found in verified_paths(task.checker, task.start, goals, options, effort):
         for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
             short = shorten(found.waypoints, task.checker, resolution, found.seed)
-            timed = _timed(task, short)
+            try:
+                timed = task.overload(short) or _timed(task, short)
+            except TimingError as problem:
+                timed = Defect(str(problem), problem.details)
             if isinstance(timed, JointTrajectory):
                 moved = sum(task.space.effort(*edge) for edge in pairwise(short))
                 planner_id = found.result.planner_id

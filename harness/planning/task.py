@@ -11,11 +11,12 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
-from harness.planning.collision.checker import MotionChecker
+from harness.planning.collision.checker import HOLD_RESOLUTION, MotionChecker
+from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.collision.scene import CoalScene
 from harness.planning.efforts import InverseDynamics
 from harness.planning.model.robot_model import GroupSpace, RobotModel
-from harness.planning.timing.limits import Limits
+from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import SAMPLE_PERIOD, resting
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import Defect, find_defect
@@ -66,6 +67,37 @@ class PlanningTask:
                 f"{what} cannot be executed: {defect.message}",
                 *defect.details,
             )
+
+    def overload(self, path: FloatArray) -> Defect | None:
+        """Where the arm cannot stand still on a path (N, dof), or None.
+
+        After the first such path, all edges are checked for that too.
+        """
+        dynamics = self.limits.dynamics
+        if dynamics is None:
+            return None
+        motion = SampledMotion.of(path, self.space.metric, HOLD_RESOLUTION)
+        states = np.array([path[0], *(motion.state(row) for row in range(motion.last + 1))])
+        if dynamics.can_hold(states):
+            return None
+        self.checker.can_hold = dynamics.can_hold
+        return Defect(*dynamics.standing_overload(states))
+
+    def can_stand(self, goals: Sequence[FloatArray]) -> list[FloatArray]:
+        """The goals at which the arm can stand still.
+
+        Raises:
+            TimingError: It cannot at the start, or at none of the goals.
+        """
+        dynamics = self.limits.dynamics
+        if dynamics is None:
+            return list(goals)
+        if not dynamics.can_hold(self.start[None]):
+            raise TimingError(*dynamics.standing_overload(self.start[None], "at the start"))
+        kept = [goal for goal in goals if dynamics.can_hold(goal[None])]
+        if not kept:
+            raise TimingError(*dynamics.standing_overload(goals[0][None], "at the goal"))
+        return kept
 
     @property
     def lowered_margins(self) -> Details:

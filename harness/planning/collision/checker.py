@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -37,6 +37,10 @@ TOUCHING = 0.0001
 MARGIN_SLACK = 0.0005
 """How much nearer a pair may get that is below its margin at the start [m]."""
 
+HOLD_RESOLUTION = 1 / 16
+"""Joint-space distance between states at which the arm must be able to stand still [rad]: an effort
+changes by a few per cent between two of them."""
+
 CERTIFIED_REACHES = tuple(2.0**exponent for exponent in range(-12, -4))
 """Joint-space distances up to which Coal certifies states around the one that it checks [rad]."""
 
@@ -58,6 +62,8 @@ class MotionChecker:
     Attributes:
         checks: The number of states checked, as `SampledMotion.counted` has it.
         lowered: The pairs with a lowered margin.
+        can_hold: Whether the arm can stand still at positions (N, dof), which edges require too;
+            None where nothing is required.
     """
 
     def __init__(
@@ -74,6 +80,7 @@ class MotionChecker:
         self.padding = padding
         self.checks = 0
         self.lowered: list[LoweredMargin] = []
+        self.can_hold: Callable[[FloatArray], bool] | None = None
         self._robot = self._scene_model.robot.model
         self._data = self._robot.createData()
         self._margins = self._choose_margins(start)
@@ -115,6 +122,10 @@ class MotionChecker:
             resolution: The largest joint-space distance between checked states [rad].
         """
         length = self.space.distance(first, second)
+        if self.can_hold is not None:
+            shares = np.linspace(1.0, 0.0, max(1, math.ceil(length / HOLD_RESOLUTION)), False)
+            if not self.can_hold(first + shares[:, None] * (second - first)):
+                return False
         count = max(1, math.ceil(length / resolution))
         places = np.array([-1.0, count - 1])
         motion = SampledMotion(np.array([first, second]), places, length / count)

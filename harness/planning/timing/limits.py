@@ -50,8 +50,10 @@ class Dynamics(Protocol):
         """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
         ...
 
-    def standing_overload(self, positions: FloatArray) -> tuple[str, Details]:
-        """Message and details of a joint whose effort does not suffice to stand still, (dof,)."""
+    def standing_overload(
+        self, positions: FloatArray, where: str = "on the way"
+    ) -> tuple[str, Details]:
+        """Message and details of a joint whose effort does not suffice to stand still, (N, dof)."""
         ...
 
 
@@ -106,8 +108,7 @@ class Limits:
         standing = self.dynamics.efforts(positions, still, still)
         room = limits - np.sign(total - standing) * standing
         if np.any(room <= 0):
-            row, _ = np.unravel_index(int(np.argmin(room)), room.shape)
-            raise TimingError(*self.dynamics.standing_overload(positions[row]))
+            raise TimingError(*self.dynamics.standing_overload(positions))
         return float(np.sqrt(np.max(np.abs(total - standing) / room)))
 
 

@@ -211,7 +211,7 @@ def _efforts(trajectory: JointTrajectory, limits: Limits) -> Defect | None:
     still = np.zeros((1, efforts.shape[1]))
     standing = dynamics.efforts(trajectory.positions[row][None], still, still)[0]
     if np.any(np.abs(standing) > dynamics.limits):
-        return Defect(*dynamics.standing_overload(trajectory.positions[row]))
+        return Defect(*dynamics.standing_overload(trajectory.positions))
     return Defect(
         f"{name} would need {abs(efforts[row, joint]):.1f} of at most "
         f"{dynamics.limits[joint]:.1f} N m (or N) at {time:.3f} s",
