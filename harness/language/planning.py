@@ -67,8 +67,8 @@ class Planning(SpecModel):
     max_state_checks: Annotated[Count, Field(ge=1, le=10_000_000)] | None = Field(
         default=None,
         description="The budget of a search: states checked for collision and path constraints; "
-        "the default is 200000. Planners that improve their path (`RRTstar`, "
-        "`PRMstar`, `BITstar` ...) do so for a fifth of it.",
+        "the default is 2000000. Planners that improve their path (`RRTstar`, "
+        "`PRMstar`, `BITstar` ...) do so for a fiftieth of it.",
     )
     planning_attempts: Annotated[Count, Field(ge=1, le=100)] | None = Field(
         default=None,

@@ -36,6 +36,9 @@ LONGEST_STEP = 0.1
 RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, VERIFIED_RESOLUTION)
 """Distances between checked states during a search [rad]; finer after a path has failed."""
 
+CHECKS_PER_VALUE = 20
+"""State checks that take as long as evaluating the constraints at one state does."""
+
 _LEAST_STEP = 0.01
 _SHORTCUTS = 20
 _SMOOTHINGS = 4
@@ -78,7 +81,7 @@ def find_constrained_motion(
                 return MotionPlan(trajectory, Details.of(statistics), explanation)
     defect: Defect | None = None
     for attempt in range(task.options.attempts):
-        budget_end = task.checker.checks + held.checks + task.options.max_state_checks
+        budget_end = _spent(task, held) + task.options.max_state_checks
         for level, resolution in enumerate(RESOLUTIONS):
             seeds = np.random.SeedSequence([task.options.seed % 2**63, attempt, level])
             search = _Search(task, held, seeds, resolution, budget_end)
@@ -130,6 +133,10 @@ def _timed(task: PlanningTask, path: FloatArray, *, with_stops: bool) -> JointTr
     return task.defect(trajectory, end) or trajectory
 
 
+def _spent(task: PlanningTask, held: HeldConstraints) -> int:
+    return task.checker.checks + CHECKS_PER_VALUE * held.checks
+
+
 class _Search:
     """A search of a path whose states are projected, with checks at one resolution."""
 
@@ -151,8 +158,8 @@ class _Search:
 
     @property
     def checks(self) -> int:
-        """The states checked by the planning call, for collisions and for the constraints."""
-        return self.task.checker.checks + self.held.checks
+        """What the planning call has used up of its budget."""
+        return _spent(self.task, self.held)
 
     def connect(self, goals: Sequence[FloatArray]) -> PathResult:
         """Grow a tree from the start and one from the goals until they meet."""

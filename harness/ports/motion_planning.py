@@ -38,7 +38,7 @@ class PlanningOptions:
 
     pipeline: str = DEFAULT_PIPELINE
     planner_id: str = "auto"
-    max_state_checks: int = 200_000
+    max_state_checks: int = 2_000_000
     attempts: int = 1
     velocity_scaling: float = 1.0
     acceleration_scaling: float = 1.0

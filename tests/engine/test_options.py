@@ -30,7 +30,7 @@ def merged(scenario=None, step=None, *, seed=3, path="steps[1]", rate=1000):
 def test_without_a_word_every_option_has_its_default():
     options = merged()
     assert (options.pipeline, options.planner_id) == ("ompl", "ompl:")
-    assert (options.max_state_checks, options.attempts) == (200_000, 1)
+    assert (options.max_state_checks, options.attempts) == (2_000_000, 1)
     assert (options.velocity_scaling, options.acceleration_scaling) == (0.3, 0.3)
     assert (options.padding, options.max_jerk) == (0.002, math.inf)
     assert (options.root_seed, options.seed) == (3, step_seed(3, "steps[1]"))

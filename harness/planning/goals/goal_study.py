@@ -22,6 +22,9 @@ from harness.recording.goal_failures import BrokenLimit, IkResidual, IkSolution,
 MOST_GOALS = 8
 """Number of solutions of inverse kinematics that are checked and planned to, nearest first."""
 
+LIMIT_ROUNDING = 1e-5
+"""Excess over a joint limit that counts as rounding [rad or m]: files write pi as 3.14159."""
+
 FindTouches = Callable[[FloatArray], Sequence[Touch]]
 """Pairs too near at group positions; empty where they are free."""
 _STRAIGHT = 1e-6  # [m] an elbow this near the line from shoulder to wrist is neither up nor down
@@ -193,7 +196,7 @@ def broken_limits(space: GroupSpace, positions: FloatArray) -> tuple[BrokenLimit
         for name, value, low, high in zip(
             space.joint_names, positions, space.lower, space.upper, strict=True
         )
-        if not low - 1e-9 <= value <= high + 1e-9
+        if not low - LIMIT_ROUNDING <= value <= high + LIMIT_ROUNDING
     )
 
 

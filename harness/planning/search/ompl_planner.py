@@ -25,10 +25,10 @@ DEFAULTS: Mapping[str, float] = {"range": 1.5, "find_approximate_solutions": 1}
 """Parameters of the planners that have them: a tree's longest edge [rad], by default a fifth of the
 space's extent in OMPL, and approximate solutions, which give BITstar's remaining distance."""
 
-IMPROVING_SHARE = 0.2
+IMPROVING_SHARE = 0.02
 """Part of the budget in which planners that improve their path (RRTstar, PRMstar, BITstar ...) do
 so; the rest is for hard problems, and for a finer search should the path not hold. At the default
-budget BITstar improves for 0.6 s; 9 s would go into half of it."""
+budget BITstar improves for 0.6 s; 9 s would go into a twentieth of it."""
 
 STALLED = 100_000
 """Iterations of a planner without a state check after which it has stalled."""
@@ -104,11 +104,13 @@ def make_problem(request: PathRequest) -> OmplProblem:
 
 
 def _bounds(space: JointSpace, ends: FloatArray) -> ob.RealVectorBounds:
+    nearest, farthest = ends.min(axis=0), ends.max(axis=0)
+    low = np.where(np.isfinite(space.lower), space.lower, nearest - _BEYOND)
+    high = np.where(np.isfinite(space.upper), space.upper, farthest + _BEYOND)
     bounds = ob.RealVectorBounds(space.dof)
-    for index in range(space.dof):
-        low, high = float(space.lower[index]), float(space.upper[index])
-        bounds.setLow(index, low if np.isfinite(low) else float(ends[:, index].min()) - _BEYOND)
-        bounds.setHigh(index, high if np.isfinite(high) else float(ends[:, index].max()) + _BEYOND)
+    for index in range(space.dof):  # OMPL waits for another goal where one is outside
+        bounds.setLow(index, float(min(low[index], nearest[index])))
+        bounds.setHigh(index, float(max(high[index], farthest[index])))
     return bounds
 
 
