@@ -2,7 +2,8 @@
 
 Its scenes and requests are MoveIt messages in YAML, one folder for each arm and family, next to the
 arm's URDF and SRDF: `ur5/ur5.urdf`, `ur5/problems/cage_ur5/scene0001.yaml`. The source archive of
-vamp-planner on PyPI has them in `resources`, with each arm's problems in an archive.
+vamp-planner on PyPI has them in `resources`, with each arm's problems in an archive. Those of the
+Fetch and the Baxter are in that project's repository alone; the Baxter's are for both of its arms.
 """
 
 import os
@@ -32,30 +33,38 @@ FAMILIES = (
     *("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage"),
     *("table_pick", "table_under_pick"),
 )
-COUNT = 100
-"""Problems of each arm and family."""
 
 
 def _arm(name: str, group: str) -> Arm:
     def files() -> dict[str, str]:
         return {kind: str(Path(FOLDER, name, f"{name}.{kind}")) for kind in ("urdf", "srdf")}
 
-    return Arm(f"{name} of MotionBenchMaker", files, group, flange="", ready=(), usual={}, scale=1)
+    title = f"{name}, {group}, of MotionBenchMaker"
+    return Arm(title, files, group, flange="", ready=(), usual={}, scale=1)
 
 
-ARMS = {"ur5": _arm("ur5", "manipulator"), "panda": _arm("panda", "panda_arm")}
+BOTH_ARMS = tuple(f"bookshelf_tall_both_arms_{level}" for level in ("easy", "medium", "hard"))
+ARMS = (
+    ("ur5", _arm("ur5", "manipulator"), FAMILIES),
+    ("panda", _arm("panda", "panda_arm"), FAMILIES),
+    ("fetch", _arm("fetch", "arm_with_torso"), FAMILIES),
+    ("baxter", _arm("baxter", "left_arm"), BOTH_ARMS),
+    ("baxter", _arm("baxter", "both_arms"), BOTH_ARMS),
+)
 
 
 def motion_bench_maker(route: Route, each: int, seed: int) -> Iterator[Problem]:
     """`each` problems of every arm and family, drawn; those with free ends on the route's shapes.
 
-    Convex parts with padding touch more than meshes do: a few problems in a hundred are left out.
+    Convex parts with padding touch more than meshes do: a few problems in a hundred are left out,
+    and those of robots whose folder is missing.
     """
     rng = np.random.default_rng(seed)
-    for robot, arm in ARMS.items():
-        for family in FAMILIES:
+    for robot, arm, families in ARMS:
+        for family in families:
             folder = Path(FOLDER, robot, "problems", f"{family}_{robot}")
-            for number, index in enumerate(1 + rng.permutation(COUNT)[:each]):
+            count = len([*folder.glob("request*.yaml")])
+            for number, index in enumerate(1 + rng.permutation(count)[:each]):
                 problem = _problem(route, arm, family, number, folder, int(index))
                 is_free = free_by_broad_phase(problem)
                 if is_free(problem.start) and is_free(problem.goal):
@@ -79,6 +88,8 @@ def _problem(route: Route, arm: Arm, family: str, number: int, folder: Path, ind
 
 def _shapes(file: Path) -> Iterator[Shape]:
     """The primitives of a scene in the world."""
-    found = read_scene(file, ("base_link", "panda_link0"), PackagePath.of_file(file))
+    found = read_scene(
+        file, ("base_link", "panda_link0"), PackagePath.of_file(file)
+    )
     for spec in found.world.objects:
         yield from resolve_object(spec, SE3.identity(), file.parent).shapes
