@@ -74,7 +74,7 @@ def find_constrained_motion(
     goals = task.can_stand(goals)
     for end in goals:
         ends = np.array([task.start, end])
-        if held.hold_between(*ends, FINAL_RESOLUTION) and task.overload(ends) is None:
+        if held.hold_between(task.start, end, FINAL_RESOLUTION) and task.overload(ends) is None:
             trajectory = time_straight(names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
                 statistics = task.statistics("straight line", trajectory, [task.start, end])

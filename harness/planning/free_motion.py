@@ -91,7 +91,7 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
     space, checker = task.space, task.checker
     for end in goals:
         ends = np.array([task.start, end])
-        if checker.edge_free(*ends, FINAL_RESOLUTION) and task.overload(ends) is None:
+        if checker.edge_free(task.start, end, FINAL_RESOLUTION) and task.overload(ends) is None:
             trajectory = time_straight(space.joint_names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
                 statistics = task.statistics("straight line", trajectory, ends)

@@ -88,8 +88,6 @@ def _problem(route: Route, arm: Arm, family: str, number: int, folder: Path, ind
 
 def _shapes(file: Path) -> Iterator[Shape]:
     """The primitives of a scene in the world."""
-    found = read_scene(
-        file, ("base_link", "panda_link0"), PackagePath.of_file(file)
-    )
+    found = read_scene(file, ("base_link", "panda_link0"), PackagePath.of_file(file))
     for spec in found.world.objects:
         yield from resolve_object(spec, SE3.identity(), file.parent).shapes
