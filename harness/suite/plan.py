@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from harness.core.lazy import LazySequence
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
-from harness.suite.folders import place_of, report_folders
+from harness.suite.folders import report_folders
 from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
@@ -128,11 +128,6 @@ class PlannedCase:
         return None if group is None else (str(self.of.file), group)
 
     @property
-    def identity(self) -> str:
-        """Names the case on every machine: the file's path in the project and the case's name."""
-        return f"{place_of(self.of.file).as_posix()}\0{self.name}"
-
-    @property
     def values(self) -> Mapping[str, Any]:
         """What varies from case to case."""
         fixed = self.header.variation.fixed
@@ -176,6 +171,10 @@ class Plan(LazySequence[PlannedCase]):
         chosen = (n for n, each in zip(self._numbers, self, strict=True) if is_selected(each))
         return Plan(self.files, array("Q", chosen))
 
+    def part(self, shard: Shard) -> Plan:
+        """The cases of one of several parts."""
+        return Plan(self.files, array("Q", self._numbers[shard.indices]))
+
 
 def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
     """Every case of the files that the request selects, in file order.
@@ -195,7 +194,7 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
     if request.samples is not None and all(each.rate_key is None for each in found):
         _refuse_samples(files, request)
     shard = request.shard
-    return found if shard is None else found.where(lambda each: shard.holds(each.identity))
+    return found if shard is None else found.part(shard)
 
 
 def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteRequest) -> Plan:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import re
@@ -43,14 +42,18 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.count}"
 
-    def number_of(self, identity: str) -> int:
-        """The number of the part that a case belongs to; other cases have no influence on it."""
-        digest = hashlib.sha256(identity.encode()).digest()
-        return int.from_bytes(digest[:8], "big") % self.count + 1
+    def number_of(self, index: int) -> int:
+        """The number of the part that a case belongs to: each part has one case in turn.
 
-    def holds(self, identity: str) -> bool:
-        """Whether a case belongs to this part."""
-        return self.number_of(identity) == self.number
+        Args:
+            index: The index of the case among the selected cases of the whole suite.
+        """
+        return index % self.count + 1
+
+    @property
+    def indices(self) -> slice:
+        """The indices of its cases among the selected cases of the whole suite."""
+        return slice(self.number - 1, None, self.count)
 
 
 def shard_of(text: str, environment: Mapping[str, str] = os.environ) -> Shard:

@@ -58,6 +58,28 @@ def test_stored_conditions_are_the_same_runs_whatever_the_file_draws():
     assert cases("again") == cases("first")
 
 
+@pytest.mark.usefixtures("project")
+def test_a_value_that_an_option_gave_is_part_of_the_conditions():
+    run("ball.scenario.yaml", "--report-dir", "first", "--set", "x=0.1", "--seed", "3")
+    assert {values["x"] for _, values, _ in cases("first").values()} == {0.1}
+    run("ball.scenario.yaml", "--report-dir", "again", "--conditions", "first")
+    assert cases("again") == cases("first")
+
+
+@pytest.mark.usefixtures("project")
+def test_conditions_that_were_drawn_again_repeat_their_digests():
+    cube = "  - {name: cube, box: {size: [0.1, 0.1, 0.1]}, pose: {xyz: [0, 0.2, 0.5]}}\n"
+    text = SCENARIO.replace("steps:", cube + "steps:").replace(
+        "samples: 6", "redraw_overlaps: true"
+    )
+    Path("ball.scenario.yaml").write_text(text + "samples: 12\n")
+    run("ball.scenario.yaml", "--report-dir", "first")
+    results = json.loads(Path("first/results.json").read_text())["cases"]
+    assert any(each["redraws"] for each in results)
+    run("ball.scenario.yaml", "--report-dir", "again", "--conditions", "first")
+    assert cases("again") == cases("first")
+
+
 def test_the_same_conditions_meet_something_else_and_are_compared_in_pairs(campaign, capsys):
     conditions = str(campaign / "first/conditions.jsonl")
     Path("other.scenario.yaml").write_text(SCENARIO.replace("< 0.3", "< 0.1"))
