@@ -23,6 +23,7 @@ from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated
 from harness.suite.discovery import SUFFIX
 from harness.suite.folders import place_of
+from harness.suite.sampling import Tally
 from harness.suite.warm import WarmServer
 
 FORMAT = "armharness-search/1"
@@ -138,20 +139,27 @@ def _reported(written: WrittenFailure) -> CaseResult:
 
 def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
     """The share that passes, as the pages of suites show rates."""
-    is_good = not found.failures
-    return SampledRate(
-        str(found.request.file),
-        "low-discrepancy samples",
-        SuccessRate(
+    stated = found.variation
+    if stated.at_least is None:
+        shown = SuccessRate(
             rate.total - rate.failed,
             rate.total,
             1 - rate.high,
             1 - rate.low,
             rate.confidence,
             None,
-            "shown" if is_good else "refuted",
-        ),
-        "passed" if is_good else "failed",
+            "refuted" if found.failures else "shown",
+        )
+    else:
+        tally = Tally(stated.at_least, stated.confidence, stop_early=False)
+        for each in found.exploration.start:
+            tally.add(each.result.outcome == "passed", each.result.digest)
+        shown = tally.rate(tally.total)
+    return SampledRate(
+        str(found.request.file),
+        "low-discrepancy samples",
+        shown,
+        "passed" if shown.verdict == "shown" else "failed",
     )
 
 

@@ -102,6 +102,25 @@ def test_without_a_failure_the_bound_is_stated_and_the_workers_do_not_matter(tmp
     assert {**again, "file": ""} == {**found, "file": ""}
 
 
+@pytest.mark.parametrize(
+    ("rate", "says"),
+    [
+        ("expect_rate: 80 %", "at least 80.0% is not confirmed"),
+        ("params: {most: 0.1}\nexpect_rate: {at_least: '${most}', confidence: 90 %}",
+         "at least 10.0% is confirmed"),
+        ("", "no rate is required"),
+    ],
+)  # fmt: skip
+def test_the_page_judges_the_rate_that_the_file_requires(tmp_path, rate, says):
+    text = TWO_KINDS
+    if rate.startswith("params"):
+        text = text.replace("params: {", "params: {most: 0.1, ")
+        rate = rate.partition("\n")[2]
+    search(tmp_path, f"{text}{rate}\n", "--runs", "24", "--start", "12", "--seed", "1")
+    [page] = (tmp_path / "reports").rglob("index.html")
+    assert says in page.read_text()
+
+
 def test_the_file_says_how_it_is_searched_and_options_take_precedence(tmp_path):
     text = TWO_KINDS.replace('- formula: "always (y', '- name: south\n    formula: "always (y')
     text = text.replace("0.3)", "0.49)")  # rarely found by chance
