@@ -116,10 +116,10 @@ def test_a_row_has_the_values_of_its_run(page_file, visit):
 
 
 def effects(cases):
-    """File -> path -> share, or the reason why there is none."""
+    """File -> path -> whether it explains the failures, or the reason why that is not known."""
     return {
         each.file: {
-            effect.path: effect.reason if effect.share is None else effect.share
+            effect.path: effect.reason if effect.share is None else effect.is_shown
             for effect in each.effects
         }
         for each in sensitivities(Columns(cases))
@@ -131,11 +131,93 @@ def in_file(name, cases):
     return [replace(each, result=replace(each.result, file=name)) for each in cases]
 
 
-def test_the_parameter_that_decides_is_the_most_sensitive():
-    [found] = effects(campaign(400)).values()
-    assert found["friction"] > 0.9
-    assert found["x"] < 0.05
-    assert found["color"] < 0.05
+def test_the_parameter_that_decides_is_named_alone():
+    [found] = sensitivities(Columns(campaign(400)))
+    assert {effect.path: effect.is_shown for effect in found.effects} == {
+        "friction": True, "x": False, "color": False,
+    }  # fmt: skip
+    assert found.effects[0].share == pytest.approx(1)
+    assert found.conclusion == "friction (lower in failed runs) explains these failures."
+
+
+def lowest(count, path):
+    return lambda rows, _: sorted(range(len(rows)), key=lambda i: rows[i][path])[:count]
+
+
+def at_the_ends(count, path):
+    return lambda rows, _: sorted(range(len(rows)), key=lambda i: -abs(rows[i][path] - 0.5))[:count]
+
+
+def often_red(rows, rng):
+    return [i for i, row in enumerate(rows) if row["color"] == "red" and rng.random() < 0.7]
+
+
+def less_with_friction(rows, rng):
+    """The probability to fail falls with friction."""
+    return [
+        i for i, r in enumerate(rows) if rng.random() < 1 / (1 + np.exp(20 * r["friction"] - 6))
+    ]
+
+
+def any_of_them(count):
+    return lambda rows, rng: rng.sample(range(len(rows)), count)
+
+
+def named(seed, count, cause):
+    """What explains the failures of a campaign; its margins of passed runs are random."""
+    rng = random.Random(seed)
+    rows = [
+        {
+            "friction": rng.random(), "x": rng.random(), "y": rng.random(),
+            "color": rng.choice(["red", "green", "blue"]),
+        }
+        for _ in range(count)
+    ]  # fmt: skip
+    bad = set(cause(rows, rng))
+    cases = [
+        SuiteCase(failed(i, 0.04) if i in bad else passed(i, 0.05 + 0.02 * rng.random()), row)
+        for i, row in enumerate(rows)
+    ]
+    [found] = sensitivities(Columns(cases))
+    assert found.failures == len(bad)
+    return {effect.path for effect in found.effects if effect.is_shown}
+
+
+@pytest.mark.parametrize(
+    ("cause", "count", "true"),
+    [
+        (lowest(2, "friction"), 40, "friction"),
+        (lowest(10, "x"), 40, "x"),
+        (at_the_ends(5, "y"), 60, "y"),
+        (often_red, 60, "color"),
+        (less_with_friction, 80, "friction"),
+    ],
+)
+def test_the_cause_of_failures_is_named_in_nearly_every_campaign(cause, count, true):
+    """A wrong one is named in 5 % of them; 200 campaigns have more than 20 with 0.1 %."""
+    found = [named(seed, count, cause) for seed in range(200)]
+    assert sum(true in each for each in found) >= 195
+    assert sum(bool(each - {true}) for each in found) <= 20
+
+
+@pytest.mark.parametrize(("failures", "count"), [(1, 40), (2, 40), (10, 40), (30, 200)])
+def test_failures_without_a_cause_are_explained_by_nothing(failures, count):
+    found = [named(seed, count, any_of_them(failures)) for seed in range(200)]
+    assert sum(map(bool, found)) <= 20
+
+
+def test_margins_are_explained_where_no_run_failed():
+    cases = [
+        SuiteCase(passed(i, 0.06 + 0.001 * (i % 10)), {"x": i % 10, "y": i // 10})
+        for i in range(50)
+    ]
+    [found] = sensitivities(Columns(cases))
+    assert found.conclusion == "x (larger with larger values) explains the margins."
+    alike = [SuiteCase(each.result, {"y": i // 10}) for i, each in enumerate(cases)]
+    [found] = sensitivities(Columns(alike))
+    assert (
+        found.conclusion == "No parameter explains the margins: none has an effect beyond chance."
+    )
 
 
 def test_a_parameter_is_judged_among_the_runs_of_the_files_that_have_it():
@@ -162,7 +244,7 @@ def test_what_cannot_be_known_has_a_reason_and_no_share():
     one_each = [SuiteCase(passed(i, 0.05 + i), {"word": f"w{i}"}) for i in range(8)]
     assert effects(one_each)["a/pick.scenario.yaml"] == {"word": "too few runs: 8"}
     same = [SuiteCase(passed(i), {"x": i}) for i in range(9)]
-    assert effects(same)["a/pick.scenario.yaml"] == {"x": "every run has the same outcome"}
+    assert effects(same)["a/pick.scenario.yaml"] == {"x": "every run has the same worst margin"}
     rare = [SuiteCase(passed(i, 0.05 + i), {"x": i} if i < 5 else {"y": 1}) for i in range(20)]
     assert effects(rare)["a/pick.scenario.yaml"] == {"x": "too few runs: 5"}
 
@@ -178,6 +260,7 @@ def test_runs_that_fail_without_a_margin_count_with_their_outcome():
     [found] = sensitivities(Columns(in_file("a.yaml", cases)))
     assert found.measured == "outcome"
     assert found.effects[0].share == pytest.approx(1)
+    assert found.effects[0].words == "higher in failed runs"
 
 
 def margins(tmp_path, visit, cases):
@@ -229,18 +312,6 @@ def test_the_map_says_which_runs_have_no_place_on_its_axes(tmp_path, visit):
         page.select_option(f"#map select[name={axis}]", "3")
     assert "20 of 24 runs have no such values" in legend.inner_text()
     assert "NO_IK_SOLUTION in move_to" in legend.inner_text()
-
-
-def test_sensitivities_of_noise_are_near_zero_on_average():
-    """The share is corrected for what chance puts between groups."""
-    rng, shares = np.random.default_rng(0), []
-    for _ in range(20):
-        [found] = effects(
-            SuiteCase(passed(i, value), {"x": float(rng.random())})
-            for i, value in enumerate(0.06 + 0.02 * rng.random(100))
-        ).values()
-        shares.append(found["x"])
-    assert np.mean(shares) < 0.03
 
 
 def test_a_page_of_many_samples_stays_small(tmp_path):

@@ -1,4 +1,4 @@
-"""How much of the variance of a file's results each of its parameters explains."""
+"""Which parameters explain the failures of a file's runs, or their margins where none failed."""
 
 from __future__ import annotations
 
@@ -8,30 +8,47 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.reporting.suite.columns import Columns, VariedQuantity
 
 FEWEST_RUNS = 8
-"""With fewer runs a share says nothing."""
+"""With fewer runs no effect can be shown."""
 
-MOST_WITHOUT_MARGIN = 0.1
-"""With a larger part of runs without a margin, outcomes are explained instead of margins."""
+LEVEL = 0.05
+"""A parameter is named when chance gives any parameter such an effect less often than this."""
 
-BINS = 8
+RESHUFFLES = 1999
+"""Permutations of a test: they resolve a hundredth of `LEVEL`."""
+
+MOST_RUNS = 1000
+"""Failed runs, and passed runs, that a test looks at; of more, an even choice."""
 
 
 @dataclass(frozen=True)
 class Effect:
-    """The share of the variance that one parameter explains alone.
+    """The association of one parameter with the outcome, or with the margin.
 
     Attributes:
-        share: The part of the variance, from 0 to 1; None where these runs cannot show it.
+        share: Its strength from 0 to 1; None where these runs cannot show it. Of a number and the
+            outcome, it is the share of pairs of a failed and a passed run in which the failed one
+            has the lower value (or the higher one, or the one nearer to an end of the range or to
+            its middle), less the share of the other pairs. Else it is the correlation of the ranks,
+            or the correlation ratio of words.
         reason: Why there is no share; empty where there is one.
+        chance: The probability that chance gives any parameter of the file as clear an effect.
+        words: How the failed runs differ, or how the margin depends on the parameter.
     """
 
     path: str
     share: float | None
     reason: str = ""
+    chance: float = 1.0
+    words: str = ""
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether the effect is more than chance gives."""
+        return self.share is not None and self.chance < LEVEL
 
 
 @dataclass(frozen=True)
@@ -39,71 +56,192 @@ class FileSensitivity:
     """The effects of everything that varies among the runs of one file.
 
     Attributes:
-        measured: What varies with the parameters: `worst margin` or `outcome`.
-        effects: The largest share first; empty where the file has too few runs.
+        measured: What is explained: `outcome` where some runs failed, else `worst margin`.
+        failures: The number of failed runs.
+        effects: The clearest one first; empty where the file has too few runs.
     """
 
     file: str
     runs: int
     measured: str = ""
+    failures: int = 0
     effects: Sequence[Effect] = ()
+
+    @property
+    def conclusion(self) -> str:
+        """What the runs show, in a sentence."""
+        what = "these failures" if self.measured == "outcome" else "the margins"
+        shown = [f"{each.path} ({each.words})" for each in self.effects if each.is_shown]
+        if not shown:
+            return f"No parameter explains {what}: none has an effect beyond chance."
+        verb = "explains" if len(shown) == 1 else "explain"
+        return f"{' and '.join(shown)} {verb} {what}."
 
 
 def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
-    """Judge each parameter among the runs of one file, in the order of the files.
+    """Test each parameter among the runs of one file, in the order of the files.
 
-    The runs of a file are divided into groups by the parameter: by its values, or into groups of
-    equal size. The share is epsilon squared [1], the variance between the groups without what
-    chance puts there.
+    The statistic is a rank correlation, of the parameter or of its distance from its middle, or of
+    words the correlation ratio. Permutations of the outcomes give its distribution by chance, and
+    Westfall and Young's step with the smallest probability accounts for the number of parameters
+    [1]. The permutations are always the same.
 
     References:
-        [1] T. L. Kelley, "An Unbiased Correlation Ratio Measure", Proceedings of the National
-            Academy of Sciences 21(9), 1935.
+        [1] P. H. Westfall and S. S. Young, "Resampling-Based Multiple Testing", Wiley, 1993.
     """
-    files, parameters = np.array(columns.file_numbers), columns.parameters
+    files = np.array(columns.file_numbers)
     shares, is_good = np.array(columns.shares), columns.is_good
     for number, file in enumerate(columns.files):
-        chosen = files == number
-        runs = int(chosen.sum())
-        if runs < FEWEST_RUNS:
-            yield FileSensitivity(file, runs)
+        chosen = np.flatnonzero(files == number)
+        if len(chosen) < FEWEST_RUNS:
+            yield FileSensitivity(file, len(chosen))
             continue
-        measured, values = _measured(shares[chosen], is_good[chosen])
-        effects = [
-            _effect(each, numbers, values, measured)
-            for each in parameters
-            if len(np.unique((numbers := each.numbers[chosen])[np.isfinite(numbers)])) > 1
-        ]
-        effects.sort(key=lambda each: -1.0 if each.share is None else each.share, reverse=True)
-        yield FileSensitivity(file, runs, measured, effects)
+        failures = int((~is_good[chosen]).sum())
+        has_both = 0 < failures < len(chosen)
+        if has_both:
+            values = (~is_good).astype(float)
+            chosen = np.sort(np.concatenate([_evenly(chosen[is_good[chosen] == each])
+                                             for each in (False, True)]))  # fmt: skip
+        else:
+            values = shares
+            chosen = _evenly(chosen[np.isfinite(shares[chosen])], 2 * MOST_RUNS)
+        effects = _effects(columns.parameters, chosen, values[chosen], is_outcome=has_both)
+        measured = "outcome" if has_both else "worst margin"
+        runs = int((files == number).sum())
+        yield FileSensitivity(file, runs, measured, failures, effects)
 
 
-def _measured(shares: FloatArray, is_good: NDArray[np.bool_]) -> tuple[str, FloatArray]:
-    known = np.isfinite(shares)
-    if known.mean() >= 1 - MOST_WITHOUT_MARGIN and np.ptp(shares[known]) > 0:
-        return "worst margin", shares
-    return "outcome", is_good.astype(float)
+def _evenly(indices: IntArray, most: int = MOST_RUNS) -> IntArray:
+    if len(indices) <= most:
+        return indices
+    return indices[np.linspace(0, len(indices) - 1, most).astype(int)]
+
+
+def _effects(
+    parameters: Sequence[VariedQuantity], chosen: IntArray, values: FloatArray, *, is_outcome: bool
+) -> list[Effect]:
+    """The effects of the parameters that vary among some runs, the clearest one first."""
+    of_nothing: list[Effect] = []
+    scores: list[tuple[VariedQuantity, FloatArray]] = []
+    ranks = _ranks(values)
+    for each in parameters:
+        numbers = each.numbers[chosen]
+        known = np.isfinite(numbers)
+        distinct = np.unique(numbers[known])
+        if len(distinct) < 2:
+            continue
+        if len(values) and not np.ptp(values):
+            what = "outcome" if is_outcome else "worst margin"
+            of_nothing.append(Effect(each.path, None, f"every run has the same {what}"))
+        elif known.sum() < FEWEST_RUNS or (each.words and 2 * len(distinct) > known.sum()):
+            of_nothing.append(Effect(each.path, None, f"too few runs: {known.sum()}"))
+        else:
+            scores.append((each, _scores(each, numbers, known)))
+    if not scores:
+        return of_nothing
+    chances = _chances([score for _, score in scores], ranks)
+    effects = [
+        _effect(each, score, each.numbers[chosen], values, ranks, chance, is_outcome=is_outcome)
+        for (each, score), chance in zip(scores, chances, strict=True)
+    ]
+    effects.sort(key=lambda each: (each.chance, -(each.share or 0.0)))
+    return [*effects, *of_nothing]
+
+
+def _scores(parameter: VariedQuantity, numbers: FloatArray, known: NDArray[np.bool_]) -> FloatArray:
+    """Columns of length 1, (runs, k): a number's ranks and folded ranks, or words' indicators."""
+    if parameter.words:
+        words = np.unique(numbers[known])
+        groups = (numbers[:, None] == words[None, :]).astype(float)
+        return groups / np.sqrt(groups.sum(axis=0))
+    columns = np.zeros((len(numbers), 2))
+    columns[known, 0] = _ranks(numbers[known])
+    columns[known, 1] = np.abs(columns[known, 0])
+    columns[known, 1] -= columns[known, 1].mean()
+    lengths = np.linalg.norm(columns, axis=0)
+    return columns / np.where(lengths > 0, lengths, 1.0)
+
+
+def _ranks(values: FloatArray) -> FloatArray:
+    """Ranks around 0; equal values have their mean rank."""
+    _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
+    last = np.cumsum(counts)
+    return (last - (counts - 1) / 2)[places] - (len(values) + 1) / 2
+
+
+def _statistics(scores: Sequence[FloatArray], ranks: FloatArray) -> FloatArray:
+    """How clear each parameter's effect is, (permutations, parameters).
+
+    Args:
+        scores: Columns of each parameter, (runs, k).
+        ranks: Ranks of the explained values, (permutations, runs).
+    """
+    found: list[FloatArray] = []
+    for score in scores:
+        products = np.abs(ranks @ score)
+        of_words = bool((score >= 0).all())
+        found.append(np.sqrt((products**2).sum(axis=1)) if of_words else products.max(axis=1))
+    return np.stack(found, axis=1)
+
+
+def _chances(scores: Sequence[FloatArray], ranks: FloatArray) -> FloatArray:
+    """The probability that chance gives any parameter as clear an effect, for each parameter."""
+    rng = np.random.default_rng(0)
+    shuffled = rng.permuted(np.tile(ranks, (RESHUFFLES, 1)), axis=1)
+    statistics = np.round(_statistics(scores, np.vstack([ranks, shuffled])), 9)
+    alone = np.empty_like(statistics)
+    for column, values in enumerate(statistics.T):
+        alone[:, column] = 1 - np.searchsorted(np.sort(values), values) / len(values)
+    smallest: FloatArray = alone.min(axis=1)
+    return np.array([(smallest <= each).mean() for each in alone[0]])
 
 
 def _effect(
-    parameter: VariedQuantity, numbers: FloatArray, values: FloatArray, measured: str
+    parameter: VariedQuantity,
+    score: FloatArray,
+    numbers: FloatArray,
+    values: FloatArray,
+    ranks: FloatArray,
+    chance: float,
+    *,
+    is_outcome: bool,
 ) -> Effect:
-    known = np.isfinite(numbers) & np.isfinite(values)
-    numbers, values = numbers[known], values[known]
-    if not np.var(values):
-        return Effect(parameter.path, None, f"every run has the same {measured}")
-    distinct = np.unique(numbers)
-    if len(distinct) < 2:
-        return Effect(parameter.path, None, "one value in all runs with a margin")
-    is_repeated = 2 * len(distinct) <= len(values)
-    if len(values) < FEWEST_RUNS or (parameter.words and not is_repeated):
-        return Effect(parameter.path, None, f"too few runs: {len(values)}")
-    if is_repeated and (parameter.words or len(distinct) <= BINS):
-        groups = [values[numbers == each] for each in distinct]
-    else:
-        count = min(BINS, len(values) // 4)
-        groups = np.array_split(values[np.argsort(numbers, kind="stable")], count)
-    within = sum(float(((group - group.mean()) ** 2).sum()) for group in groups)
-    total = float(((values - values.mean()) ** 2).sum())
-    freedom = (len(values) - 1) / (len(values) - len(groups))
-    return Effect(parameter.path, max(0.0, 1 - within / total * freedom))
+    products = ranks @ score / np.linalg.norm(ranks)
+    if parameter.words:
+        share = float(np.sqrt((products**2).sum()))
+        words = np.unique(numbers[np.isfinite(numbers)])
+        means = [float(values[numbers == each].mean()) for each in words]
+        worst = int(np.argmax(means) if is_outcome else np.argmin(means))
+        of_worst = values[numbers == words[worst]]
+        name = parameter.words[int(words[worst])]
+        text = f"the lowest margins with {name}"
+        if is_outcome:
+            text = f"{int(of_worst.sum())} of {len(of_worst)} failed with {name}"
+        return Effect(parameter.path, min(1.0, share), "", float(chance), text)
+    is_folded = abs(products[1]) > abs(products[0])
+    is_larger = products[int(is_folded)] > 0
+    if not is_outcome:
+        text = ("larger" if is_larger else "smaller") + " with larger values"
+        if is_folded:
+            text = ("larger" if is_larger else "smaller") + " towards the ends of its range"
+        return Effect(parameter.path, float(abs(products[int(is_folded)])), "", float(chance), text)
+    text = ("higher" if is_larger else "lower") + " in failed runs"
+    if is_folded:
+        text = f"nearer to {'the ends' if is_larger else 'the middle'} of its range in failed runs"
+    column = score[:, int(is_folded)][np.isfinite(numbers)]
+    return Effect(
+        parameter.path,
+        _pairs(column, values[np.isfinite(numbers)] > 0),
+        "",
+        float(chance),
+        text,
+    )
+
+
+def _pairs(scores: FloatArray, is_failed: NDArray[np.bool_]) -> float:
+    """The share of pairs whose failed run is higher, less that of those where it is lower."""
+    failed, passed = int(is_failed.sum()), int((~is_failed).sum())
+    if not failed or not passed:
+        return 0.0
+    total = _ranks(scores)[is_failed].sum()
+    return float(abs(2 * total / (failed * passed)))
