@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -58,7 +58,6 @@ class CoalClearance:
         objects: Sequence[ObjectRecord],
         attachments: Sequence[AttachmentRecord],
         cutoff: float,
-        measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
         only: Collection[Pair] | None = None,
     ) -> Signals:
         """The same signals with `clearances` and `clearance_links` filled in.
@@ -68,7 +67,6 @@ class CoalClearance:
             objects: All objects of the run.
             attachments: All attachments of the run.
             cutoff: Larger distances are reported as the cutoff [m].
-            measured: What `measured_parts` found in a part of the run, or None.
             only: The pairs that are measured; by default all.
         """
         count = len(signals.times)
@@ -77,11 +75,8 @@ class CoalClearance:
         scene = _Scene(self._robot, objects, attachments, cutoff, only)
         motion = Motion.of(signals)
         samples = scene.knots(motion)
-        parts = [
-            measured(number) or scene.measured(motion.at(part))
-            for number, part in reversed([*enumerate(parts_of_run(motion.times, samples))])
-        ]  # the last ones first: others may still be measured by another process
-        found = MeasuredClearance.joined(parts[::-1])
+        parts = parts_of_run(motion.times, samples)
+        found = MeasuredClearance.joined([scene.measured(motion.at(part)) for part in parts])
         if not found.distances:
             return replace(signals, clearance_cutoff=cutoff)
         near = np.union1d(
@@ -103,19 +98,6 @@ class CoalClearance:
         return replace(
             signals, clearances=distances, clearance_links=links, clearance_cutoff=cutoff
         )
-
-    def measured_parts(
-        self,
-        motion: Motion,
-        objects: Sequence[ObjectRecord],
-        attachments: Sequence[AttachmentRecord],
-        cutoff: float,
-        numbers: range,
-    ) -> dict[int, MeasuredClearance]:
-        """Distances in complete parts of a running run, by the numbers of the parts."""
-        scene = _Scene(self._robot, objects, attachments, cutoff)
-        parts = parts_of_run(motion.times, scene.knots(motion))
-        return {number: scene.measured(motion.at(parts[number])) for number in numbers}
 
     def distances(
         self,

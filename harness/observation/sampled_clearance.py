@@ -56,23 +56,10 @@ def knots(
     return np.flatnonzero(chosen)
 
 
-def complete_parts(count: int, timestep: float) -> int:
-    """The number of the parts that do not change any more while a run continues.
-
-    What happens after the last sample changes `AROUND` samples before it, as `knots` says.
-
-    Args:
-        count: The number of samples so far.
-        timestep: Time from one sample to the next [s].
-    """
-    return max(0, count - 2 - AROUND) // _part_length(timestep)
-
-
 def parts_of_run(times: FloatArray, samples: IntArray) -> list[IntArray]:
     """The measured samples of each part of `PART` seconds; the parts share the samples between.
 
-    Each part is measured as if the run began with it, so that it does not matter when, and in which
-    process, it is measured.
+    Measuring one part after the other bounds the memory that a long run takes.
     """
     length = _part_length(_timestep(times))
     last = len(times) - 1

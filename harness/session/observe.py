@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from harness.assertions.facts import remembered_facts
 from harness.engine.execute import Execution
@@ -15,9 +13,6 @@ from harness.observation.tracking import as_commanded, plan_against_physics
 from harness.recording.run import Run
 from harness.recording.signals import Signals
 from harness.session.prepare import Prepared
-
-if TYPE_CHECKING:
-    from harness.observation.measured_clearance import MeasuredClearance
 
 
 def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Signals) -> Signals:
@@ -30,14 +25,12 @@ def with_believed_poses(prepared: Prepared, execution: Execution, recorded: Sign
 def observed_run(
     prepared: Prepared,
     executed: Run,
-    measured: Callable[[int], MeasuredClearance | None] = lambda _: None,
 ) -> Run:
     """The run with distances, as verdicts and the digest need them.
 
     Args:
         prepared: The scenario that was executed.
         executed: What was executed and recorded.
-        measured: The distances in a part of the run that were measured while it went on.
     """
     from harness.observation.clearance import CoalClearance
     from harness.observation.held_clearance import with_held_distances
@@ -46,7 +39,7 @@ def observed_run(
     description, needed = prepared.program.description, prepared.observations
     cutoff, bodies = needed.recorded_cutoff, (executed.objects, executed.attachments)
     observer = CoalClearance(description)
-    signals = observer.observe(executed.signals, *bodies, cutoff, measured)
+    signals = observer.observe(executed.signals, *bodies, cutoff)
     run = replace(executed, signals=with_excluded_links(signals, description))
     run = replace(run, signals=with_held_distances(run, observer))
     if not needed.planned_clearances:

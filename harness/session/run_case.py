@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from harness.assertions.facts import remembered_facts
 from harness.assertions.judge import judge
-from harness.cell.program import ProgramStep
 from harness.core.errors import HarnessError, SpecError
 from harness.core.memory import free_memory
-from harness.engine.execute import ProgramExecution, StepEvent
+from harness.engine.execute import ProgramExecution
 from harness.observation.tracking import never_held
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
 from harness.recording.files import write_files
 from harness.recording.run import Run
-from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import PAGE, StoredRun
 from harness.recording.write_run import write_run
 from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
-from harness.session.distances_ahead import DistancesAhead
 from harness.session.external import ExternalSession, MakeSession, NoPrograms
 from harness.session.observe import explained_run, observed_run, with_believed_poses
 from harness.session.pictures import Drawings, Pictures
@@ -61,15 +59,14 @@ def run_case(
     progress.compiled()
     try:
         with ExitStack() as stack:
-            ahead = stack.enter_context(closing(DistancesAhead(prepared)))
             pictures = stack.enter_context(closing(Pictures(request, prepared)))
             session = make_session(prepared, begun.simulator)
-            executed = _executed(request, begun, clock, progress, session, ahead)
+            executed = _executed(request, begun, clock, progress, session)
             refusal = session.refusal()
             del begun, session  # the simulator is the largest object; the run holds its recording
             pictures.executed(executed)
             free_memory()
-            judged = _judged(request, executed, prepared, pictures, clock, progress, ahead)
+            judged = _judged(request, executed, prepared, pictures, clock, progress)
             if refusal and judged.outcome != "passed":
                 judged = replace(judged, outcome="error")
             result = _result(request, prepared, judged, overlaps, draw, refusal)
@@ -90,22 +87,17 @@ def _executed(
     clock: Clock,
     progress: Progress,
     session: ExternalSession,
-    ahead: DistancesAhead,
 ) -> Run:
     """Plan and simulate the steps, and record what happens."""
     prepared, simulator, _ = start
     progress.activity("setting up planning and physics")
-
-    def on_step(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
-        progress.step(simulator, kind, step, record)
-        ahead.look(program_execution, simulator)
 
     with clock.part("execute"):
         program_execution = ProgramExecution(
             prepared.program,
             prepared.ports,
             simulator,
-            on_step,
+            partial(progress.step, simulator),
             external=session,
         )
         program_execution.run(prepared.program.steps)
@@ -131,12 +123,11 @@ def _judged(
     pictures: Pictures,
     clock: Clock,
     progress: Progress,
-    ahead: DistancesAhead,
 ) -> StoredRun:
     """The observed run with its verdicts; a strict request fails with a warning."""
     progress.activity("measuring distances")
     with clock.part("judge"):
-        run = observed_run(prepared, executed, ahead.part)
+        run = observed_run(prepared, executed)
     with clock.part("render"):
         run = pictures.captured(run, progress.activity)
     progress.activity("judging")

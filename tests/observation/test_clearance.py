@@ -8,7 +8,7 @@ import pytest
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.observation.clearance import CoalClearance
-from harness.observation.sampled_clearance import LARGEST_ERROR, complete_parts
+from harness.observation.sampled_clearance import LARGEST_ERROR
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.signals import Signals
@@ -164,39 +164,6 @@ def test_a_held_object_is_measured_as_believed_and_as_it_is():
     assert not {("green_cylinder", "cylinder"), ("cylinder", "green_cylinder")} & set(
         observed.clearances
     )
-
-
-@pytest.mark.parametrize("count", [11_000, 11_004])
-def test_parts_that_are_measured_while_the_run_goes_on_are_those_of_the_whole_run(count):
-    """A box appears when the second part has just ended; an object is held across parts."""
-    cell = Cell(ur("ur3e"), with_tables=False)
-    share = 0.5 - 0.5 * np.cos(np.arange(count) * 1e-3)
-    up, low = cell.named("up"), np.array([0.6, -0.5, 0.9, -1.9, -1.57, 0.4])
-    positions = np.array([cell.with_arm(up + part * (low - up)) for part in share])
-    whole = signals(positions, {})
-    given = replace(whole, times=np.arange(count) * 1e-3)
-    post = thing("post", at(0.3, 0.35, 1.2), Shape(Box((0.05, 0.05, 0.3))))
-    late = thing("late", at(-0.3, 0.35, 1.2), Shape(Box((0.05, 0.05, 0.3))))
-    carried = thing("carried", at(9, 9, 9), Shape(Sphere(0.02)))
-    standing = [record(post, in_simulation=False), record(carried, in_simulation=False)]
-    appears = 10.003
-    objects = [*standing, record(late, in_simulation=False, present=((appears, 1e9),))]
-    held = AttachmentRecord("carried", TCP, 4.9, 1e9, tuple(at(0, 0, 0).as_vector()), "")
-    observer = CoalClearance(cell.description)
-    parts = {}
-    for samples, known in ((5_200, standing), (10_004, standing)):
-        motion = Motion.of(given).at(np.arange(samples))
-        numbers = range(len(parts), complete_parts(samples, 1e-3))
-        parts |= observer.measured_parts(motion, known, [held], CUTOFF, numbers)
-    assert list(parts) == [0, 1]
-    after = observer.observe(given, objects, [held], CUTOFF)
-    ahead = observer.observe(given, objects, [held], CUTOFF, parts.get)
-    assert after.clearances.keys() == ahead.clearances.keys()
-    assert {("robot", "late"), ("carried", "post")} <= after.clearances.keys()
-    for key, distances in after.clearances.items():
-        assert np.array_equal(distances, ahead.clearances[key], equal_nan=True)
-        if key in after.clearance_links:
-            assert np.array_equal(after.clearance_links[key], ahead.clearance_links[key])
 
 
 def test_planning_boxes_stand_where_they_were_added():

@@ -9,7 +9,6 @@ from harness.observation.sampled_clearance import (
     MOST_PARTS,
     around_smallest,
     between,
-    complete_parts,
     inside_of,
     knots,
     largest_dip,
@@ -46,11 +45,6 @@ def test_a_run_is_measured_in_parts_of_five_seconds_that_share_a_sample():
     exact = parts_of_run(times[:1001], np.arange(0, 1001, 10))
     assert [(part[0], part[-1]) for part in exact] == [(0, 1000)]
     assert [part.tolist() for part in parts_of_run(times[:1], np.array([0]))] == [[0]]
-
-
-@pytest.mark.parametrize(("count", "parts"), [(0, 0), (5003, 0), (5004, 1), (10003, 1), (10004, 2)])
-def test_a_part_is_complete_when_no_later_change_can_reach_it(count, parts):
-    assert complete_parts(count, 0.001) == parts
 
 
 def test_around_the_smallest_value_of_each_pair_every_sample_is_measured():
