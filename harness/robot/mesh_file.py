@@ -166,7 +166,7 @@ def _hull_errors(geometry: Mesh) -> Iterator[None]:
         raise RobotError(f"{geometry.path.name} has no convex hull: {reason}") from error
 
 
-def _is_flat(points: FloatArray) -> bool:
+def is_flat(points: FloatArray) -> bool:
     """Whether points are in a plane, or all in one place, within `FLAT` of their extent."""
     away = points - points.mean(axis=0)
     extent = float(np.ptp(away, axis=0).max())
@@ -185,7 +185,7 @@ def hull_of(points: FloatArray) -> Any:
     """
     import coal
 
-    if _is_flat(points):  # Qhull can crash on such points
+    if is_flat(points):  # Qhull can crash on such points
         raise RuntimeError("its points are in a plane")
 
     corners = coal.StdVec_Vec3s()
@@ -214,7 +214,7 @@ def decomposition_of(geometry: Mesh) -> Decomposition:
 def _decomposition(geometry: Mesh, *, is_hull: bool) -> Decomposition:
     def triangles() -> FloatArray:
         mesh = read_triangles(geometry)
-        if _is_flat(mesh.vertices):  # Qhull can crash on such points
+        if is_flat(mesh.vertices):  # Qhull can crash on such points
             raise RobotError(f"{geometry.path.name} is flat: it encloses nothing to touch")
         return mesh.vertices[mesh.faces]
 

@@ -263,7 +263,9 @@ def test_the_opening_of_a_jaw_that_always_touches_at_its_hinge_is_that_of_its_ou
     assert gripper.widths[-1, 1] == pytest.approx(corner, rel=0.05)
 
 
-@pytest.mark.parametrize(("height", "inward"), [(0.03, 0.008), (0.035, 0.004)])
+@pytest.mark.parametrize(
+    ("height", "inward"), [(0.03, 0.008), (0.035, 0.004), (0.04, 0.008), (0.04 + 1e-10, 0.004)]
+)
 def test_the_opening_of_fingers_that_slide_is_the_gap_at_their_pads(tmp_path, height, inward):
     """Each finger has a carriage at its root, which extends farther inward than its pad."""
     hand = HAND

@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Joint, Link, Mimic, NamedState, PlanningGroup
-from harness.robot.mesh_file import hull_of
+from harness.robot.mesh_file import hull_of, is_flat
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import DOT, box_corners, coal_geometry, hull_corners
 from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
@@ -355,7 +355,8 @@ def _outer_half(
     low, high = (end(map(end, heights)) for end in (min, max))
     middle = 0.5 * (high + (start if low < start < high else low))
     cut = [_above(points, each - middle) for points, each in zip(parts, heights, strict=True)]
-    return [(hull_of(points), SE3.identity()) for points in cut if len(points) > 3]
+    solids = [points for points in cut if len(points) > 3 and not is_flat(points)]
+    return [(hull_of(points), SE3.identity()) for points in solids]
 
 
 def _above(points: FloatArray, heights: FloatArray) -> FloatArray:
