@@ -120,6 +120,11 @@ class RobotSpec(SpecModel):
         description="A gripper mounted on the arm's flange; or the SRDF group of the arm's own, "
         "which is found by itself where one joint closes two sides.",
     )
+    friction: Annotated[float, Field(ge=0)] | None = Field(
+        default=None,
+        description="The sliding friction coefficient of the gripper's pads; the default is that "
+        "of the robot's files. A contact has the smaller one of its two surfaces.",
+    )
     base: Pose = Field(default=Pose(), description="The pose of the base in the world.")
     kinematics: str | None = Field(
         default=None, description="The UR calibration file, as ur_calibration writes it."

@@ -38,10 +38,11 @@ from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.srdf.read import read_srdf
-from harness.robot.urdf.urdf import parse_urdf
+from harness.robot.urdf.urdf import SDF_HINT, parse_urdf
 from harness.robot.xacro.file import arguments_of
 from harness.robot.xacro.render import render
 
+SDF_SUFFIXES = (".sdf", ".world")
 OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
 
 
@@ -235,6 +236,8 @@ def _part(
         known = did_you_mean(name, robot_names(), "robots")
     own = "a robot of your own is named by its file: `robot: {urdf: FILE}`"
     hints = [known, *[own] * (key == "model"), *broken_plugins()]
+    if folder.suffix.lower() in SDF_SUFFIXES:
+        raise RobotOptionError(key, f"'{name}' is SDF: {SDF_HINT}")
     if "/" in name or name.startswith(".") or folder.is_dir():
         hints.insert(0, f"{folder} has no robot.yaml")
     raise RobotOptionError(key, f"'{name}' is not known; {'; '.join(hints)}")

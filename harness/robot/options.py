@@ -18,7 +18,7 @@ from harness.robot.urdf.write import write_urdf
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
-    """The robot with a scenario's joint limits, named states, start state and solver.
+    """The robot with a scenario's joint limits, named states, start state, friction and solver.
 
     Raises:
         RobotError: An option refers to an unknown name, or exceeds the robot's limits.
@@ -43,6 +43,11 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
     if spec.start_state is not None:
         start = {**description.start_state, **_start(description, spec.start_state)}
         description = replace(description, start_state=start)
+    if spec.friction is not None:
+        if description.gripper is None:
+            raise RobotOptionError("friction", f"'{description.name}' has no gripper with pads")
+        gripper = replace(description.gripper, friction=spec.friction)
+        description = replace(description, gripper=gripper)
     if spec.ik_solver is not None:
         description = replace(description, ik_solver=spec.ik_solver)
     if spec.joint_controller is not None:

@@ -7,7 +7,9 @@ import pinocchio as pin
 import pytest
 
 from harness.core.errors import RobotError, SpecError
+from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.robot.load import load_robot
 from harness.robot.urdf.urdf import parse_urdf
 from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
@@ -300,3 +302,23 @@ def test_damping_leaves_half_of_the_effort_at_the_velocity_limit(tmp_path, dampi
     assert arm.joint_by_name["bend"].velocity == pytest.approx(velocity)
     reported = any("'bend': its damping takes" in note for note in arm.notes)
     assert reported == (velocity < 2)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            {"model": "arm.sdf"},
+            "'arm.sdf' is SDF: a robot is read from URDF, xacro or MJCF; SDF is",
+        ),
+        ({"gripper": "cell.world"}, "'cell.world' is SDF: a robot is read from"),
+        ({"urdf": "arm.sdf"}, "the root element is <sdf>, a URDF's is <robot>"),
+        ({"urdf": "arm.xml"}, "a robot in MJCF is named by `mjcf`"),
+    ],
+)
+def test_a_known_format_in_the_wrong_place_is_named(tmp_path, words, message):
+    (tmp_path / "arm.sdf").write_text('<sdf version="1.9"><model name="a"/></sdf>')
+    (tmp_path / "arm.xml").write_text('<mujoco model="a"/>')
+    with pytest.raises((RobotError, SpecError)) as caught:
+        load_robot(RobotSpec.model_validate(words), tmp_path)
+    assert message in str(caught.value)

@@ -236,7 +236,7 @@ def test_equal_efforts_that_cannot_hold_the_arm_count_as_none(tmp_path, effort):
     assert {arm.joint_by_name[name].effort for name in arm.joint_names} == {np.inf}
     assert noted(arm, f"the effort limit of {effort} of all joints of the arm counts as none")
     assert noted(arm, "`joint_limits: {reach: {max_effort: ...}}` in `robot:`")
-    known = load(tmp_path, EQUAL, heavy, joint_limits={"bend": {"max_effort": 4000}})
+    known = load(tmp_path, EQUAL, HEAVY, joint_limits={"bend": {"max_effort": 4000}})
     assert known.joint_by_name["bend"].effort == 4000
 
 

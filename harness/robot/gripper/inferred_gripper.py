@@ -27,6 +27,9 @@ SAMPLES = 11
 GRIP_FORCE = 20.0
 """Default force of each pad [N]."""
 
+PAD_FRICTION = 1.0
+"""Sliding friction coefficient of pads whose file has none."""
+
 LEAST_TRAVEL = 0.002
 """Smallest change of the gap of a hand that can grasp [m]."""
 
@@ -117,6 +120,7 @@ def recognise(urdf: Urdf, srdf: Srdf, group: PlanningGroup) -> IntegratedGripper
         closed_position=closed,
         grip_effort=min(most, GRIP_FORCE * slope),
         max_effort=most,
+        friction=_friction(urdf, group.name, pads, notes),
         widths=tuple(zip(positions.tolist(), gaps.tolist(), strict=True)),
     )
     links = [*sides[0], *sides[1], palm]
@@ -426,6 +430,17 @@ def _outermost(hand: _Hand, links: tuple[str, ...], position: float) -> list[str
         return max(float(np.maximum(low * hand.out, high * hand.out).sum()) for low, high in boxes)
 
     return sorted(links, key=reach, reverse=True)
+
+
+def _friction(urdf: Urdf, group: str, pads: Sequence[str], notes: list[str]) -> float:
+    """The sliding friction coefficient of the pads: the smaller one where they differ."""
+    stated = [urdf.frictions[pad] for pad in pads if pad in urdf.frictions]
+    if not stated:
+        return PAD_FRICTION
+    if len(stated) < len(pads):
+        stated.append(PAD_FRICTION)
+    notes.append(f"gripper '{group}': its pads have the friction {min(stated):g} of <gazebo>")
+    return min(stated)
 
 
 def _with_states(srdf: Srdf, facts: GripperFacts, notes: list[str]) -> Srdf:

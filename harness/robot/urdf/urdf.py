@@ -12,6 +12,7 @@ from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
+from harness.robot.urdf.gazebo import COEFFICIENTS, link_frictions
 from harness.robot.urdf.joints import (
     held_without_range,
     placeholder_limits,
@@ -26,6 +27,7 @@ from harness.robot.urdf.values import rgba
 from harness.robot.xacro.file import xacro_parts
 
 MOST_LINKS = 500
+SDF_HINT = "a robot is read from URDF, xacro or MJCF; SDF is read as a world, by `world`"
 OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
 READ = {
     "robot": ("link", "joint", "material", "ros2_control"),
@@ -60,6 +62,7 @@ class Urdf:
         elements: Elements of links and joints.
         root_element: The document, for readers of optional elements.
         mesh_elements: Elements and links of the meshes that collide.
+        frictions: Sliding friction coefficients by link, of those that have one.
     """
 
     name: str
@@ -69,6 +72,7 @@ class Urdf:
     elements: Elements = field(default_factory=dict[tuple[str, str], XmlElement])
     root_element: XmlElement | None = None
     mesh_elements: MeshElements = field(default_factory=dict[Mesh, tuple[XmlElement, str]])
+    frictions: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def root(self) -> str:
@@ -97,7 +101,9 @@ def parse_urdf(
     """
     root = document if isinstance(document, XmlElement) else parse_xml(document, source)
     if root.tag != "robot":
-        root.refuse(f"the root element is <{root.tag}>, a URDF's is <robot>")
+        hints = {"sdf": SDF_HINT, "mujoco": "a robot in MJCF is named by `mjcf`"}
+        message = f"the root element is <{root.tag}>, a URDF's is <robot>"
+        root.refuse(message, hints.get(root.tag, ""))
     replaced = next(xacro_parts(root), None)
     if replaced is not None:
         item, key, text = replaced
@@ -131,7 +137,13 @@ def parse_urdf(
     notes += packages.notes
     ordered = in_tree_order(links, joints, source, elements)
     return Urdf(
-        root.get("name"), *ordered, (*_ignored(root), *notes), elements, root, reader.meshes
+        root.get("name"),
+        *ordered,
+        (*_ignored(root), *notes),
+        elements,
+        root,
+        reader.meshes,
+        link_frictions(root),
     )
 
 
@@ -170,7 +182,9 @@ def _ignored_note(parent: str, items: Sequence[XmlElement]) -> str:
     tag, place = items[0].tag, items[0].place
     count = f"{len(items)} <{tag}> element{'s' if len(items) > 1 else ''}"
     if parent == "robot":
-        return f"{count} ignored"
+        has_friction = any(each.find(key) for each in items for key in COEFFICIENTS)
+        but = f", except {' and '.join(COEFFICIENTS)} of a gripper's pads" if has_friction else ""
+        return f"{count} ignored{but}"
     return (
         f"{count} in <{parent}> ignored, the first in line {place.line} of"
         f" {Path(place.source.path).name}; a macro of xacro is called as <xacro:{tag}>"
