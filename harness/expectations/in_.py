@@ -23,6 +23,7 @@ from harness.assertions.window import NotObservable, Window, object_record
 from harness.cell.scope import At
 from harness.core.geometry import Shape, reach
 from harness.core.pose_arrays import angle_between, relative, rotate
+from harness.core.solids import solid_of
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.language.base import AngleBetween, Name
@@ -156,10 +157,13 @@ def _inside(
         bounds: The lower and upper corner of its outline in its frame [m].
         content: The record of the object.
         poses: T_container_object, shape (n, 7).
+
+    Raises:
+        NotObservable: The share of a mesh in the object's volume is not known.
     """
     lower, upper = bounds
     centres = [shape.pose.translation for shape in content.shapes] or [np.zeros(3)]
-    volumes = np.array([_volume(shape) for shape in content.shapes] or [1.0])
+    volumes = _volumes(content)
     shares = volumes / volumes.sum()
     points = [poses[:, :3] + rotate(poses[:, 3:], centre) for centre in centres]
     depths = np.stack([np.minimum(each - lower, upper - each).min(axis=1) for each in points], 1)
@@ -171,10 +175,17 @@ def _inside(
     return depth, np.where(np.isnan(depth), np.nan, enclosed)
 
 
-def _volume(shape: Shape) -> float:
-    """Volume of the box around a shape [m³]; 1 for a mesh or plane."""
-    half = reach(shape.geometry, np.eye(3))
-    return 1.0 if half is None else float(np.prod(2 * half))
+def _volumes(record: ObjectRecord) -> FloatArray:
+    """Volume of each shape of an object [m³]; equal ones where all of them are meshes.
+
+    Raises:
+        NotObservable: It has meshes, whose volume is not recorded, next to other shapes.
+    """
+    solids = [solid_of(shape.geometry) for shape in record.shapes]
+    known = [solid[0] for solid in solids if solid is not None]
+    if known and len(known) < len(solids):
+        raise NotObservable(f"the volumes of the meshes of '{record.name}' are not recorded")
+    return np.array(known or [1.0] * max(1, len(solids)))
 
 
 def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:

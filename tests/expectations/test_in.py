@@ -1,12 +1,13 @@
 """in: inside the outline of a container that stands."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from harness.assertions.window import Window
-from harness.core.geometry import Box, Cylinder, Plane, Shape
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.expectations.in_ import In, outline
 from tests.assertions import evidence_runs as shared
@@ -64,6 +65,31 @@ def test_three_sides_without_a_floor_enclose_nothing(missing):
         poses = {"bin": at(200, (0, 0, 0.05)), "box": at(200, (0.01, 0.02, 0.05))}
         run = make_run(objects=(BOX, record), object_poses=poses)
         assert verdict(run, In(object="box", container="bin")).status == status
+
+
+MESH = Mesh(Path("part.stl"))
+
+
+@pytest.mark.parametrize(
+    ("inside", "outside", "status"),
+    [
+        (Cylinder(0.02, 0.04), Box((0.036, 0.036, 0.04)), "failed"),  # 50.3 and 51.8 cm3
+        (Cylinder(0.02, 0.04), Box((0.035, 0.035, 0.04)), "passed"),  # 49.0 cm3
+        (Sphere(0.02), Box((0.033, 0.033, 0.033)), "failed"),  # 33.5 and 35.9 cm3
+        (Box((0.032, 0.032, 0.032)), Sphere(0.02), "failed"),  # 32.8 cm3
+        (Capsule(0.01, 0.02), Cylinder(0.01, 0.03), "passed"),  # 10.5 and 9.4 cm3
+        (Capsule(0.01, 0.02), Cylinder(0.01, 0.034), "failed"),  # 10.7 cm3
+        (MESH, Sphere(0.02), "not observable"),
+    ],
+)
+def test_half_of_the_volume_is_that_of_the_shapes_and_not_of_boxes_around_them(
+    inside, outside, status
+):
+    shapes = Shape(inside), Shape(outside, SE3.from_xyz_rpy((0, 0, 0.3)))
+    record, poses = a_bin()
+    objects = replace(BOX, shapes=shapes), record
+    run = make_run(objects=objects, object_poses={"bin": poses, "box": at(200, (0, 0, 0.03))})
+    assert verdict(run, In(object="box", container="bin")).status == status
 
 
 def test_what_was_in_all_along_is_warned_of_and_what_came_in_is_not():
