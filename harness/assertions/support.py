@@ -56,7 +56,8 @@ def riders(run: Run, carrier: str) -> dict[str, BoolArray]:
     """Samples at which free objects ride on another, by their names, shape (N,) each.
 
     Riders are a group that touches nothing but itself, the carrier and the hand, in which something
-    under each of them carries it, at last the carrier: a stack, or loads that lean on each other.
+    pushes each of them up, at last the carrier: a stack, what hangs on it, or loads that lean on
+    each other.
     """
     free = {each.name for each in run.objects if not each.is_static and each.in_simulation}
     hand = frozenset[str]() if run.robot.gripper is None else hand_links(run.robot.gripper)
@@ -74,9 +75,9 @@ def riders(run: Run, carrier: str) -> dict[str, BoolArray]:
     found = {name: np.zeros(count, dtype=bool) for name in group}
     found[carrier] = alone[carrier]
     below = {
-        (body, name): touches & is_below(run, body, name)
+        (body, name): ~(force <= TOUCH_FORCE)
         for name in group
-        for body, touches in touching[name].items()
+        for body, force in supports(run, name).items()
         if body in found
     }
     for _ in group:  # from the carrier upwards

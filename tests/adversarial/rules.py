@@ -97,7 +97,7 @@ RULES = (
     Rule(
         "What rides on a held object is carried",
         "Riders are a group of objects that touches nothing but itself, what carries it and the"
-        f" hand, each with something of it below. [`lifted`]({EXPECTATIONS}#lifted) leaves them"
+        f" hand, each pushed up by something of it. [`lifted`]({EXPECTATIONS}#lifted) leaves them"
         f" out, [`collision`]({EXPECTATIONS}#collision) judges what they hit like what the hand"
         f" holds, and their distances are recorded for [`clearance`]({EXPECTATIONS}#clearance) and"
         " formulas, as those of what the fingers hold without a step that attaches it.",

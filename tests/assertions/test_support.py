@@ -97,6 +97,24 @@ def test_an_object_rides_on_another_while_it_touches_nothing_else():
     assert riders(run, "box")["cup"].all()
 
 
+@pytest.mark.parametrize(
+    ("upward", "rides"), [(1.0, True), (0.002, True), (0.0, False), (-1.0, False)]
+)
+@pytest.mark.parametrize("height", [0.0, 0.06], ids=["around it", "above it"])
+def test_what_hangs_on_another_rides_as_it_pushes_it_up(upward, rides, height):
+    """A hoop reaches below the rod that carries it; a board that leans on its side does not ride."""
+    hoop, poses = thing("hoop"), {"hoop": at(N, (0, 0, height)), "box": at(N, (0, 0, 0.02))}
+    pair = ("box", "hoop")
+    run = make_run(
+        N,
+        objects=(TABLE, BOX, hoop),
+        object_poses=poses,
+        contact_forces={pair: force(N, (0, N))},
+        support_forces={pair: np.full(N, upward)},
+    )
+    assert riders(run, "box")["hoop"].all() == riders(run, "box")["hoop"].any() == rides
+
+
 def stacked(*touching):
     """Cup and lid on the box, each 4 cm high, and what else touches, all with 1 N of weight."""
     objects = (TABLE, BOX, thing("cup"), thing("lid"))
