@@ -102,7 +102,7 @@ def test_an_object_rides_on_another_while_it_touches_nothing_else():
 )
 @pytest.mark.parametrize("height", [0.0, 0.06], ids=["around it", "above it"])
 def test_what_hangs_on_another_rides_as_it_pushes_it_up(upward, rides, height):
-    """A hoop reaches below the rod that carries it; a board that leans on its side does not ride."""
+    """A hoop reaches below the rod that carries it; a board that leans on it does not ride."""
     hoop, poses = thing("hoop"), {"hoop": at(N, (0, 0, height)), "box": at(N, (0, 0, 0.02))}
     pair = ("box", "hoop")
     run = make_run(
