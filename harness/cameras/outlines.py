@@ -4,18 +4,27 @@
 
 from __future__ import annotations
 
+from itertools import combinations, product
+
 import mujoco
 import numpy as np
 
 from harness.cameras.picture_model import SOLID_GROUP, TRANSLUCENT_GROUP, PictureModel
 from harness.cameras.viewpoint import View
 
-REACH = 1.0
-"""Distance beyond each edge up to which pixels are counted, in picture sizes."""
+REACH = 20.0
+"""Distance beyond each edge up to which pixels are counted, in picture sizes: 87.6 degrees to each
+side of a picture with a view of 60 degrees."""
 
 MOST_RAYS = 60_000
 """Most rays for one object; a larger outline is sampled at every second, third ... pixel."""
 
+
+FAR = 1e3
+"""Half of the size that a plane is taken to have [m]."""
+SIGNS = np.array(list(product((-1.0, 1.0), repeat=3)))
+EDGES = np.array([(a, b) for a, b in combinations(range(8), 2) if (a ^ b).bit_count() == 1])
+"""Pairs of corners of a box that an edge connects."""
 
 _BODIES = np.isin(np.arange(6), (SOLID_GROUP, TRANSLUCENT_GROUP)).astype(np.uint8)
 
@@ -69,26 +78,37 @@ def _bounds(
     width: int,
     height: int,
 ) -> tuple[int, int, int, int] | None:
-    """Pixels [left, right) x [top, bottom) that contain the geoms' bounding spheres."""
-    local = view.pose.inverse().apply(picture.data.geom_xpos[geoms])
-    radii = picture.model.geom_rbound[geoms]
-    depths = -local[:, 2]
-    in_front = depths + radii > view.near
-    if not in_front.any():
+    """Pixels [left, right) x [top, bottom) that contain the geoms' bounding boxes."""
+    points = [_before(view, _corners(picture, geom)) for geom in geoms]
+    seen = np.concatenate(points)
+    if not len(seen):
         return None
-    local, radii, depths = local[in_front], radii[in_front], depths[in_front]
-    if (depths - radii <= view.near).any():  # the camera is inside it
-        low, high = np.array([-np.inf, -np.inf]), np.array([np.inf, np.inf])
-    else:
-        across = local[:, :2] * [1, -1]
-        middle = np.arctan2(across, depths[:, None])
-        half = np.arcsin(radii[:, None] / np.hypot(across, depths[:, None]))
-        centre = [width / 2, height / 2]
-        low = focal * np.tan(middle - half).min(axis=0) + centre
-        high = focal * np.tan(middle + half).max(axis=0) + centre
+    places = focal * seen[:, :2] * [1, -1] / -seen[:, 2:] + [width / 2, height / 2]
+    low, high = places.min(axis=0), places.max(axis=0)
     size = np.array([width, height])
     low = np.floor(np.maximum(low, -REACH * size)).astype(int)
     high = np.ceil(np.minimum(high, (1 + REACH) * size)).astype(int)
     if (low >= high).any():
         return None
     return int(low[0]), int(high[0]), int(low[1]), int(high[1])
+
+
+def _corners(picture: PictureModel, geom: int) -> np.ndarray:
+    """Corners of a geom's bounding box in the world [m], shape (8, 3)."""
+    middle, half = np.split(picture.model.geom_aabb[geom], 2)
+    half = np.where(half > 0, half, FAR)  # a plane has no size
+    corners = middle + half * SIGNS
+    rotation = picture.data.geom_xmat[geom].reshape(3, 3)
+    return corners @ rotation.T + picture.data.geom_xpos[geom]
+
+
+def _before(view: View, corners: np.ndarray) -> np.ndarray:
+    """Corners of the part of a box that is in front of the camera, in its frame [m], (n, 3)."""
+    local = view.pose.inverse().apply(corners)
+    ahead = -local[:, 2] - view.near
+    begins, ends = EDGES[:, 0], EDGES[:, 1]
+    cut = ahead[begins] * ahead[ends] < 0
+    begins, ends = begins[cut], ends[cut]
+    share = (ahead[begins] / (ahead[begins] - ahead[ends]))[:, None]
+    crossings = local[begins] + share * (local[ends] - local[begins])
+    return np.concatenate([local[ahead >= 0], crossings])

@@ -13,8 +13,9 @@ from harness.core.camera import Camera
 def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) -> np.ndarray:
     """The picture with the camera's channels and noise.
 
-    Noise is drawn for each channel of each pixel. Its generator is seeded by the run's seed, the
-    camera's name and the recorded sample: the same picture whichever others were taken.
+    One value is drawn for each pixel and added to all of its channels, as Gazebo does. The
+    generator is seeded by the run's seed, the camera's name and the recorded sample: the same
+    picture whichever others were taken.
 
     Args:
         picture: The rendered picture, RGB, shape (height, width, 3), uint8.
@@ -27,8 +28,9 @@ def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) ->
     if not (camera.noise_mean or camera.noise_stddev):
         return picture
     rng = np.random.default_rng(_noise_seed(camera.name, seed, sample))
-    noise = rng.standard_normal(picture.shape, dtype=np.float32)
-    noisy = picture + 255.0 * (camera.noise_mean + camera.noise_stddev * noise)
+    noise = rng.standard_normal(picture.shape[:2], dtype=np.float32)
+    added = 255.0 * (camera.noise_mean + camera.noise_stddev * noise)
+    noisy = picture + (added if camera.is_grey else added[..., None])
     return np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
 
 

@@ -34,8 +34,8 @@ HUES: dict[ColorName, tuple[float, float]] = {
     "green": (75.0, 165.0),
     "cyan": (165.0, 200.0),
     "blue": (200.0, 255.0),
-    "purple": (255.0, 295.0),
-    "pink": (295.0, 340.0),
+    "purple": (255.0, 305.0),
+    "pink": (305.0, 340.0),
 }
 """From, to on the colour circle [deg]."""
 
@@ -54,7 +54,8 @@ class HueRange(SpecModel):
         default=None,
         description="The name of a colour. Their hues, from and to in degrees, are "
         + ", ".join(f"{name} {low:g} {high:g}" for name, (low, high) in HUES.items())
-        + ".",
+        + ". They contain the colours that objects have by these names, but for `pink`, which is a"
+        " pale red there (hue 350, saturation 0.25).",
     )
     hue: tuple[Angle, Angle] | None = Field(
         default=None,

@@ -40,7 +40,7 @@ class ClipSpec(SpecModel):
 
 
 class NoiseSpec(SpecModel):
-    """The noise added to every channel of every pixel, from the run's seed."""
+    """The noise of every pixel, the same in all of its channels, from the run's seed."""
 
     type: Literal["gaussian", "none"] = Field(
         default="gaussian", description="The distribution of the noise."

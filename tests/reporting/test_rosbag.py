@@ -39,12 +39,12 @@ TOPICS = LATCHED | {
     "/tcp_path",
     "/armharness/events",
     "/rosout",
-    "/camera/over_view/image_raw/compressed",
-    "/camera/over_view/camera_info",
-    "/camera/wrist/image_raw",
-    "/camera/wrist/image_raw/compressed",
-    "/camera/wrist/camera_info",
-    "/camera/wrist/depth/image_raw",
+    "/over_view/image/compressed",
+    "/over_view/camera_info",
+    "/wrist/image",
+    "/wrist/image/compressed",
+    "/wrist/camera_info",
+    "/wrist/depth/image",
 }
 
 
@@ -100,7 +100,7 @@ def test_metadata_is_of_version_8_with_the_numbers_that_humble_reads(folder, mes
         [qos] = yaml.safe_load(topic["topic_metadata"]["offered_qos_profiles"])
         is_latched = name in LATCHED
         assert qos["durability"] == (TRANSIENT_LOCAL if is_latched else VOLATILE), name
-        is_lossy = name == "/clock" or name.endswith(("image_raw", "compressed"))
+        is_lossy = name == "/clock" or name.endswith(("/image", "compressed"))
         assert qos["reliability"] == (BEST_EFFORT if is_lossy else RELIABLE), name
         assert topic["topic_metadata"]["type_description_hash"].startswith("RIHS01_")
 
@@ -230,11 +230,9 @@ def test_the_tcp_path_grows_as_the_trajectory_server_of_the_course_makes_it(mess
 
 def test_pictures_are_the_recorded_ones_with_the_camera_s_calibration(messages, stored):
     video = stored.run.videos[0]
-    shown = messages["/camera/over_view/image_raw/compressed"]
+    shown = messages["/over_view/image/compressed"]
     assert [time for time, _ in shown] == pytest.approx(video.times)
-    for (_, message), (_, info) in zip(
-        shown, messages["/camera/over_view/camera_info"], strict=True
-    ):
+    for (_, message), (_, info) in zip(shown, messages["/over_view/camera_info"], strict=True):
         assert message.format == "rgb8; jpeg compressed bgr8"
         picture = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_UNCHANGED)
         assert picture.shape == (48, 64, 3)
@@ -245,9 +243,9 @@ def test_pictures_are_the_recorded_ones_with_the_camera_s_calibration(messages, 
 
 
 def test_a_captured_picture_is_there_raw_compressed_and_with_its_depth(messages, stored):
-    [(time, raw)] = messages["/camera/wrist/image_raw"]
-    [(_, small)] = messages["/camera/wrist/image_raw/compressed"]
-    [(_, deep)] = messages["/camera/wrist/depth/image_raw"]
+    [(time, raw)] = messages["/wrist/image"]
+    [(_, small)] = messages["/wrist/image/compressed"]
+    [(_, deep)] = messages["/wrist/depth/image"]
     assert time == pytest.approx(stored.run.captures[0].time)
     assert (raw.encoding, raw.step, raw.height, raw.width) == ("mono8", 32, 24, 32)
     content = np.frombuffer(bytes(small.data), np.uint8)
@@ -320,7 +318,7 @@ def test_the_viewers_files_name_topics_of_the_bag_and_no_others(folder):
                 is_latched = display[key]["Durability Policy"] == "Transient Local"
                 assert is_latched == (name in LATCHED)
     assert {"/robot_description", "/scene_markers", "/tcp_path"} < named <= TOPICS
-    assert "/camera/over_view/image_raw/compressed" in named
+    assert "/over_view/image/compressed" in named
     assert rviz["Global Options"]["Fixed Frame"] == "world"
 
     layout = json.loads((folder / "bag/foxglove.json").read_text())
@@ -377,8 +375,8 @@ def test_frames_are_published_raw_too_when_requested(folder, tmp_path):
     place = tmp_path / "raw"
     assert main(["export", str(folder), "--bag", str(place), "--raw-images", "--rate", "20"]) == 0
     messages = decoded(place)
-    raw = messages["/camera/over_view/image_raw"]
-    assert len(raw) == len(messages["/camera/over_view/image_raw/compressed"])
+    raw = messages["/over_view/image"]
+    assert len(raw) == len(messages["/over_view/image/compressed"])
     assert {(m.encoding, m.step, len(m.data)) for _, m in raw} == {("rgb8", 192, 9216)}
     spacing = np.diff([time for time, _ in messages["/joint_states"]])
     assert spacing[:-1] == pytest.approx(0.05, abs=1e-6)

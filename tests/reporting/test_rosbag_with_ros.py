@@ -60,7 +60,7 @@ def test_rclpy_deserialises_every_message_that_it_has_a_type_for(ros, bag):
     assert seen["/scene_markers"][0].markers[0].action == 3
     grown = [len(path.poses) for path in seen["/tcp_path"]]
     assert grown == sorted(grown)
-    depth = seen["/camera/wrist/depth/image_raw"][0]
+    depth = seen["/wrist/depth/image"][0]
     assert np.frombuffer(bytes(depth.data), "<f4").shape == (depth.height * depth.width,)
 
 

@@ -86,13 +86,13 @@ def topic_word(name: str) -> str:
 
 
 def camera_topics(camera: str) -> CameraTopics:
-    """Topics below `/camera/<name>`."""
-    base = f"/camera/{topic_word(camera)}"
+    """Topics below the camera's name, as on the bridge to ROS 2 and in the lesson."""
+    base = f"/{topic_word(camera)}"
     return CameraTopics(
-        image=Topic(f"{base}/image_raw", "sensor_msgs/msg/Image", is_reliable=False),
+        image=Topic(f"{base}/image", "sensor_msgs/msg/Image", is_reliable=False),
         compressed=Topic(
-            f"{base}/image_raw/compressed", "sensor_msgs/msg/CompressedImage", is_reliable=False
+            f"{base}/image/compressed", "sensor_msgs/msg/CompressedImage", is_reliable=False
         ),
         info=Topic(f"{base}/camera_info", "sensor_msgs/msg/CameraInfo"),
-        depth=Topic(f"{base}/depth/image_raw", "sensor_msgs/msg/Image", is_reliable=False),
+        depth=Topic(f"{base}/depth/image", "sensor_msgs/msg/Image", is_reliable=False),
     )
