@@ -25,6 +25,9 @@ WIDTH, HEIGHT = 640, 480
 SHADOW_SIZE = 1024
 """Resolution of shadows [pixels]."""
 
+MOST_STEPS = 400
+"""Most steps of which pictures are drawn, at 20 to 100 ms each: the first and the last ones."""
+
 FARTHEST_IN_VIEW = 1.3
 """Objects farther from the base than this [m] may be outside the view."""
 
@@ -100,6 +103,8 @@ class StepRenderer:
         shown: dict[str, SE3] = {}
         picture = np.empty(0)
         for number, step in enumerate(steps, start=1):
+            if MOST_STEPS // 2 < number <= len(steps) - MOST_STEPS // 2:
+                continue
             activity("drawing a picture of each step", number - 1, len(steps))
             sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
             poses = scene_poses(self._description, self._objects, run, sample, step)
@@ -113,7 +118,11 @@ class StepRenderer:
                 status=f"{step.end_time:.2f} s  {step.status.replace('_', ' ')}",
                 status_ink=INK.get(step.status, (60, 60, 60)),
             )
-        return Stills(self._renderer.backend, files, "; ".join(self._notes))
+        notes = list(self._notes)
+        if len(steps) > MOST_STEPS:
+            half = MOST_STEPS // 2
+            notes.append(f"pictures of the first {half} and the last {half} of {len(steps)} steps")
+        return Stills(self._renderer.backend, files, "; ".join(notes))
 
     def close(self) -> None:
         """Free the resources of the graphics library."""

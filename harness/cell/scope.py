@@ -21,6 +21,8 @@ from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
 
 Prerequisite = Literal["robot", "world"]
+MOST_CAPTURES = 1000
+"""Most pictures that the steps of a file take; drawing one of 640 x 480 takes 0.2 s."""
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
 
 
@@ -139,6 +141,7 @@ class Scope:
         added: Objects that steps added and nothing removed.
         cameras: Every camera, by name.
         requested_time: Simulated time that steps have requested as a number [s].
+        requested_pictures: The number of camera pictures that steps have requested.
         problems: The problems, to which mistakes are added.
         link_pose: T_world_link at joint positions in description order.
     """
@@ -158,6 +161,7 @@ class Scope:
         self.added: dict[str, None] = {}
         self.cameras: dict[str, Camera] = {}
         self.requested_time = 0.0
+        self.requested_pictures = 0
         self.step_ids: dict[str, None] = {}
         self._lacks_gripper = False
 
@@ -209,6 +213,17 @@ class Scope:
                 f"the steps up to here request {self.requested_time:g} s, and a run may take"
                 f" {LONGEST_RUN:g} s of simulated time",
                 "shorten it, or make it several scenarios",
+                needs=(),
+            )
+
+    def take_picture(self, loc: Loc) -> None:
+        """Count a camera picture that a step requests; all of them must be drawn after the run."""
+        self.requested_pictures += 1
+        if self.requested_pictures == MOST_CAPTURES + 1:
+            self.problems.add(
+                loc,
+                f"the steps take more than {MOST_CAPTURES} pictures, repeated ones counted",
+                "take fewer, or make it several scenarios; `videos` records a camera at a rate",
                 needs=(),
             )
 

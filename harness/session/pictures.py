@@ -25,6 +25,8 @@ from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 FOLDER = "images"
+MOST_EXPLAINED = 100
+"""Most failed steps of which the state that explains them is drawn, 0.2 s each."""
 Files = Mapping[str, bytes]
 """Content of files by path in the run's folder."""
 
@@ -234,13 +236,20 @@ def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, byt
 
 
 def _with_picture_names(steps: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
-    """The steps with the file of its picture in each explanation that has a state to draw."""
-    return tuple(_with_picture_name(step, number) for number, step in enumerate(steps, start=1))
+    """The steps with the file of its picture in each explanation that has a state to draw.
+
+    Only the first `MOST_EXPLAINED` of them have one.
+    """
+    named: list[StepRecord] = []
+    left = MOST_EXPLAINED
+    for number, step in enumerate(steps, start=1):
+        has_picture = left > 0 and recorded_explanation(step.explanation).nearest is not None
+        left -= has_picture
+        named.append(_with_picture_name(step, number) if has_picture else step)
+    return tuple(named)
 
 
 def _with_picture_name(step: StepRecord, number: int) -> StepRecord:
-    if recorded_explanation(step.explanation).nearest is None:
-        return step
     from harness.cameras.stills import step_slug
 
     name = f"{FOLDER}/{number:02d}-{step_slug(step.id)}-why.jpg"

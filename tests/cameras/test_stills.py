@@ -15,7 +15,7 @@ from harness.cameras import stills
 from harness.cameras.camera_scene import scene_poses
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
-from harness.cameras.stills import UNSEEN, StepRenderer, looks_alike, overview
+from harness.cameras.stills import MOST_STEPS, UNSEEN, StepRenderer, looks_alike, overview
 from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.details import Details
 from harness.core.geometry import Mesh, Shape
@@ -25,6 +25,7 @@ from harness.recording.step_results import SceneChange
 from harness.robot.forward_kinematics import robot_poses
 from harness.robot.load import load_robot
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
+from tests.running import run_case
 
 SIZE = 640, 480
 
@@ -298,3 +299,16 @@ def test_the_floor_is_not_speckled_by_its_own_shadow(robot):
             assert speckles.sum() < 20
     finally:
         renderer.close()
+
+
+def test_a_run_of_many_steps_has_pictures_of_its_first_and_its_last(tmp_path):
+    file = tmp_path / "many.scenario.yaml"
+    steps = f"[repeat: {{times: {MOST_STEPS + 20}, steps: [wait: 2 ms]}}]"
+    file.write_text(f"scenario: many\nrobot: open_manipulator_x\nsteps: {steps}\n")
+    result = run_case(file, report_dir=tmp_path / "report", page=False)
+    numbers = sorted(
+        int(path.name.split("-")[0]) for path in (tmp_path / "report/images").iterdir()
+    )
+    half, count = MOST_STEPS // 2, MOST_STEPS + 21
+    assert numbers == [*range(1, half + 1), *range(count - half + 1, count + 1)]
+    assert f"the first {half} and the last {half} of {count} steps" in " ".join(result.notes)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from harness.cell.scope import MOST_CAPTURES
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from harness.session.rejudge import judge_stored
@@ -100,3 +101,16 @@ def test_a_motion_that_fails_inside_a_block_fails_the_block_and_says_where(tmp_p
     failed = [step for step in saved.steps if step.status == "failed"]
     assert [step.path for step in failed] == ["steps[1]", "steps[1].repeat[0][1]"]
     assert failed[0].error_code == failed[1].error_code
+
+
+@pytest.mark.parametrize(
+    ("times", "captures"), [(101, "capture: eye, " * 10), (1000, "capture: eye, capture: eye")]
+)
+def test_pictures_that_multiply_are_bounded(tmp_path, times, captures):
+    steps = f"- repeat: {{times: {times}, steps: [{captures.strip(', ')}]}}"
+    cameras = "cameras:\n  - {name: eye, pose: {xyz: [1, 0, 0.5]}}\n"
+    found = problems(tmp_path, steps, rest=cameras)
+    assert [message.split(",")[0] for _, message in found] == [
+        f"the steps take more than {MOST_CAPTURES} pictures"
+    ]
+    assert not problems(tmp_path, steps.replace(str(times), "20"), rest=cameras)
