@@ -130,10 +130,20 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         0.0 if abs(value) <= TINY else value,
         unit,
         time,
-        reason=f"{reason} at t={time:.3f} s",
+        reason=f"{reason} at t={time:.3f} s{_about_forces(comparison)}",
         measures=(measure,),
         observed=evaluation.observed(root),
         warnings=evaluation.warnings(root) if holds else (),
+    )
+
+
+def _about_forces(comparison: Comparison) -> str:
+    """What must be known of the forces that decided; empty where none did."""
+    if all(each.name != "force" for each in signals_of(comparison)):
+        return ""
+    return (
+        "; forces are those of single steps of the physics and not averaged: a contact that"
+        " bounces has peaks and gaps"
     )
 
 

@@ -344,6 +344,14 @@ def test_a_verdict_says_which_way_the_deciding_comparison_went(
     assert abs(measure.value - measure.limit) == pytest.approx(abs(answer.margin))
 
 
+def test_a_verdict_that_forces_decide_says_that_they_are_not_averaged():
+    said = "; forces are those of single steps of the physics and not averaged"
+    for text in ("always force(Table, box) < 2 N", "2 * force(Table, box) > 9"):
+        assert said in verdict(lift_run(), Formula(formula=text)).reason
+    other = "always (z(box) > 7 cm implies force(Table, box) < 1 N)"
+    assert said not in verdict(lift_run(), Formula(formula=other)).reason
+
+
 def test_a_formula_of_every_kind_of_signal():
     run = lift_run(
         clearances={("robot", "box"): np.full(200, 0.1)},
