@@ -18,6 +18,7 @@ from harness.cli.shared_options import (
     add_served_robot,
 )
 from harness.suite.discovery import UsageError
+from harness.suite.folders import report_folders
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     text = "a rosbag2 folder, an .mcap, .db3 or ROS 1 .bag file; or give --node"
     add("bag", metavar="BAG", nargs="?", default="", help=text)
     add_served_robot(command)
+    command.set_defaults(report_dir=None)
     text = "give the nodes this simulated time where no step is `external` (default: 60)"
     add("--timeout", metavar="SECONDS", type=seconds, default=60.0, help=text)
     text = "read the joint positions from this topic (default: /joint_states)"
@@ -109,17 +111,23 @@ def run(arguments: argparse.Namespace) -> int:
         tuple(arguments.objects),
         dict(arguments.object_poses),
     )
-    options = dict(arguments.overrides), arguments.allowed
-    grade = grade_bag(scenario, Path(arguments.bag), topics, *options)
+    bag, folder = Path(arguments.bag), None
+    if arguments.report_dir and not arguments.no_report:
+        folder = report_folders([scenario], Path(arguments.report_dir))[0] / bag.stem
+    options = dict(arguments.overrides), arguments.allowed, folder
+    grade = grade_bag(scenario, bag, topics, *options)
     if arguments.json:
         say_json(_document(grade))
-    else:
-        _print_grade(grade)
+        return _code(grade)
+    _print_grade(grade)
+    if folder is not None:
+        say(f"report: {folder}")
     return _code(grade)
 
 
 def _run_node(arguments: argparse.Namespace) -> int:
     """Grade what a student's node does with the simulated robot."""
+    arguments.report_dir = arguments.report_dir or "reports"
     code, document = _graded_node(arguments)
     if arguments.json:
         say_json(document)
@@ -166,8 +174,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
 
 def _code(grade: Grade) -> int:
     """The exit code: 0 when every point is earned; expectations without points do not count."""
-    is_full = bool(grade.rows) and all(row.earned == row.points for row in grade.rows)
-    return 0 if is_full else EXIT_CODES["failed"]
+    return 0 if grade.is_full else EXIT_CODES["failed"]
 
 
 def _print_grade(grade: Grade) -> None:

@@ -15,8 +15,13 @@ from harness.assertions.temporal import episodes
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.grading.bag.content import BagTopics
 from harness.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
+from harness.language.reading.resolve import resolved_text
+from harness.recording.digest import digest
 from harness.recording.run import Run
+from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
+from harness.recording.write_run import write_run
+from harness.reporting.reporter import Reports
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import robot_record
 
@@ -75,6 +80,11 @@ class Grade:
         return sum(row.points for row in self.rows if row.is_withheld)
 
     @property
+    def is_full(self) -> bool:
+        """Whether every point is earned."""
+        return bool(self.rows) and all(row.earned == row.points for row in self.rows)
+
+    @property
     def open(self) -> float:
         """Points of what this recording cannot show: neither earned nor lost."""
         unknown = (row for row in self.rows if row.verdict.status == "not observable")
@@ -87,6 +97,7 @@ def grade_bag(
     topics: BagTopics | None = None,
     overrides: Mapping[str, str] | None = None,
     allowed: Collection[str] = (),
+    report_dir: Path | None = None,
 ) -> Grade:
     """Judge a recording by the expectations of a scenario; nothing is planned or simulated.
 
@@ -96,9 +107,11 @@ def grade_bag(
         topics: Where joints and objects are in it.
         overrides: Dotted path in the file -> new value, as YAML text.
         allowed: Doubts about the recording that withhold no points: `steps`, `frames`, ...
+        report_dir: Folder that gets the recording as a run, with its page; None writes nothing.
 
     Raises:
         SpecError: The scenario or the recording cannot be used.
+        HarnessError: The folder cannot be written.
     """
     prepared = prepare(scenario, overrides)
     program = prepared.program
@@ -137,7 +150,23 @@ def grade_bag(
             graded(judge(run, prepared.expectations)), withheld, needs_distances, strict=True
         )
     ]
-    return Grade(run, tuple(rows), notes)
+    grade = Grade(run, tuple(rows), notes)
+    if report_dir is not None:
+        resolved = resolved_text(prepared.loaded, folder=report_dir)
+        _write_page(replace(run, resolved=resolved), grade, report_dir)
+    return grade
+
+
+def _write_page(run: Run, grade: Grade, folder: Path) -> None:
+    """Write the recording as the folder of a run, and its page.
+
+    Raises:
+        HarnessError: The folder cannot be written.
+    """
+    verdicts = tuple(row.verdict for row in grade.rows)
+    outcome = "passed" if grade.is_full else "failed"
+    stored = StoredRun(run, verdicts, outcome, digest(run, verdicts), {})
+    write_run(folder, stored, lambda target: Reports(["html"]).write(target, stored))
 
 
 def _withheld(

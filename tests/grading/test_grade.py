@@ -75,6 +75,20 @@ def test_a_students_recording_earns_what_it_shows(recording, tmp_path):
     assert grade.notes == ()
 
 
+def test_a_graded_recording_has_the_page_of_a_run(recording, tmp_path, capsys):
+    bag = recording.write(tmp_path / "student.mcap")
+    words = ("grade", str(SCENARIO), str(bag), "--objects", POSES)
+    assert main([*words, "--report-dir", str(tmp_path / "reports")]) == 0
+    [page] = (tmp_path / "reports").rglob("report.html")
+    assert page.parent.name == "student"
+    assert f"report: {page.parent}" in capsys.readouterr().out
+    kept = read_run(page.parent)
+    assert (kept.outcome, kept.run.file, kept.changes()) == ("passed", str(bag), [])
+    assert main(["judge", str(page.parent)]) in (0, 1)
+    assert main([*words, "--report-dir", str(tmp_path / "none"), "--no-report"]) == 0
+    assert not (tmp_path / "none").exists()
+
+
 def test_what_is_worth_nothing_does_not_lower_a_full_grade(recording, tmp_path, capsys):
     bag = recording.write(tmp_path / "student.mcap")
     assert main(["grade", str(SCENARIO), str(bag), "--objects", POSES]) == 0
