@@ -316,10 +316,17 @@ def test_the_recipes_are_valid_and_use_the_same_number_of_parts_throughout():
     )
     assert gitlab["arm"]["parallel"] == 4
     shards = github["jobs"]["arm"]["strategy"]["matrix"]["shard"]
-    assert (
-        f"--shard ${{{{ matrix.shard }}}}/{len(shards)} "
-        in github["jobs"]["arm"]["steps"][1]["run"]
-    )
+    arm, merge = (github["jobs"][name]["steps"] for name in ("arm", "merge"))
+    [command] = [each["run"] for each in arm if "harness run" in each.get("run", "")]
+    assert f"--shard ${{{{ matrix.shard }}}}/{len(shards)} " in command
+    for steps in (arm, merge):
+        words = [each.get("uses", "") + each.get("run", "") for each in steps]
+        [install] = [i for i, each in enumerate(words) if "pip install ./armharness" in each]
+        assert steps[install - 2]["with"]["path"] == "armharness"
+        assert all(i > install for i, each in enumerate(words) if each.startswith("harness "))
+        [upload] = [each for each in steps if "upload-artifact" in each.get("uses", "")]
+        assert upload["if"] == "always()"
+    assert merge[-1]["with"]["path"].split() == ["merged", "parts"]
     job = kubernetes["spec"]
     [container] = job["template"]["spec"]["containers"]
     assert container["env"] == [{"name": "HARNESS_SHARDS", "value": str(job["completions"])}]
