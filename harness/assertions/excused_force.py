@@ -116,6 +116,7 @@ def dragged(run: Run, name: str, other: str, start: int, stop: int) -> FloatArra
     if pair in run.signals.slides:
         slid = run.signals.slides[pair].copy()
         slid[[*put_samples(run, name), *put_samples(run, other), start]] = 0.0
+        slid[np.isnan(slid)] = DRAG  # as far as may be: what is not known excuses nothing
         touching = force_between(run, {name}, {other})[start:stop] > 0
         latest = np.maximum.accumulate(np.where(touching, np.arange(stop - start), 0))
         return np.cumsum(slid[start:stop][latest])

@@ -197,7 +197,6 @@ EVIDENCE = Evidence(
             Never(predicate=Collision(between=("robot", "box"))),
             shared.late(
                 contact_forces={("arm_link", "box"): force(shared.N, (20, 60))},
-                clearances={("robot", "box"): shared.DISTANT},
             ),
             "late",
         ),

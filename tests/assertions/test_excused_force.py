@@ -123,3 +123,12 @@ def test_without_a_record_of_slides_the_middle_of_an_object_is_dragged():
     poses[20:, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, 0.1)).quat_wxyz
     run = make_run(N, objects=(TABLE, far), object_poses={"box": poses})
     assert dragged(run, "box", "Table", 10, 30)[-1] == pytest.approx(0.6 * np.sin(0.05))
+
+
+def test_an_object_is_dragged_where_it_is_not_known_how_far_it_slides():
+    slid = np.zeros(N)
+    slid[20] = np.nan
+    touching = {("Table", "box"): force(N, (0, N))}
+    run = make_run(N, slides={("Table", "box"): slid}, contact_forces=touching)
+    assert dragged(run, "box", "Table", 10, 30).max() >= DRAG
+    assert dragged(run, "box", "Table", 21, 30).max() == 0
