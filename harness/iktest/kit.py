@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -12,8 +12,15 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.iktest.contract import UnusableSolver, call_arguments, call_text, task_of_parameters
-from harness.iktest.offset import common_offset
+from harness.iktest.contract import UnusableSolver, call_text, task_of_parameters
+from harness.iktest.convention import (
+    KEPT,
+    Convention,
+    answer_units,
+    target_units,
+    with_fitted_zeros,
+)
+from harness.iktest.learned import Learned
 from harness.iktest.properties import BRANCHES, PROPERTIES, Property, within_reach
 from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed, write_ik_report
 from harness.iktest.search import draw, shrink_case
@@ -24,6 +31,12 @@ from harness.robot.chain import Chain
 from harness.robot_tools.robot_source import RobotSource, load_source
 from harness.strategies.poses import Target
 from harness.strategies.tasks import ROWS
+
+MOSTLY = 0.5
+"""Share of right answers from which a function counts as its contract says."""
+
+LEAST_TARGETS = 5
+"""Number of answered targets from which answers show how a function counts."""
 
 MOST_FINDINGS = 4
 """Kinds of flaws that are shrunk for one property, the most frequent first."""
@@ -162,7 +175,7 @@ class _Search:
     ) -> tuple[tuple[PropertyResult, ...], tuple[IkFinding, ...], Speed | None]:
         """Results, findings and speed."""
         speed = self._time()
-        self._learn_offset()
+        self._learn()
         results: list[PropertyResult] = []
         for each in properties:
             if HANGS in self._known:
@@ -187,19 +200,79 @@ class _Search:
         median, slow = np.quantile(times, [0.5, 0.95])
         return Speed(float(median), float(slow), max(times), len(times))
 
-    def _learn_offset(self) -> None:
-        """Whether answers are off by the same at every target."""
-        trial, misses = self._trial, []
+    def _learn(self) -> None:
+        """How the function counts, and the error that all of its answers share."""
+        trial = self._trial
+        if trial.has_hung:
+            return
+        targets = self._targets()
+        plain, pairs = trial.convention, self._answers(targets)
+        learned = self._learned(plain, pairs)
+        if learned.share < MOSTLY:
+            found = next(self._conventions(targets, pairs), None)
+            if found is not None:
+                learned, trial.other_convention = found, found.text(trial.chain)
+        trial.count_by(learned.convention)
+        trial.offset = learned.offset
+
+    def _learned(
+        self, convention: Convention, pairs: Sequence[tuple[Target, FloatArray]]
+    ) -> Learned:
+        trial = self._trial
+        tolerances = trial.position_tolerance, trial.orientation_tolerance
+        return Learned.of(trial.chain, trial.task, tolerances, pairs, convention)
+
+    def _targets(self) -> list[Target]:
+        """Targets that the arm reaches, as every property draws them."""
+        found: list[Target] = []
 
         def visit(target: Target) -> bool:
-            for answer in trial.query(target).answers:
-                if trial.misses(target, answer) is not None:
-                    misses.append((target.pose, trial.chain.link_pose(answer)))
-            return not trial.has_hung
+            found.append(target)
+            return True
 
-        if not trial.has_hung:
-            draw(within_reach(trial), visit, self._test.examples, self._test.seed)
-        trial.offset = common_offset(trial.task, misses)
+        draw(within_reach(self._trial), visit, self._test.examples, self._test.seed)
+        return found
+
+    def _answers(self, targets: Sequence[Target]) -> list[tuple[Target, FloatArray]]:
+        """Targets and finite answers to them, by the convention of the trial."""
+        pairs: list[tuple[Target, FloatArray]] = []
+        for target in targets:
+            answers = () if self._trial.has_hung else self._trial.query(target).answers
+            pairs += [(target, each) for each in answers if np.all(np.isfinite(each))]
+        return pairs
+
+    def _conventions(
+        self, targets: Sequence[Target], plain: Sequence[tuple[Target, FloatArray]]
+    ) -> Iterator[Learned]:
+        """Conventions by which most answers are right, the simplest first.
+
+        Args:
+            targets: Targets that the arm reaches.
+            plain: Answers to them by the convention of the contract.
+        """
+        trial = self._trial
+        chain, words = trial.chain, trial.solver.words
+        for units in target_units(chain, words):
+            trial.count_by(units)
+            pairs = self._answers(targets)
+            for convention in answer_units(chain, units):
+                yield from self._if_right(convention, pairs)
+        zeros = (
+            found
+            for units in answer_units(chain, Convention.plain(chain.dof))
+            for fitted in with_fitted_zeros(chain, trial.task, units, plain)
+            for found in self._if_right(fitted, plain)
+        )
+        yield from sorted(zeros, key=lambda found: found.convention.changes())
+
+    def _if_right(
+        self, convention: Convention, pairs: Sequence[tuple[Target, FloatArray]]
+    ) -> Iterator[Learned]:
+        """What is known by a convention, if it makes most answers right."""
+        by_convention = [(target, convention.positions(answer)) for target, answer in pairs]
+        learned = self._learned(convention, by_convention)
+        if learned.share >= KEPT and learned.targets >= LEAST_TARGETS:
+            yield learned
 
     def _try(self, each: Property) -> PropertyResult:
         """Draw cases, count what they show, shrink what is new."""
@@ -224,8 +297,8 @@ class _Search:
 
         count = max(10, round(each.share * self._test.examples))
         draw(each.cases(trial), visit, count, self._test.seed)
-        everywhere = "" if trial.offset is None else trial.offset.text()
-        frequent = sorted(kinds, key=lambda kind: (kind != everywhere, -kinds[kind], kind))
+        common = [trial.other_convention, trial.offset.text() if trial.offset else ""]
+        frequent = sorted(kinds, key=lambda kind: (kind not in common, -kinds[kind], kind))
         new = [kind for kind in frequent if kind not in self._known][:MOST_FINDINGS]
         for kind in new:
             flaw = self._shrunk(each, kind, tried) or smallest[kind][1]
@@ -247,7 +320,7 @@ class _Search:
 
     def _finding(self, each: Property, flaw: Flaw, shown: int, tried: int) -> IkFinding:
         trial = self._trial
-        arguments = call_arguments(trial.solver.words, flaw.target.pose, flaw.seed)
+        arguments = trial.arguments(flaw.target, flaw.seed)
         return IkFinding(
             number=len(self._findings) + 1,
             property=each.name,

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from harness.core.pose_arrays import rotation_vector
-from harness.core.spatial import SE3, quat_wxyz_from_rotation
+from harness.core.spatial import SE3, pitch_of, quat_wxyz_from_rotation
 from harness.core.types import FloatArray
 from harness.strategies.tasks import Task
 
@@ -24,7 +24,8 @@ class Offset:
 
     Attributes:
         frame: `world`, or `link`: the reached link's own.
-        error: Shift [m], then for poses the turn's rotation vector [rad]; shape (3,) or (6,).
+        error: Shift [m], then for poses the turn's rotation vector [rad], for positions with a
+            pitch that of the pitch [rad]; shape (3,), (4,) or (6,).
     """
 
     frame: Literal["world", "link"]
@@ -40,8 +41,11 @@ class Offset:
         parts = [f"off by ({millimetres}) mm"]
         angle = float(np.linalg.norm(self.error[3:]))
         if angle > SAME:
-            axis = numbers_text(self.error[3:] / angle, 2)
-            turn = f"turned by {np.degrees(angle):.1f} deg about ({axis})"
+            turn = f"turned by {np.degrees(angle):.1f} deg"
+            if len(self.error) == 6:
+                turn += f" about ({numbers_text(self.error[3:] / angle, 2)})"
+            else:
+                turn += " down" if self.error[3] > 0 else " up"
             parts = [*(parts if np.linalg.norm(self.error[:3]) > SAME else []), turn]
         where = "the world's axes" if self.frame == "world" else "the link's own axes"
         return f"is {' and '.join(parts)} in {where}, at every target"
@@ -65,6 +69,7 @@ def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | Non
         count = int(counts[winner])
         places = [misses[int(index)][0].translation for index in np.flatnonzero(alike[winner])]
         is_common = count >= LEAST_SHARE * len(misses) and _different(places) >= LEAST_COUNT
+        is_common = is_common and np.abs(errors[winner]).max() > SAME
         if is_common and (best is None or count > best[0]):
             best = count, Offset(frame, np.median(errors[alike[winner]], axis=0))
     return None if best is None else best[1]
@@ -83,7 +88,10 @@ def _error(frame: str, task: Task, target: SE3, reached: SE3) -> FloatArray:
     """Shift of the link's origin, and for poses the whole change as one motion."""
     if task != "pose":
         shift = reached.translation - target.translation
-        return shift if frame == "world" else reached.rotation.T @ shift
+        shift = shift if frame == "world" else reached.rotation.T @ shift
+        if task == "position":
+            return shift
+        return np.append(shift, pitch_of(reached.rotation) - pitch_of(target.rotation))
     change = reached @ target.inverse() if frame == "world" else target.inverse() @ reached
     return np.concatenate([change.translation, matrix_rotation_vector(change.rotation)])
 

@@ -73,8 +73,11 @@ def _around(trial: SolverTrial) -> st.SearchStrategy[Target]:
 
 
 def _reaches(trial: SolverTrial, target: Target) -> list[Flaw]:
-    found = (trial.misses(target, answer) for answer in trial.query(target).answers)
-    return [flaw for flaw in found if flaw is not None]
+    answers = trial.query(target).answers
+    found = [flaw for answer in answers if (flaw := trial.misses(target, answer)) is not None]
+    if trial.other_convention and answers:
+        found.append(trial.counted_otherwise(target, answers[0]))
+    return found
 
 
 def _answers(trial: SolverTrial, target: Target) -> list[Flaw]:

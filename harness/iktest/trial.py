@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from harness.core.quantity import distinct
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.iktest.calls import CallOutcome
-from harness.iktest.contract import call_arguments
+from harness.iktest.contract import Value
+from harness.iktest.convention import Convention
 from harness.iktest.offset import Offset, numbers_text
 from harness.iktest.solver import Solver
 from harness.robot.chain import Chain
@@ -47,6 +48,8 @@ class SolverTrial:
     Attributes:
         position_tolerance: The largest position error of an answer [m].
         orientation_tolerance: The largest orientation or pitch error of an answer [rad].
+        convention: How the function counts, as far as it is known; answers are converted from it.
+        other_convention: The flaw that the convention is, in words; empty for the contract's.
         offset: Error that all answers share, once it is known.
         last_cost: Cost of the calls since it was last read.
         has_hung: Whether a call ever hung.
@@ -58,11 +61,16 @@ class SolverTrial:
     solver: Solver
     position_tolerance: float
     orientation_tolerance: float
+    convention: Convention = field(init=False)
+    other_convention: str = ""
     offset: Offset | None = None
     has_hung: bool = False
     outcomes: list[CallOutcome] = field(default_factory=list[CallOutcome])
     _cost: int = 0
     _known: dict[bytes, CallOutcome] = field(default_factory=dict[bytes, CallOutcome])
+
+    def __post_init__(self) -> None:
+        self.convention = Convention.plain(self.chain.dof)
 
     def query(
         self, target: Target, seed: FloatArray | None = None, *, afresh: bool = False
@@ -74,7 +82,9 @@ class SolverTrial:
         start = self.chain.home if seed is None else seed
         key = target.pose.matrix().tobytes() + start.tobytes()
         if key not in self._known or afresh:
-            outcome = self.solver(call_arguments(self.solver.words, target.pose, start))
+            outcome = self.solver(self.arguments(target, start))
+            answers = tuple(self.convention.positions(each) for each in outcome.answers)
+            outcome = replace(outcome, answers=answers)
             self._known.setdefault(key, outcome)
             self.has_hung = self.has_hung or outcome.kind == "hung"
             self._cost += COSTS.get(outcome.kind, 1)
@@ -82,6 +92,15 @@ class SolverTrial:
             outcome = self._known[key]
         self.outcomes.append(outcome)
         return outcome
+
+    def arguments(self, target: Target, seed: FloatArray) -> dict[str, Value]:
+        """What the function is called with."""
+        return self.convention.arguments(self.solver.words, target.pose, seed)
+
+    def count_by(self, convention: Convention) -> None:
+        """Convert targets and answers by another convention from now on."""
+        self.convention = convention
+        self._known.clear()
 
     def take_cost(self) -> int:
         """What was spent since this was last called, at least 1."""
@@ -105,6 +124,12 @@ class SolverTrial:
         parts = [shift_text(target.pose, reached)] if off else []
         parts += [f"{what} off by {np.degrees(turn):.3g} deg"] if turned else []
         return self.flaw(kind, "; ".join(parts), target, answer)
+
+    def counted_otherwise(self, target: Target, answer: FloatArray) -> Flaw:
+        """The flaw of an answer that is right by another convention."""
+        returned = self.convention.answer(answer)
+        wrong = self.misses(target, returned)
+        return self.flaw(self.other_convention, wrong.detail if wrong else "", target, returned)
 
     def outside(self, target: Target, answer: FloatArray) -> Flaw | None:
         """Which limits an answer breaks, if any."""
