@@ -246,6 +246,13 @@ CONTENT = {
         PROPERTY.format(1, "${p0}"),
         '<link name="${p0}"/>',
     ],
+    "a long text of commands": ["<a>" + "$(arg " * 200_000 + "</a>"],
+    "a long text of expressions": ['<a b="' + "${1}" * 400_000 + '"/>'],
+    "many elements": ["<a b='${1}'/>" * 60_000],
+    "files that are read again and again": [
+        "<xacro:property name='p' value=\"${xacro.load_yaml('many.yaml')}\" lazy_eval='false'/>"
+        * 60
+    ],
     "a chain of properties": [
         PROPERTY.format(0, "a"),
         *(PROPERTY.format(n, f"${{p{n - 1}}}b") for n in range(1, 5000)),
@@ -256,6 +263,7 @@ CONTENT = {
 
 @pytest.mark.parametrize("title", CONTENT)
 def test_documents_without_an_end_are_refused(tmp_path, title):
+    (tmp_path / "many.yaml").write_text("".join(f"key{n}: 1\n" for n in range(30_000)))
     refused(tmp_path, "b", "\n".join(CONTENT[title]))
 
 

@@ -203,6 +203,7 @@ def test_an_error_is_located_in_the_expression(expression, start, length, words)
         ("table['farr']", "did you mean `far`?"),
         ("table.far", "write ['far']"),
         ("math.sine(1)", "did you mean `sin`?"),
+        ("abs(x)", "write `python.abs`"),
         ("f'{x}'", "expressions have numbers"),
     ],
 )

@@ -212,6 +212,8 @@ class _Evaluation:
         if name in self._names:
             return self._names[name]
         hint = did_you_mean(name, self._names.names(), "names")
+        if "python" in self._names and name in self._names["python"]:
+            hint = f"write `python.{name}`"
         raise self._error(node, f"name '{name}' is not defined", hint)
 
     def _items(self, item: ast.expr, loops: list[ast.comprehension]) -> Iterator[Any]:

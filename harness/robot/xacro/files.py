@@ -16,6 +16,9 @@ from harness.robot.xacro.values import Budget, ExpressionError, YamlDict
 
 DEEPEST_INCLUDE = 40
 MOST_BYTES_READ = 64_000_000
+STEPS_OF_VALUE = 5
+"""Steps that a value of a YAML file counts as; reading it takes as long as so many."""
+
 WILDCARD = re.compile(r"[*?\[]")
 
 
@@ -111,7 +114,7 @@ class Files:
         return self._plain(parse_ros_yaml(text, Source.of_text(str(path), text), number))
 
     def _plain(self, item: Located) -> Any:
-        self._budget.spend(1)
+        self._budget.spend(STEPS_OF_VALUE)
         if isinstance(item.value, dict):
             return YamlDict({key: self._plain(each.value) for key, each in item.value.items()})
         if isinstance(item.value, list):

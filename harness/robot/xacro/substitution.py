@@ -50,7 +50,8 @@ class Substitution:
             return self._value(text, names)
         except ExpressionError as error:
             length = error.length or len(text) - error.start
-            at = place.part(text, error.start, length)
+            is_long = len(text) > LONGEST_TEXT
+            at = place if is_long else place.part(text, error.start, length)
             raise SpecError([at.problem(error.message, error.hint)]) from error
 
     def text(self, text: str, names: Names, place: Place) -> str:
