@@ -34,7 +34,7 @@ def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
     start = time.monotonic()
     for number, mesh in enumerate(meshes, start=1):
         left = max(PATIENCE - (time.monotonic() - start), 0.1)
-        text = f"computing convex parts of {mesh.path.name}, {number} of {len(meshes)}"
+        text = f"computing convex shapes of {mesh.path.name}, {number} of {len(meshes)}"
         try:
             with reported(text, after=left):
                 decomposition_of(mesh)

@@ -35,7 +35,12 @@ def with_estimated_masses(urdf: Urdf) -> Urdf:
         RobotError: A mesh cannot be read, or is flat.
     """
     notes: list[str] = []
-    urdf = replace(urdf, links=tuple(_with_tensor(link, notes) for link in urdf.links))
+    shaped_only: list[str] = []
+    links = tuple(_with_tensor(link, shaped_only, notes) for link in urdf.links)
+    urdf = replace(urdf, links=links)
+    if shaped_only:
+        names = ", ".join(shaped_only)
+        notes.append(f"no inertia is given for {names}: that of their shapes at their masses")
     carrier = carriers(urdf.joints, urdf.root)
     groups: dict[str, list[Link]] = {}
     for link in urdf.links:
@@ -72,8 +77,11 @@ def with_estimated_masses(urdf: Urdf) -> Urdf:
     return replace(urdf, links=links, notes=(*urdf.notes, *notes))
 
 
-def _with_tensor(link: Link, notes: list[str]) -> Link:
-    """A link whose mass has an inertia tensor, which is that of its shapes if none is given."""
+def _with_tensor(link: Link, shaped_only: list[str], notes: list[str]) -> Link:
+    """A link whose mass has an inertia tensor, which is that of its shapes if none is given.
+
+    Its name is then added to `shaped_only`.
+    """
     inertial = link.inertial
     if inertial is None or inertial.inertia.any():
         return link
@@ -81,9 +89,7 @@ def _with_tensor(link: Link, notes: list[str]) -> Link:
         shapes = _with_mass(link).inertial
         assert shapes is not None
         inertia = shapes.inertia * (inertial.mass / shapes.mass)
-        notes.append(
-            f"link '{link.name}': no inertia is given: that of its shapes at {inertial.mass:g} kg"
-        )
+        shaped_only.append(link.name)
     else:
         moments = possible_moments(np.zeros(3), inertial.mass)
         notes.append(corrected_note(link.name, np.zeros(3), moments))

@@ -84,11 +84,11 @@ def test_a_damaged_mesh_is_reported_at_its_element_after_the_rest(tmp_path):
 
 
 def test_work_that_takes_long_is_reported_on_stderr(capfd):
-    with reported("computing convex parts of bin.obj, 1 of 1", after=0.01):
+    with reported("computing convex shapes of bin.obj, 1 of 1", after=0.01):
         time.sleep(0.5)
     with reported("not this", after=600):
         pass
-    assert capfd.readouterr().err == "computing convex parts of bin.obj, 1 of 1\n"
+    assert capfd.readouterr().err == "computing convex shapes of bin.obj, 1 of 1\n"
 
 
 def test_no_meshes_are_no_work():

@@ -65,6 +65,11 @@ def test_a_site_with_the_name_of_a_body_or_the_world_is_renamed(tmp_path, name):
     assert frame.translation == pytest.approx([0, 0, 0.3], abs=1e-12)
 
 
+def test_a_site_at_the_frame_of_its_namesake_is_the_body(tmp_path):
+    write(tmp_path, MJCF.replace('<body name="base">', '<body name="base"><site name="base"/>'))
+    assert "base_site" not in load(tmp_path).link_names
+
+
 def test_masses_are_those_that_mujoco_makes_of_the_geoms(tmp_path):
     write(tmp_path)
     arm = load(tmp_path)

@@ -81,7 +81,7 @@ def test_a_mass_without_a_tensor_gets_that_of_its_shapes(tmp_path, tensor):
     assert found.mass == 1
     assert found.inertia[2, 2] == pytest.approx(0.03**2 / 2)
     assert found.inertia[0, 0] == pytest.approx(0.03**2 / 4 + 0.14**2 / 12)
-    assert noted(arm, "link 'upper': no inertia is given: that of its shapes at 1 kg")
+    assert noted(arm, "no inertia is given for upper, lower, wrist: that of their shapes at")
     assert noted(arm, "4 <rod> elements in <inertial>", "line 3 of arm.urdf") == ("rod" in tensor)
 
 
@@ -188,6 +188,14 @@ def test_a_joint_without_lower_and_upper_is_fixed_at_zero(tmp_path):
     arm = load(tmp_path, (LIMIT, '<limit velocity="2" effort="30"/>'))
     assert "bend" not in arm.joint_names
     assert noted(arm, "are fixed: bend at 0")
+
+
+def test_a_robot_of_which_every_joint_is_held_is_refused_at_the_first(tmp_path):
+    rigid = URDF.replace('"continuous"', '"revolute"').replace(' upper="2"', ' upper="-2"')
+    write_arm(tmp_path, rigid.replace('lower="0" upper="0.2"', ""))
+    with pytest.raises(SpecError, match="no joint of the robot can move") as caught:
+        load_arm(tmp_path)
+    assert caught.value.problems[0].line == 8
 
 
 def test_ros2_control_can_hold_a_joint(tmp_path):

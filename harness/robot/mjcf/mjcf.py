@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.errors import Problem, SpecError
+from harness.core.spatial import SE3
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import WORLD, Joint, Link, NamedState, fixed_joint
@@ -188,6 +189,9 @@ class _Reader:
             name, body = model.site(number).name, int(model.site_bodyid[number])
             if not name or body not in names:
                 continue
+            pose = mjcf_pose(model.site_pos[number], model.site_quat[number])
+            if name == names[body] and pose.distance_to(SE3.identity()) == (0.0, 0.0):
+                continue  # the body's own frame
             frame = name if name not in taken else free_name(f"{name}_site", taken)
             if frame != name:
                 self.notes.append(

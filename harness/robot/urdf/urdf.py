@@ -132,7 +132,12 @@ def parse_urdf(
         root.refuse("there is no <link> in it: this describes no robot")
     if len(links) > MOST_LINKS:
         root.refuse(f"{len(links)} links; at most {MOST_LINKS} are read")
+    ranged = {joint.name for joint in joints if joint.is_movable}
     joints = held_without_range(with_interfaces(joints, root, notes), notes)
+    held = [joint.name for joint in joints if joint.name in ranged and not joint.is_movable]
+    if held and len(held) == len(ranged):
+        message = "no joint of the robot can move: `lower` and `upper` are equal"
+        elements["joint", held[0]].refuse(message, "give their ranges, or make them continuous")
     joints = resolved_mimics(joints, elements)
     notes += packages.notes
     ordered = in_tree_order(links, joints, source, elements)
@@ -187,5 +192,5 @@ def _ignored_note(parent: str, items: Sequence[XmlElement]) -> str:
         return f"{count} ignored{but}"
     return (
         f"{count} in <{parent}> ignored, the first in line {place.line} of"
-        f" {Path(place.source.path).name}; a macro of xacro is called as <xacro:{tag}>"
+        f" {Path(place.source.path).name}; a macro of xacro would be called as <xacro:{tag}>"
     )
