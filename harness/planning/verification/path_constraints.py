@@ -132,7 +132,7 @@ class HeldConstraints:
 
     def hold(self, positions: FloatArray) -> bool:
         """Whether all hold at group positions."""
-        return self._excess(self._values_at(positions)).max() <= _ROUNDING
+        return bool(self._excess(self._values_at(positions)).max() <= _ROUNDING)
 
     def hold_between(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
         """Whether all hold on a straight line, its first end taken as checked."""
