@@ -105,3 +105,13 @@ def test_what_is_written_has_no_absent_names(tmp_path):
     arm = load_arm(tmp_path)
     assert "reach" in arm.srdf
     assert "knuckle" not in arm.srdf
+
+
+def test_a_virtual_joint_may_be_passive(tmp_path):
+    """As for the floating base of a robot on wheels."""
+    arm = load(
+        tmp_path,
+        '<virtual_joint name="base" type="planar" parent_frame="odom" child_link="base_link"/>',
+        '<passive_joint name="base"/>',
+    )
+    assert arm.groups["manipulator"].joint_names == ("turn", "bend", "reach")

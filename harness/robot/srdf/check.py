@@ -32,8 +32,9 @@ def checked_srdf(srdf: Srdf, urdf: Urdf, source: str) -> Srdf:
     notes: list[str] = []
     _check_states(root, srdf, joints, absent, notes)
     _check_end_effectors(root, srdf, links, absent)
+    virtual = {joint.name for joint in srdf.virtual_joints}
     for item in root.findall("passive_joint"):
-        _check_name(item, "name", "passive_joint", "joint", {*joints, *lost})
+        _check_name(item, "name", "passive_joint", "joint", {*joints, *lost, *virtual})
     for joint in srdf.virtual_joints:
         if joint.kind != "fixed":
             notes.append(f"SRDF: the {joint.kind} virtual joint '{joint.name}' counts as fixed")
