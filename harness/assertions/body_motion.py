@@ -53,9 +53,8 @@ class Balls:
         return (np.linalg.norm(ways, axis=1) + chord[:, None] * self.radii).max(axis=1)
 
 
-def balls_of(run: Run, name: str) -> Balls:
+def balls_of(record: ObjectRecord) -> Balls:
     """The balls of an object; its middle where it has no shape that is known, as of a mesh."""
-    record = object_record(run, name)
     found: list[tuple[FloatArray, float]] = []
     for shape in record.shapes:
         centers, radius = _balls(shape.geometry)
@@ -134,7 +133,7 @@ def body_speeds(
         poses: T_world_body at each sample, NaN where it is absent or not known, shape (N, 7).
         here: Samples at which it is in the scene; by default those with a pose.
     """
-    moved, turned = balls_of(run, name).moved, _turned
+    moved, turned = balls_of(object_record(run, name)).moved, _turned
     found: list[FloatArray] = []
     there = np.isfinite(poses.sum(axis=1)) if here is None else here
     appears = np.flatnonzero(there & ~np.append(False, there[:-1]))

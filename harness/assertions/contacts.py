@@ -14,7 +14,7 @@ from harness.assertions.body_motion import balls_of
 from harness.assertions.facts import fact
 from harness.assertions.poses import present, put_samples
 from harness.assertions.temporal import trailing_max, without_gaps
-from harness.assertions.window import NotObservable
+from harness.assertions.window import NotObservable, object_record
 from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.robot_record import GripperRecord
@@ -122,6 +122,17 @@ def attached(run: Run, name: str) -> BoolArray:
     return mask
 
 
+def welded(run: Run, name: str) -> BoolArray:
+    """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
+    times = run.signals.times
+    mask = np.zeros(len(times), dtype=bool)
+    for record in run.attachments:
+        if name in (record.object, record.represents) and record.welded:
+            begin, end = record.welded
+            mask |= (times >= begin) & (times < end)
+    return mask
+
+
 def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """Debounced force of all links on an object [N], and 1 where it is attached, (N,) each."""
     links = set(run.robot.link_names)
@@ -133,9 +144,9 @@ def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
 
 
 def was_in_robot(run: Run, name: str, samples: slice) -> bool:
-    """Whether the robot touched or held an object at some of a run's samples."""
-    force, hold = robot_contact(run, name)
-    return bool((force[samples] > TOUCH_FORCE).any() or hold[samples].any())
+    """Whether the robot touched an object, or a weld held it, at some of a run's samples."""
+    force, _ = robot_contact(run, name)
+    return bool((force[samples] > TOUCH_FORCE).any() or welded(run, name)[samples].any())
 
 
 def bodies(run: Run, word: str) -> frozenset[str]:
@@ -210,7 +221,8 @@ def _skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Ver
         width = _least_known_width(run, name)
         if poses is None or not width:
             continue
-        moved = np.nan_to_num(balls_of(run, name).moved(poses[:-1], poses[1:]))
+        balls = balls_of(object_record(run, name))
+        moved = np.nan_to_num(balls.moved(poses[:-1], poses[1:]))
         moved[put_samples(run, name) - 1] = 0.0
         others = [first if second == name else second for first, second in pairs
                   if name in (first, second)]  # fmt: skip

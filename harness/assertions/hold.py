@@ -11,6 +11,7 @@ from harness.assertions.contacts import (
     gripper_of,
     hand_links,
     side_forces,
+    welded,
 )
 from harness.assertions.facts import fact
 from harness.assertions.poses import object_poses
@@ -292,17 +293,6 @@ def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
         heights = lowest_points(record, compose(tcp[start:stop], in_hand))
         raised[start:stop] = heights - heights[0]
     return raised
-
-
-def welded(run: Run, name: str) -> BoolArray:
-    """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
-    times = run.signals.times
-    mask = np.zeros(len(times), dtype=bool)
-    for record in run.attachments:
-        if name in (record.object, record.represents) and record.welded:
-            begin, end = record.welded
-            mask |= (times >= begin) & (times < end)
-    return mask
 
 
 def weld_note(run: Run, name: str) -> str:

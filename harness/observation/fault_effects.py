@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.assertions.body_motion import balls_of
 from harness.core.types import BoolArray
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
 from harness.recording.robot_record import RobotRecord
@@ -92,7 +93,7 @@ class _Record:
     ) -> None:
         self.signals = signals
         self.robot = robot
-        self.is_static = {obj.name: obj.is_static for obj in objects}
+        self.objects = {obj.name: obj for obj in objects}
         self.joints = [joint.name for joint in robot.joints]
         self.step_time = float(signals.times[1] - signals.times[0]) if len(signals.times) > 1 else 0
 
@@ -147,7 +148,7 @@ class _Record:
         gripper = self.robot.gripper
         fingers = [] if gripper is None else [x for side in gripper.sides.values() for x in side]
         pressed = np.zeros(len(self.signals.times[rows]), dtype=bool)
-        for name in self.is_static:
+        for name in self.objects:
             pressed |= self._touched(name, fingers, rows)
         if not pressed.any():
             return Effect(False, "the gripper pressed on nothing", is_over_time=True)
@@ -201,10 +202,12 @@ class _Record:
         return touched
 
     def _speed(self, name: str, rows: slice) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Speed of an object's origin between samples [m/s], for every row."""
-        positions = self.signals.object_poses[name][rows, :3]
-        steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
-        return np.nan_to_num(np.append(steps, 0.0)) / max(self.step_time, 1e-9)
+        """Speed of an object's fastest point between samples [m/s], for every row."""
+        record, poses = self.objects[name], self.signals.object_poses[name]
+        steps = balls_of(record).moved(poses[:-1], poses[1:])
+        steps[record.put_samples(self.signals.times) - 1] = 0.0
+        within = np.append(steps[rows][: len(poses[rows]) - 1], 0.0)
+        return np.nan_to_num(within) / max(self.step_time, 1e-9)
 
     def _seconds(self, rows: BoolArray) -> str:
         return f"{np.count_nonzero(rows) * self.step_time:.2f} s"

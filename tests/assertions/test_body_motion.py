@@ -24,7 +24,7 @@ def shaped(*shapes):
 def test_no_point_of_a_shape_moves_further_than_its_balls(geometry):
     rng = np.random.default_rng(7)
     place = SE3.from_xyz_rpy((0.3, -0.2, 0.1), (0.4, 0.5, -0.6))
-    balls = balls_of(shaped(Shape(geometry, place)), "body")
+    balls = balls_of(shaped(Shape(geometry, place)).objects[0])
     first = np.append(rng.normal(size=3), SE3.from_xyz_rpy(rpy=rng.normal(size=3)).quat_wxyz)
     second = np.append(rng.normal(size=3), SE3.from_xyz_rpy(rpy=rng.normal(size=3)).quat_wxyz)
     moved = balls.moved(first, second[None])[0]
@@ -58,7 +58,7 @@ def test_the_middle_is_the_centre_of_mass_or_that_of_the_shapes():
     heavy = replace(BOX, shapes=shapes, center_of_mass=(0.5, 0.25, 0.125))
     assert middle_of(heavy).tolist() == [0.5, 0.25, 0.125]
     mesh = replace(heavy, shapes=(Shape(Mesh("a.stl", np.ones(3))),))
-    balls = balls_of(make_run(N, objects=(mesh,)), "box")
+    balls = balls_of(mesh)
     assert (balls.centers.tolist(), balls.radii.tolist()) == ([[0.5, 0.25, 0.125]], [0.0])
 
 

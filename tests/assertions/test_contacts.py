@@ -68,7 +68,7 @@ def test_a_contact_lasts_ten_milliseconds_longer_than_its_force():
     assert where(debounced(run, force(N, (10, 12)))) == [10, 11, 12]
 
 
-def test_the_robot_touches_with_the_sum_of_its_links_and_holds_what_is_attached():
+def test_the_robot_touches_with_the_sum_of_its_links_and_holds_what_is_welded():
     forces = {
         ("left_finger", "box"): force(N, (10, 12)),
         ("arm_link", "box"): force(N, (11, 20), value=0.5),
@@ -82,8 +82,10 @@ def test_the_robot_touches_with_the_sum_of_its_links_and_holds_what_is_attached(
     assert not was_in_robot(run, "box", slice(10))
     assert was_in_robot(run, "box", slice(11))
     free = changed(run, contact_forces={})
-    assert not was_in_robot(free, "box", slice(30))
-    assert was_in_robot(free, "box", slice(31))
+    assert not was_in_robot(free, "box", slice(N)), "the planning scene alone holds it"
+    welded = replace(free, attachments=(replace(record, welded=(0.3, 0.35)),))
+    assert not was_in_robot(welded, "box", slice(30))
+    assert was_in_robot(welded, "box", slice(31))
     faint = changed(run, contact_forces={("arm_link", "box"): np.full(N, 0.001)})
     assert not was_in_robot(faint, "box", slice(30))
 

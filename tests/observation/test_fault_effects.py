@@ -1,8 +1,11 @@
 """Whether a fault had an effect, from recordings made by hand: each at both sides of its limit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from harness.core.spatial import SE3
 from harness.observation.fault_effects import COMMANDED, with_receipts
 from harness.recording.faults import InjectedFault, faults_of
 from tests.approved import SAID, finding_text
@@ -14,7 +17,7 @@ N = 100
 def receipts(faults, run, more=()):
     """The faults of the first step with their receipts, and the findings."""
     first = step("first", 10, 20, "inject", result={"faults": [each.plain() for each in faults]})
-    steps, findings = with_receipts((first, *more), run.signals, ROBOT, (TABLE, BOX))
+    steps, findings = with_receipts((first, *more), run.signals, ROBOT, run.objects)
     SAID.extend(map(finding_text, findings))
     return faults_of(steps[0]), findings
 
@@ -192,3 +195,16 @@ def test_a_push_that_took_no_time_moved_nothing():
         "no_effect",
         "it did not move: friction or a hand held it",
     )
+
+
+def test_a_push_that_only_turns_an_object_lands_and_a_step_that_puts_it_elsewhere_does_not():
+    """The corners of the cube are 35 mm from its middle; a turn of 0.001 rad is 3.5 mm/s."""
+    turning, put = at(N), at(N)
+    for row in range(12, N):
+        turning[row, 3:] = SE3.from_xyz_rpy(rpy=(0, 0, 0.001 * (row - 12))).quat_wxyz
+    put[13:, 0] = 0.5
+    assert receipt(PUSH, object_poses={"box": turning}).receipt == "landed"
+    there = replace(BOX, present=((0.0, 0.12), (0.12, 1e9)))
+    run = make_run(N, objects=(TABLE, there), object_poses={"box": put})
+    [fault], _ = receipts([PUSH], run)
+    assert fault.receipt == "no_effect"
