@@ -240,8 +240,7 @@ class _Hand:
     def parts(self, link: str, *, is_jaw: bool) -> list[tuple[Any, SE3]]:
         """The convex parts of a pad that close on objects, with their T_link_shape.
 
-        Of a jaw that turns, it is what is farther from the hinge than half of its reach; of one of
-        two fingers that slide, the outer half of what extends beyond the palm.
+        Of a jaw that turns, it is what is farther from the hinge than half of its reach.
         """
         if link not in self._parts:
             shapes = convex_shapes(self._links[link].collisions)
@@ -254,10 +253,15 @@ class _Hand:
                 farthest = max(arms, key=np.linalg.norm)
                 farthest = farthest / np.linalg.norm(farthest)
                 self._parts[link] = _outer_half(corners, farthest, farthest @ origin)
-            elif not is_jaw and self.joint.kind == "prismatic" and self.out.any():
-                out = self.pose(link, self.joint.lower).rotation.T @ self.out
-                self._parts[link] = _outer_half(corners, out, self._end_of_palm(link))
         return self._parts[link]
+
+    def keep_outer_half(self, link: str) -> None:
+        """Measure gaps of a finger that slides from the outer half of what is beyond the palm."""
+        corners = [
+            pose.apply(hull_corners(solid)) for solid, pose in self.parts(link, is_jaw=False)
+        ]
+        out = self.pose(link, self.joint.lower).rotation.T @ self.out
+        self._parts[link] = _outer_half(corners, out, self._end_of_palm(link))
 
     def _end_of_palm(self, link: str) -> float:
         """How far out from a link's origin the palm extends [m]; -inf for one without shapes."""
@@ -409,16 +413,26 @@ def _pads(
     fingers = [link for side in sides for link in side if link != hand.palm]
     middle = 0.5 * (hand.joint.lower + hand.joint.upper)
     out = np.mean([hand.middle(link, middle) for link in fingers], axis=0)
-    if hand.has_shape(hand.palm) and not any(hand.palm in links for links in sides):
-        out = out - hand.middle(hand.palm, middle)
+    is_pad = any(hand.palm in links for links in sides)
+    if (
+        hand.has_shape(hand.palm)
+        and not is_pad
+        and out @ (out - hand.middle(hand.palm, middle)) < 0
+    ):
+        out = -out  # the palm has its origin at the fingertips
     hand.out = out / max(float(np.linalg.norm(out)), 1e-9)
     first, second = (_outermost(hand, links, middle) for links in sides)
     ranks = [(n, m) for n in range(len(first)) for m in range(len(second))]
     ranks.sort(key=lambda rank: (abs(rank[0] - rank[1]), sum(rank)))  # alike fingers, alike pads
     for pads in ((first[n], second[m]) for n, m in ranks):
-        gaps = np.array([hand.gap(pads, float(position)) for position in positions])
-        if np.ptp(gaps) >= LEAST_TRAVEL:
-            return pads, gaps
+        gaps = [hand.gap(pads, float(position)) for position in positions]
+        if np.ptp(gaps) < LEAST_TRAVEL:
+            continue
+        if hand.joint.kind == "prismatic" and hand.palm not in pads and hand.out.any():
+            for pad in pads:
+                hand.keep_outer_half(pad)
+            gaps = [hand.gap(pads, float(position)) for position in positions]
+        return pads, np.array(gaps)
     raise NoGripperError(f"the gap between {first[0]} and {second[0]} does not change")
 
 
