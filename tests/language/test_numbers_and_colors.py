@@ -1,5 +1,6 @@
 """Percentages, expressions with pi, angles that look like degrees, and colours by name."""
 
+import colorsys
 import math
 from pathlib import Path
 
@@ -8,6 +9,7 @@ from matplotlib.colors import CSS4_COLORS, to_rgba
 
 from harness.core.errors import SpecError
 from harness.core.quantity import constant_of, split_quantity
+from harness.expectations.sees import HUES, HueRange
 from harness.language.colors import COLORS, color_of_name
 from harness.language.reading.load import parse_scenario
 
@@ -152,3 +154,13 @@ def test_a_color_is_a_name_or_numbers():
     numbers = load(with_pose("{}", ", color: [0.1, 0.2, 0.3, 1]")).scenario.objects[0]
     assert numbers.color == (0.1, 0.2, 0.3, 1)
     assert "has 3 items" in problem(with_pose("{}", ", color: [0.1, 0.2, 0.3]")).message
+
+
+@pytest.mark.parametrize("name", sorted(HUES.keys() - {"pink"}))
+def test_sees_finds_an_object_by_the_name_of_its_color(name):
+    """`pink` is the exception, and says so: objects have CSS's, a pale red."""
+    hue, saturation, value = colorsys.rgb_to_hsv(*color_of_name(name)[:3])
+    low, high = HUES[name]
+    assert low <= 360 * hue <= high or (low > high and not high < 360 * hue < low)
+    assert saturation > HueRange(named=name).min_saturation
+    assert value > HueRange(named=name).min_value

@@ -12,7 +12,12 @@ from typing import BinaryIO
 from lz4.frame import LZ4FrameDecompressor
 
 from harness.core.errors import HarnessError
-from harness.grading.bag.message_files import LARGEST_RECORD, RawMessage, bag_error
+from harness.grading.bag.message_files import (
+    LARGEST_RECORD,
+    MOST_TOPICS,
+    RawMessage,
+    bag_error,
+)
 
 MAGIC = b"#ROSBAG V2.0\n"
 MESSAGE, CHUNK, CONNECTION = 2, 5, 7
@@ -20,6 +25,9 @@ MESSAGE, CHUNK, CONNECTION = 2, 5, 7
 
 RENAMED = {"tf/msg/tfMessage": "tf2_msgs/msg/TFMessage"}
 """Types that had another name, with the same content."""
+
+LARGEST_HEADER = 2**20
+"""Largest header of a record [bytes]; it has a handful of names and numbers."""
 
 Fields = Mapping[str, bytes]
 
@@ -48,7 +56,7 @@ def ros1_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         try:
             for fields, data in _all_records(stream, named):
                 operation, number = fields["op"][0], fields.get("conn", b"")
-                if operation == CONNECTION:
+                if operation == CONNECTION and len(topics) < MOST_TOPICS:
                     kind = _fields(data)["type"].decode().replace("/", "/msg/")
                     topics[number] = (fields["topic"].decode(), RENAMED.get(kind, kind))
                 elif operation == MESSAGE:
@@ -76,19 +84,17 @@ def _all_records(stream: BinaryIO, named: Path) -> Iterator[tuple[Fields, bytes]
 
 def _records(stream: BinaryIO, named: Path) -> Iterator[tuple[Fields, bytes]]:
     while size := stream.read(4):
-        header = _read(stream, size, named)
+        header = _read(stream, size, named, LARGEST_HEADER)
         yield _fields(header), _read(stream, stream.read(4), named)
 
 
-def _read(stream: BinaryIO, size: bytes, named: Path) -> bytes:
+def _read(stream: BinaryIO, size: bytes, named: Path, largest: int = LARGEST_RECORD) -> bytes:
     """As many bytes as the four before them say."""
     if len(size) < 4:
         raise _CutOffError
     (count,) = struct.unpack("<I", size)
-    if count > LARGEST_RECORD:
-        raise bag_error(
-            named, f"has a record of {count} bytes; at most {LARGEST_RECORD} bytes are read"
-        )
+    if count > largest:
+        raise bag_error(named, f"has a record of {count} bytes; at most {largest} bytes are read")
     data = stream.read(count)
     if len(data) < count:
         raise _CutOffError
