@@ -136,3 +136,9 @@ def test_a_prefix_that_all_joints_have_is_proposed(tmp_path):
     with pytest.raises(SpecError, match="--joint-prefix left_"):
         outcomes(tmp_path, bag)
     assert outcomes(tmp_path, bag, replace(BagTopics(), joint_prefix="left_")) == ["passed"] * 2
+
+
+def test_a_name_for_no_joint_of_the_robot_is_refused(tmp_path):
+    bag = write(tmp_path / "arm.bag")
+    with pytest.raises(SpecError, match="the robot has no joint 'elbow'"):
+        outcomes(tmp_path, bag, replace(BagTopics(), joint_names={"joint2": "elbow"}))

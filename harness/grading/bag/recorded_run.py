@@ -94,6 +94,10 @@ class _Recording:
     def __init__(self, path: Path, topics: BagTopics, known: Recorded) -> None:
         self._path, self._known = path, known
         robot, description = known.robot, known.description
+        unknown = sorted(set(topics.joint_names.values()) - set(description.joint_names))
+        if unknown:
+            hint = f"joints: {', '.join(description.joint_names)}"
+            raise bag_error(path, f"the robot has no joint '{unknown[0]}'", hint)
         self._content = content = read_bag(path, topics)
         reference = reference_track(content, description, robot.arm_joints)
         if reference is None:
