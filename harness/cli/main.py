@@ -110,6 +110,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     is_json = given and parsed.command not in JSON_IN_PARTS
     ticks = getattr(parsed, "ticks", True) and not getattr(parsed, "in_process", False)
     try:
+        os.getcwd()  # noqa: PTH109 - only whether there is one
+    except OSError as error:
+        complain(f"harness: the working directory cannot be used: {error.strerror}; change it")
+        return USAGE_EXIT_CODE
+    try:
         if not _load_plugins(getattr(parsed, "plugins", ())):
             return USAGE_EXIT_CODE
         run = _module(parsed.command).run

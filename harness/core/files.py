@@ -14,6 +14,21 @@ BUFFER = 2**20
 """Bytes of a file that are written at once."""
 
 
+def is_file(path: Path) -> bool:
+    """Whether a file is there; not where the path cannot be one, as its name is too long."""
+    return os.path.isfile(path)  # noqa: PTH113 - `Path.is_file` raises OSError for such a name
+
+
+def is_dir(path: Path) -> bool:
+    """Whether a folder is there; not where the path cannot be one, as its name is too long."""
+    return os.path.isdir(path)  # noqa: PTH112 - as above
+
+
+def path_exists(path: Path) -> bool:
+    """Whether a file or folder is there; not where the path cannot be one."""
+    return os.path.exists(path)  # noqa: PTH110 - as above
+
+
 @contextmanager
 def replaced(file: Path) -> Generator[IO[bytes]]:
     """A new file, which gets its name when everything is written.

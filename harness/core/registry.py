@@ -49,6 +49,9 @@ BUILT_IN = {
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 
+HAS_DOCSTRINGS = sys.flags.optimize < 2
+"""Whether classes have their docstrings; with `PYTHONOPTIMIZE=2` none has."""
+
 NOUNS = {
     "planner": "planning pipeline",
     "ik_solver": "inverse kinematics solver",
@@ -263,7 +266,7 @@ def _check_class(plugin: type[Plugin], what: str, package: str) -> None:
     Raises:
         PluginError: It does.
     """
-    if not plugin.__doc__:
+    if not plugin.__doc__ and HAS_DOCSTRINGS:
         raise PluginError(package, f"{what} has no docstring, which is its reference text")
     missing = sorted(getattr(plugin, "__abstractmethods__", ()))
     if missing:

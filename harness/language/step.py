@@ -10,7 +10,7 @@ from pydantic import Field
 
 from harness.core.details import Detail
 from harness.core.errors import ErrorCode
-from harness.core.registry import Registry, registry
+from harness.core.registry import HAS_DOCSTRINGS, Registry, registry
 from harness.language.base import Name, PositiveDuration, SpecModel
 from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.files.source import Loc
@@ -101,7 +101,7 @@ class Step(SpecModel):
         reserved = {*Step.model_fields, TAG}
         if not verb.isidentifier() or verb in reserved:
             raise TypeError(f"`{verb}` cannot be a step's verb: it is no word, or a key of steps")
-        if not cls.__doc__:
+        if not cls.__doc__ and HAS_DOCSTRINGS:
             raise TypeError(f"the step `{verb}` has no docstring, which is its reference text")
         if TAG in cls.model_fields or cls.execute is Step.execute:
             raise TypeError(f"the step `{verb}` needs an `execute` method, and no field `{TAG}`")

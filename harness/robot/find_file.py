@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.core.errors import RobotOptionError
+from harness.core.files import is_dir, is_file
 from harness.robot.packages import NotFoundError, PackagePath
 
 
@@ -28,7 +29,7 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
             )
         return path
     path = base_dir / Path(name).expanduser()
-    if not path.is_file():
+    if not is_file(path):
         near = difflib.get_close_matches(path.name, _names(path.parent), 1)
         hint = f"; did you mean '{near[0]}'?" if near else ""
         raise RobotOptionError(key, f"there is no file {path}{hint}")
@@ -50,7 +51,7 @@ def files_around(name: str, path: Path, given: Sequence[Path]) -> PackagePath:
 
 
 def _names(folder: Path) -> list[str]:
-    return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
+    return sorted(each.name for each in folder.iterdir()) if is_dir(folder) else []
 
 
 def find_folder(name: str, base_dir: Path) -> Path:
@@ -60,6 +61,6 @@ def find_folder(name: str, base_dir: Path) -> Path:
         RobotError: It does not exist.
     """
     folder = base_dir / Path(name).expanduser()
-    if not folder.is_dir():
+    if not is_dir(folder):
         raise RobotOptionError("packages", f"there is no folder {folder}")
     return folder

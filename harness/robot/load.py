@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import RobotOptionError
+from harness.core.files import is_dir, is_file
 from harness.core.geometry import CollisionMode
 from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
@@ -224,7 +225,7 @@ def _part(
     if name in _catalogue():
         return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))
     folder = base_dir / name
-    if (folder / "robot.yaml").is_file():
+    if is_file(folder / "robot.yaml"):
         return _read(folder, read_robot_yaml(folder), "", args)
     if name in collected_robots():
         folder, facts = collected_robots()[name]
@@ -238,7 +239,7 @@ def _part(
     hints = [known, *[own] * (key == "model"), *broken_plugins()]
     if folder.suffix.lower() in SDF_SUFFIXES:
         raise RobotOptionError(key, f"'{name}' is SDF: {SDF_HINT}")
-    if "/" in name or name.startswith(".") or folder.is_dir():
+    if "/" in name or name.startswith(".") or is_dir(folder):
         hints.insert(0, f"{folder} has no robot.yaml")
     raise RobotOptionError(key, f"'{name}' is not known; {'; '.join(hints)}")
 

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
+from harness.core.files import is_dir, is_file
+
 SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
 """Environment variable with additional folders to search, separated as in PATH."""
 
@@ -55,7 +57,7 @@ class PackagePath:
         """The search path of a robot's file."""
         folder = path.resolve().parent
         home = next(
-            (each for each in (folder, *folder.parents) if (each / MANIFEST).is_file()), folder
+            (each for each in (folder, *folder.parents) if is_file(each / MANIFEST)), folder
         )
         return cls(home, (*(each.resolve() for each in given), *environment_folders()))
 
@@ -119,7 +121,7 @@ class PackagePath:
             path = (folder / name.removeprefix("file://")).resolve()
         if not self.may_read(path):
             raise NotFoundError(self.outside(name, path))
-        if not path.is_file():
+        if not is_file(path):
             raise NotFoundError(f"'{name}' is not there: {path} does not exist")
         return path
 
@@ -158,7 +160,7 @@ class PackagePath:
         Wheels and archives often carry a ROS package without it. A user's home folder and what
         holds it are none.
         """
-        if (self.home / MANIFEST).is_file():
+        if is_file(self.home / MANIFEST):
             return
         for folder in (self.home, *self.home.parents)[: HIGHEST + 1]:
             if Path.home().is_relative_to(folder) or folder == Path(folder.anchor):
@@ -167,7 +169,7 @@ class PackagePath:
 
     def _around(self) -> Iterator[Path]:
         """Folders of adjacent packages: the parent folder, and install folders next to its own."""
-        if (self.home / MANIFEST).is_file():
+        if is_file(self.home / MANIFEST):
             yield self.home.parent
             if self.home.parent.name == "share":
                 yield self.home.parents[2]
@@ -196,20 +198,20 @@ def additional_package_folders(folders: Sequence[Path]) -> Iterator[None]:
 
 
 def _is_folder(folder: Path, name: str) -> bool:
-    return folder.name == name and folder.is_dir()
+    return folder.name == name and is_dir(folder)
 
 
 def _may_be(folder: Path, inside: str) -> bool:
     """Whether a folder may be the package of which a file of the robot has a path."""
     if inside:
-        return (folder / inside).is_file()
-    return any((folder / each).is_dir() for each in DESCRIPTIONS)
+        return is_file(folder / inside)
+    return any(is_dir(folder / each) for each in DESCRIPTIONS)
 
 
 def _inside(folder: Path, name: str) -> Iterator[Path]:
     """The folder of a package in colcon's `src`, `install` and merged `install` layouts."""
     for path in (folder / name / "share" / name, folder / "share" / name, folder / name):
-        if path.is_dir():
+        if is_dir(path):
             yield path
 
 
@@ -222,7 +224,7 @@ def _installed(name: str) -> Iterator[Path]:
         spec = None
     for each in [Path(sys.prefix), *(Path(entry) / "cmeel.prefix" for entry in sys.path if entry)]:
         path = each / "share" / name
-        if path.is_dir():
+        if is_dir(path):
             yield path
     if spec is not None and spec.submodule_search_locations:
         yield Path(next(iter(spec.submodule_search_locations)))
@@ -237,14 +239,14 @@ def _packages_below(folder: Path) -> tuple[Path, ...]:
         below: list[Path] = []
         for each in level:
             try:
-                inside = sorted(item for item in each.iterdir() if item.is_dir())
+                inside = sorted(item for item in each.iterdir() if is_dir(item))
             except OSError:
                 continue
             seen += len(inside)
             if seen > MOST_FOLDERS:
                 return tuple(found)
             for item in inside:
-                (found if (item / MANIFEST).is_file() else below).append(item)
+                (found if is_file(item / MANIFEST) else below).append(item)
         level = below
     return tuple(found)
 

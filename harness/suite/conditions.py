@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
-from harness.core.files import replaced, writing
+from harness.core.files import is_dir, path_exists, replaced, writing
 from harness.reporting.json_text import compact_json
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase
@@ -164,7 +164,7 @@ class Conditions:
         Raises:
             HarnessError: It cannot be written.
         """
-        if not (folder / FILE).exists() or not (folder / FILE).samefile(self.path):
+        if not path_exists(folder / FILE) or not (folder / FILE).samefile(self.path):
             with writing(folder), replaced(folder / FILE) as file:
                 self._file.seek(0)
                 shutil.copyfileobj(self._file, file)
@@ -223,7 +223,7 @@ def read_conditions(path: Path) -> Conditions:
     Raises:
         UsageError: There is no such file, or it cannot be read.
     """
-    path = path / FILE if path.is_dir() else path
+    path = path / FILE if is_dir(path) else path
     try:
         return Conditions(path)
     except FileNotFoundError:

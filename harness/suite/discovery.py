@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
+from typing import NoReturn
 
 from harness.core.errors import HarnessError
+from harness.core.files import is_dir, is_file
 from harness.core.resources import data_folder
 
 SUFFIX = ".scenario.yaml"
@@ -27,11 +30,16 @@ def discover(paths: Sequence[str | Path]) -> list[Path]:
         Files in the order of `paths`, each once.
 
     Raises:
-        UsageError: A path does not exist, or is a folder without scenarios.
+        UsageError: A path does not exist, is a folder without scenarios or one that cannot be
+            listed, or a file has a name that is not UTF-8.
     """
     found: dict[Path, Path] = {}
     for path in paths:
         for file in _files(Path(path)):
+            if not _is_utf8(file):
+                raise UsageError(
+                    f"the name of {os.fsencode(file)!r} is not UTF-8, as reports need it; rename it"
+                )
             found.setdefault(file.resolve(), file)
     return list(found.values())
 
@@ -49,9 +57,9 @@ def bundled_scenarios() -> dict[str, Path]:
 
 
 def _files(path: Path) -> list[Path]:
-    if path.is_file():
+    if is_file(path):
         return [path]
-    if path.is_dir():
+    if is_dir(path):
         files = _in_folder(path)
         if not files:
             raise UsageError(f"no *{SUFFIX} in folder '{path}'")
@@ -67,18 +75,38 @@ def _files(path: Path) -> list[Path]:
 
 
 def _in_folder(folder: Path) -> list[Path]:
-    files = (file for file in folder.rglob(f"*{SUFFIX}") if file.is_file())
-    return sorted(
-        file
-        for file in files
-        if not any(part.startswith(".") for part in file.relative_to(folder).parts)
-    )
+    """The scenario files below a folder, in the order of their names; hidden folders are left out.
+
+    Raises:
+        UsageError: A folder cannot be listed, or vanishes meanwhile.
+    """
+
+    def refuse(error: OSError) -> NoReturn:
+        raise UsageError(
+            f"scenarios in '{error.filename}' cannot be found: {error.strerror}; name files or"
+            " other folders"
+        ) from error
+
+    found: list[Path] = []
+    for place, folders, names in os.walk(folder, onerror=refuse):
+        folders[:] = [each for each in folders if not each.startswith(".")]
+        files = (Path(place, name) for name in names if name.endswith(SUFFIX))
+        found += (file for file in files if not file.name.startswith(".") and is_file(file))
+    return sorted(found)
+
+
+def _is_utf8(file: Path) -> bool:
+    try:
+        str(file).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _hint(path: Path, bundled: dict[str, Path]) -> str:
     siblings = [
         str(file)
-        for file in (path.parent.iterdir() if path.parent.is_dir() else ())
+        for file in (path.parent.iterdir() if is_dir(path.parent) else ())
         if _usable(file)
     ]
     near = get_close_matches(str(path), sorted(siblings) + sorted(bundled), n=1, cutoff=0.5)
@@ -88,4 +116,4 @@ def _hint(path: Path, bundled: dict[str, Path]) -> str:
 
 
 def _usable(file: Path) -> bool:
-    return file.name.endswith(SUFFIX) or (file.is_dir() and not file.name.startswith("."))
+    return file.name.endswith(SUFFIX) or (is_dir(file) and not file.name.startswith("."))

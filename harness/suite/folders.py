@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
 import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
+from harness.core.files import is_dir, path_exists
 from harness.core.resources import data_folder
 from harness.suite.discovery import SUFFIX, UsageError
+
+LONGEST_NAME = 200
+"""The longest name of a report's folder [bytes]."""
 
 
 def refuse_unwritable(root: Path) -> None:
@@ -18,11 +24,14 @@ def refuse_unwritable(root: Path) -> None:
         UsageError: It cannot.
     """
     place = root
-    while not place.exists() and place != place.parent:
+    while not path_exists(place) and place != place.parent:
         place = place.parent
     what = f"--report-dir: nothing can be written into '{root}'"
-    if not place.is_dir():
+    if not is_dir(place):
         raise UsageError(f"{what}, as '{place}' is a file; choose a folder")
+    longest = os.pathconf(place, "PC_NAME_MAX")
+    if any(len(os.fsencode(part)) > longest for part in root.parts):
+        raise UsageError(f"{what}: a name has at most {longest} bytes; choose a shorter one")
     try:
         Path(tempfile.mkdtemp(prefix=".armharness-", dir=place)).rmdir()
     except OSError as error:
@@ -37,13 +46,26 @@ def report_folders(files: Sequence[Path], root: Path) -> list[Path]:
     """
     folders: list[Path] = []
     for file in files:
-        folder = root / place_of(file)
+        place = place_of(file)
+        folder = root / place.parent / folder_name(place.name)
         number = 2
         while folder in folders:
-            folder = root / f"{place_of(file)}-{number}"
+            folder = root / place.parent / folder_name(f"{place.name}-{number}")
             number += 1
         folders.append(folder)
     return folders
+
+
+def folder_name(name: str) -> str:
+    """A name for the folder of a report: a long one is cut, and a hash keeps it apart from others.
+
+    File systems take 255 bytes, and the folder has a longer name while it is written.
+    """
+    content = os.fsencode(name)
+    if len(content) <= LONGEST_NAME:
+        return name
+    cut = content[: LONGEST_NAME - 9].decode("utf-8", "ignore")
+    return f"{cut}-{hashlib.sha256(content).hexdigest()[:8]}"
 
 
 @cache
@@ -51,7 +73,7 @@ def place_of(file: Path) -> Path:
     """A file's path below the working directory, or below the bundled scenarios, without suffix."""
     absolute = file.resolve()
     stem = absolute.name.removesuffix(SUFFIX).removesuffix(".yaml")
-    if (absolute.parent / stem).is_dir():
+    if is_dir(absolute.parent / stem):
         stem = absolute.name.removesuffix(".yaml")  # an adjacent folder has the plain name
     for base in (Path.cwd().resolve(), data_folder("scenarios").resolve()):
         if absolute.is_relative_to(base):

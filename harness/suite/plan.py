@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from harness.core.lazy import LazySequence
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
-from harness.suite.folders import report_folders
+from harness.suite.folders import folder_name, report_folders
 from harness.suite.header import ScenarioHeader, read_header
 from harness.suite.selection import selects
 from harness.suite.shards import PlannedFile, Shard, ShardRecord
@@ -272,7 +272,7 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         file,
         fixed.overrides,
         request.seed if case.sample is None else None,
-        folder / case.name if folder is not None and case.name else folder,
+        folder / folder_name(case.name) if folder is not None and case.name else folder,
         page=request.page,
         bag=request.bag,
         reporters=tuple(request.reporters),

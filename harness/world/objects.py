@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.errors import RobotError
+from harness.core.files import is_file
 from harness.core.geometry import (
     Box,
     Capsule,
@@ -128,7 +129,7 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
         return plate(spec.marker)
     if spec.mesh is not None:
         path = base_dir / spec.mesh.file
-        if not path.is_file():
+        if not is_file(path):
             raise ObjectUnusableError(f"there is no mesh file '{spec.mesh.file}' next to the file")
         scale = spec.mesh.scale
         factors = scale if isinstance(scale, tuple) else (scale, scale, scale)

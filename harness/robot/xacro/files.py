@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from harness.core.files import is_file
 from harness.language.files.source import Located, Source
 from harness.language.files.xml_file import XmlElement, parse_xml, read_bounded
 from harness.language.files.yaml_file import parse_ros_yaml, read_text
@@ -51,7 +52,7 @@ class Files:
         path = Path(self.absolute(name))
         if not self._packages.may_read(path):
             raise ExpressionError(self._packages.outside(name, path.resolve()))
-        if not path.is_file():
+        if not is_file(path):
             raise MissingFile(f"there is no file '{name}'")
         return path
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
+from harness.core.files import is_file, path_exists
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import XmlElement, read_xml
 
@@ -123,8 +124,8 @@ def model_file(folder: Path, element: XmlElement) -> Path:
         SpecError: The folder has no such file.
     """
     config = folder / "model.config"
-    if not config.is_file():
-        if (folder / "model.sdf").is_file():
+    if not is_file(config):
+        if is_file(folder / "model.sdf"):
             return folder / "model.sdf"
         element.refuse(f"the folder '{folder}' has neither model.config nor model.sdf")
     listed = [(_version(item.get("version")), item) for item in read_xml(config).findall("sdf")]
@@ -134,7 +135,7 @@ def model_file(folder: Path, element: XmlElement) -> Path:
     path = folder / name.text.strip()
     if not path.resolve().is_relative_to(folder.resolve()):
         name.refuse("the file is outside the model's folder")
-    if not path.is_file():
+    if not is_file(path):
         name.refuse(f"there is no file '{path}'")
     return path
 
@@ -145,6 +146,6 @@ def _version(text: str) -> tuple[int, ...]:
 
 def _exists(path: Path) -> bool:
     try:
-        return path.exists()
+        return path_exists(path)
     except OSError:  # a name too long for the file system
         return False

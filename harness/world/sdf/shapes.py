@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.errors import RobotError, SpecError
+from harness.core.files import is_file
 from harness.core.geometry import Mesh, Rgba
 from harness.core.spatial import SE3
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE
@@ -136,7 +137,7 @@ class ShapeReader:
         if uri is None:
             element.refuse("a <mesh> has a <uri>")
         path = self.model_path.find(uri.text.strip(), uri, folder)
-        if not path.is_file():
+        if not is_file(path):
             raise MissingFileError([uri.problem(f"`{uri.text.strip()}` is not a file")])
         scale = element.find("scale")
         values = (1.0, 1.0, 1.0) if scale is None else numbers_of(scale, 3)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from harness.core.errors import SpecError, collected
+from harness.core.files import is_dir
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.world.notes import Notes
 from harness.world.sdf.elements import note_unread_elements
@@ -184,7 +185,7 @@ class SdfTree:
         if uri is None:
             element.refuse("an <include> has a <uri>")
         path = self._model_path.find(uri.text.strip(), uri, parent.folder)
-        if path.is_dir():
+        if is_dir(path):
             path = model_file(path, uri)
         if path.resolve() in files:
             chain = " -> ".join(file.name for file in (*files, path))
