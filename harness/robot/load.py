@@ -30,6 +30,7 @@ from harness.robot.collision_shapes import with_collision_modes, with_collision_
 from harness.robot.compose import RobotPart, compose_robot
 from harness.robot.decomposed_meshes import decompose_meshes
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.import_robot import read_robot
@@ -271,7 +272,9 @@ def _read(folder: Path, facts: RobotYaml, variant: str, args: Mapping[str, Any])
     if unknown:
         raise robot_yaml_error(folder, unknown)
     refuse_incomplete_states(srdf, urdf, facts)
-    return RobotPart(name, facts, urdf, srdf, str(folder))
+    urdf = with_estimated_masses(urdf)
+    notes = (*urdf.notes, *srdf.notes)
+    return RobotPart(name, facts, urdf, srdf, str(folder), notes)
 
 
 def _text(path: Path) -> str:

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from harness.core.errors import RobotError, SpecError
+from harness.language.scenario import RobotSpec
 from harness.robot.forward_kinematics import robot_poses
+from harness.robot.load import load_robot
 from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
 
@@ -272,3 +274,24 @@ def test_an_arm_whose_efforts_are_a_placeholder_moves(tmp_path):
         """,
     )
     assert result.outcome == "passed", [step.message for step in result.steps]
+
+
+ROBOT_YAML = """
+robot: three
+kind: arm
+urdf: arm.urdf
+srdf: arm.srdf
+arm_group: manipulator
+tcp_link: tool
+"""
+
+
+def test_a_robot_of_a_folder_is_treated_alike(tmp_path):
+    folder = tmp_path / "three"
+    folder.mkdir()
+    (folder / "robot.yaml").write_text(ROBOT_YAML)
+    write_arm(folder, URDF.replace(TENSOR, "").replace(END, leaf("width", "tool") + END))
+    arm = load_robot(RobotSpec(model="three"), tmp_path)
+    assert link(arm, "upper").inertial.inertia[2, 2] == pytest.approx(0.03**2 / 2)
+    assert link(arm, "width").inertial.mass == 0.001
+    assert noted(arm, "no inertia is given for upper, lower, wrist")
