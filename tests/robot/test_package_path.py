@@ -229,3 +229,18 @@ def test_a_link_out_of_the_packages_is_not_followed(tmp_path):
     with pytest.raises(SpecError, match=re.escape(advice)):
         mesh(tmp_path, urdf)
     assert mesh(tmp_path, urdf, packages=[str(tmp_path)])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["a" * 300 + ".stl", "package://x/" + "ä" * 140 + ".stl", "package://" + "b" * 256 + "/a.stl"],
+)
+def test_a_name_that_no_file_can_have_is_refused_at_its_place(tmp_path, name):
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="a"><link name="b"><collision><geometry>\n<mesh filename="{name}"/>'
+        "</geometry></collision></link></robot>",
+        encoding="utf-8",
+    )
+    with pytest.raises(SpecError, match=r"is not there|not found") as caught:
+        load_robot(RobotSpec.model_validate({"urdf": "arm.urdf"}), tmp_path)
+    assert caught.value.problems[0].line == 2

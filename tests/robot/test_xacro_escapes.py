@@ -288,6 +288,13 @@ FILES = {
     "YAML with an endless unit": "<a b=\"${xacro.load_yaml('power.yaml')}\"/>",
     "YAML of aliases": "<a b=\"${xacro.load_yaml('aliases.yaml')}\"/>",
     "YAML of brackets": "<a b=\"${xacro.load_yaml('brackets.yaml')}\"/>",
+    "include of a long name": f'<xacro:include filename="{"a" * 300}"/>',
+    "include of a long path": f'<xacro:include filename="{"a/" * 3000}"/>',
+    "a package of a long name": f'<xacro:include filename="$(find {"a" * 300})/b"/>',
+    "YAML of a long name": "<a b=\"${xacro.load_yaml('a' * 300)}\"/>",
+    "YAML of a number": '<a b="${xacro.load_yaml(5)}"/>',
+    "YAML of a name that is none": "<a b=\"${xacro.load_yaml('a\\0b')}\"/>",
+    "YAML that is not UTF-8": "<a b=\"${xacro.load_yaml('latin.yaml')}\"/>",
     "the environment": '<a b="$(env HOME)"/>',
     "the current folder": '<a b="$(cwd)"/>',
     "a program": '<a b="$(id)"/>',
@@ -309,6 +316,7 @@ def test_no_other_file_or_program_is_reached(tmp_path, title):
     for name, text in YAML.items():
         (tmp_path / name).write_text(text)
     (tmp_path / "link.xacro").symlink_to("/etc/passwd")
+    (tmp_path / "latin.yaml").write_bytes(b"a: \xe9")
     refused(tmp_path, "b", FILES[title])
 
 

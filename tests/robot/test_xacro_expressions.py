@@ -152,6 +152,7 @@ def test_any_text_has_a_value_or_a_located_error(pieces, separator):
         ("dict([['a', 1]]).get('b', 5)", 5),
         ("python.zip(items, text)", [(1, "0"), (2, "."), (3, "1")]),
         ("python.enumerate(items, 1)", [(1, 1), (2, 2), (3, 3)]),
+        ("python.enumerate(items, start=2)", [(2, 1), (3, 2), (4, 3)]),
         ("items[::-1] + items[-1:]", [3, 2, 1, 3]),
         ("radians(180) == pi", True),
         ("math.factorial(5) * math.prod(items)", 720),

@@ -144,8 +144,8 @@ def _methods(owner: object, names: str) -> dict[str, Callable[..., Any]]:
     return {name: getattr(owner, name) for name in names.split()}
 
 
-def _lists(function: Callable[..., Iterable[Any]], *items: Any) -> list[Any]:
-    return list(function(*items))
+def _lists(function: Callable[..., Iterable[Any]], /, *items: Any, **named: Any) -> list[Any]:
+    return list(function(*items, **named))
 
 
 BUILTINS: dict[str, Any] = {

@@ -26,10 +26,10 @@ def xacro_names(texts: Substitution, files: Files, budget: Budget) -> Namespace:
         except (ExpressionError, TypeError) as error:
             raise ValueError(str(error)) from error
 
-    def load_yaml(name: str) -> Any:
-        if missing := texts.missing_in(name):
+    def load_yaml(filename: str) -> Any:
+        if missing := texts.missing_in(filename):
             raise ExpressionError(missing)
-        return files.load_yaml(name, number)
+        return files.load_yaml(filename, number)
 
     of_files = {
         "load_yaml": Function("load_yaml", load_yaml),
