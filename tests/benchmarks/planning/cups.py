@@ -130,9 +130,9 @@ def obstacles(kind: str, rng: np.random.Generator) -> tuple[list[Shape], float, 
         place = (0.45, 0.0, 0.2)
         shapes.append(Shape(Box((0.3, 0.1, 0.4)), SE3.from_xyz_rpy(place, (0, 0, 0))))
     if kind == "wall":
-        tall = rng.uniform(0.35, 0.5)
+        tall = rng.uniform(0.2, 0.35)
         shapes.append(
-            Shape(Box((0.7, 0.03, tall)), SE3.from_xyz_rpy((0.55, 0, tall / 2), (0,) * 3))
+            Shape(Box((0.4, 0.03, tall)), SE3.from_xyz_rpy((0.65, 0, tall / 2), (0,) * 3))
         )
     if kind == "shelf":
         low, depth, width = rng.uniform(0.15, 0.3), 0.3, 0.5
