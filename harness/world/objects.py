@@ -28,6 +28,7 @@ from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
 from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.robot.collision_shapes import collision_shapes
+from harness.robot.decomposed_meshes import PATIENCE, reported
 from harness.robot.mesh_file import shape_solid
 from harness.world.markers import plate, printed
 
@@ -57,7 +58,8 @@ def resolve_object(
     parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
     given = tuple(_shape(part, spec.color, base_dir) for part in parts)
     try:
-        shapes = collision_shapes(given, collision)
+        with reported(f"computing convex shapes of '{spec.name}'", after=PATIENCE):
+            shapes = collision_shapes(given, collision)
     except RobotError as error:
         raise ObjectUnusableError(str(error)) from error
     mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))
