@@ -20,6 +20,7 @@ from harness.strategies.positions import (
     near_limit_positions,
     near_singular_positions,
 )
+from harness.strategies.round_poses import round_poses_around
 from harness.strategies.tasks import manipulability
 
 JUMP = 0.2  # [rad or m] of a joint between two targets 2 mm apart, looked into
@@ -69,7 +70,7 @@ def _beyond_reach(trial: SolverTrial) -> st.SearchStrategy[Target]:
 
 
 def _around(trial: SolverTrial) -> st.SearchStrategy[Target]:
-    return poses_around(trial.chain)
+    return st.one_of(poses_around(trial.chain), round_poses_around(trial.chain, trial.task))
 
 
 def _reaches(trial: SolverTrial, target: Target) -> list[Flaw]:
