@@ -44,7 +44,7 @@ def test_the_page_of_a_suite_that_goes_on_counts_what_was_known(tmp_path):
     (tmp_path / "ball.scenario.yaml").write_text(ball(9))
     run(tmp_path).communicate()
     lines = (tmp_path / "reports/results.jsonl").read_bytes().splitlines(keepends=True)
-    (tmp_path / "reports/results.jsonl").write_bytes(b"".join(lines[:4]))
+    (tmp_path / "reports/results.jsonl").write_bytes(b"".join(lines[:5]))
     (tmp_path / "reports/index.html").unlink()
     running = run(tmp_path, "--resume")
     assert "running: 5 of 9 runs done" in first_page(tmp_path, running)
