@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,12 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import Problem, SpecError
 from harness.core.spatial import SE3
-from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import WORLD, Joint, Link, NamedState, fixed_joint
-from harness.robot.mjcf.files import missing_meshes, read_tree
+from harness.robot.mjcf.compiled import compile_mjcf, driven_trees
+from harness.robot.mjcf.files import read_tree
 from harness.robot.mjcf.joints import body_chain, mjcf_pose, pulled_pairs, with_mimics
 from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
@@ -55,8 +53,6 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     Raises:
         SpecError: A file cannot be read, or MuJoCo refuses it; at line and column where known.
     """
-    import mujoco  # here: other robots do not need it
-
     roots = read_tree(path, packages)
     elements = {
         (kind, item.get("name")): item
@@ -66,14 +62,7 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
         if item.get("name")
     }
     notes: list[str] = []
-    try:
-        spec = mujoco.MjSpec.from_file(str(path))
-        _remove_looks(spec)
-        folder = path.parent / (spec.meshdir or "")
-        _remove_missing(spec, missing_meshes(roots, folder, packages), notes)
-        model = spec.compile()
-    except ValueError as error:
-        raise SpecError([_problem(str(error), roots[0], path)]) from error
+    spec, model = compile_mjcf(path, roots, packages, notes)
     reader = _Reader(model, spec, path.parent, elements, notes)
     links, joints = reader.tree()
     ordered = in_tree_order(links, joints, str(path), elements)
@@ -81,45 +70,6 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     name = "" if name == UNNAMED else name
     urdf = Urdf(name, *ordered, tuple(reader.notes), elements)
     return Mjcf(urdf, reader.states({joint.name for joint in joints}), reader.excluded())
-
-
-def _remove_looks(spec: Any) -> None:
-    """Remove all textures and skins: pictures show plain colours, and files may be missing."""
-    for material in spec.materials:
-        material.textures = [""] * len(material.textures)
-    for look in [*spec.textures, *spec.skins]:
-        spec.delete(look)
-
-
-def _remove_missing(spec: Any, missing: Mapping[str, SpecError], notes: list[str]) -> None:
-    """Remove meshes that cannot be read and the geoms that show them.
-
-    Raises:
-        SpecError: A geom that touches has such a mesh.
-    """
-    touching = {geom.meshname for geom in spec.geoms if geom.contype or geom.conaffinity}
-    if wrong := [missing[name] for name in missing if name in touching]:
-        raise SpecError([problem for error in wrong for problem in error.problems])
-    shown = [geom for geom in spec.geoms if geom.meshname in missing]
-    for unread in (*shown, *(mesh for mesh in spec.meshes if mesh.name in missing)):
-        spec.delete(unread)
-    if missing:
-        reason = next(iter(missing.values())).problems[0].message
-        notes.append(f"meshes that are not drawn: {', '.join(missing)}; the first: {reason}")
-
-
-def _problem(message: str, root: XmlElement, path: Path) -> Problem:
-    """MuJoCo's message with the element, at the line that it names."""
-    lines = [line for line in message.splitlines() if line.strip()]
-    text = lines[0].removeprefix("Error: ").removeprefix("XML Error: ")
-    named = re.search(r"Element name '([^']+)'", message)
-    text += f": '{named[1]}'" if named else ""
-    found = re.search(r"line (\d+)", message)
-    source: Source = root.place.source
-    line = int(found[1]) if found else 0
-    excerpt = source.line(line)
-    column = len(excerpt) - len(excerpt.lstrip()) + 1 if line else 0
-    return Problem(str(path), line, column, f"MuJoCo: {text}", "", excerpt)
 
 
 @dataclass(eq=False)
@@ -246,16 +196,8 @@ def _passive_trees(model: Any) -> set[int]:
 
     They are a scene's drawers, doors and sliding objects.
     """
-    import mujoco
-
-    data = mujoco.MjData(model)
-    for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_transmission):
-        stage(model, data)
-    first, count = data.moment_rowadr, data.moment_rownnz
-    moved = [data.moment_colind[first[k] : first[k] + count[k]] for k in range(model.nu)]
-    trees = model.body_rootid[model.dof_bodyid]
-    driven = {int(trees[dof]) for dofs in moved for dof in dofs}
-    return {int(tree) for tree in trees} - driven if driven else set()
+    driven = driven_trees(model)
+    return {int(tree) for tree in model.body_rootid[model.dof_bodyid]} - driven if driven else set()
 
 
 def _with_own_dynamics(model: Any) -> int:

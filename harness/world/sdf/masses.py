@@ -3,55 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from harness.core.solids import is_inertia_of_a_body, point_inertia, solid_of
+from harness.core.solids import is_inertia_of_a_body, solid_of
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import ShapeSpec
 from harness.world.notes import Notes
+from harness.world.object_words import MassProperties, together
 from harness.world.objects import primitive
 from harness.world.sdf.elements import note_unread_elements
 from harness.world.sdf.values import is_true, number, pose_of
 
 WATER = 1000.0
 """Default density of an automatic inertial in SDF 1.11 [kg/m^3]."""
-
-
-@dataclass(frozen=True, eq=False)
-class MassProperties:
-    """Mass properties of a rigid body.
-
-    Attributes:
-        mass: The mass in kilograms [kg].
-        center: Centre of mass in the object's frame [m], shape (3,).
-        inertia: Inertia about the centre of mass, in the object's axes [kg m^2], shape (3, 3).
-    """
-
-    mass: float
-    center: FloatArray
-    inertia: FloatArray
-
-    def placed(self, pose: SE3) -> MassProperties:
-        """The properties transformed from a link's frame to the object's: T_object_link."""
-        turn = pose.rotation
-        return MassProperties(self.mass, pose.apply(self.center), turn @ self.inertia @ turn.T)
-
-
-def together(parts: Sequence[MassProperties]) -> MassProperties:
-    """Properties of several rigidly connected bodies (parallel axis theorem)."""
-    if len(parts) == 1:
-        return parts[0]
-    mass = sum(part.mass for part in parts)
-    center = sum((part.mass * part.center for part in parts), np.zeros(3)) / mass
-    inertia = np.zeros((3, 3))
-    for part in parts:
-        inertia += part.inertia
-        inertia += point_inertia(part.mass, part.center - center)
-    return MassProperties(mass, center, inertia)
 
 
 def link_masses(
