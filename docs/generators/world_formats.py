@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from harness.world.mjcf.elements import LEFT_OUT
+from harness.world.mjcf.shapes import SHAPES
 from harness.world.sdf.elements import WORDS
 from harness.world.sdf.model_path import VARIABLES
 
@@ -64,9 +66,33 @@ state the default (`static` false, gravity on). *Refused* elements are errors. A
 leads to a note that it is not known."""
 
 
+MJCF = """## MuJoCo scenes
+
+`world: scene.xml` reads an MJCF scene as MuJoCo compiles it, with its includes, defaults and
+angles. Files outside the scene's folder are read in the folders of `model_path` alone.
+
+| in | here | |
+| --- | --- | --- |
+| body without joints | read | a static object of the body's name |
+| body with a free joint | read | an object with mass and inertia, and all that is fixed to it |
+| geom of the world body | read | a static object, named after the geom or its type |
+| {shapes} | read | meshes of STL or OBJ files touch as their convex hulls |
+| other geoms | refused | only seen ones are ignored, with a note |
+| geom with `contype` and `conaffinity` 0 | read | seen only; groups from 3 on are not drawn |
+| friction | read | contacts take the smaller of two, MuJoCo's the larger; with a note |
+| colours, also of materials | read | textures are ignored |
+| gravity, time step | read | a step outside 0.1 to 20 ms is taken as 1 ms, with a note |
+| directional lights | read | other lights are ignored, with a note |
+| bodies with other joints | ignored | with what they carry, with a note |
+| bodies with actuators and their base | ignored | a robot: `robot: {{mjcf: ...}}` reads it |
+| mocap bodies | read | static, with a note |
+{rows}
+| `composite`, `flexcomp`, `extension`, `model` | refused | |"""
+
+
 COMMAND = """## Conversion to world files
 
-`harness import sdf FILE` and `harness import scene FILE` write an equivalent
+`harness import sdf FILE`, `import mjcf FILE` and `import scene FILE` write an equivalent
 [world file](scenario.md#world-file) that can be edited: `-o` names the output file,
 `--model-path` adds folders to search for models, and no file is overwritten without `--force`. A
 comment at the top lists the parts that are left out."""
@@ -117,6 +143,7 @@ Hundreds of files may be given at once; with a mistake in any of them nothing is
 def formats_page() -> str:
     """The page as Markdown."""
     variables = ", ".join(f"`{name}`" for name in VARIABLES)
+    rows = "\n".join(f"| `{tag}` | ignored | {why} |" for tag, why in LEFT_OUT.items())
     parts = [
         HEAD,
         MODELS.format(variables=variables),
@@ -124,6 +151,7 @@ def formats_page() -> str:
         AGREEMENT,
         WORDS_HEAD,
         sdf_table(),
+        MJCF.format(shapes=", ".join(SHAPES), rows=rows),
         SCENES,
         MESSAGES,
         COMMAND,

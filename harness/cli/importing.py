@@ -20,10 +20,10 @@ def add_options(command: argparse.ArgumentParser) -> None:
     """Add the options of `harness import`."""
     add = command.add_argument
     text = "the format of FILE"
-    add("kind", choices=("sdf", "scene", "srdf", "moveit"), help=text)
+    add("kind", choices=("sdf", "mjcf", "scene", "srdf", "moveit"), help=text)
     text = (
-        "an SDF world, a MoveIt .scene or an SRDF; for `moveit`, any number of PlanningScene and"
-        " MotionPlanRequest files in YAML"
+        "an SDF world, an MJCF scene, a MoveIt .scene or an SRDF; for `moveit`, any number of"
+        " PlanningScene and MotionPlanRequest files in YAML"
     )
     add("files", metavar="FILE", nargs="+", help=text)
     text = (
@@ -31,7 +31,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
         " for `moveit` the folder `scenarios` next to the first FILE)"
     )
     add("-o", "--output", metavar="FILE", help=text)
-    text = "look models up in this folder before GZ_SIM_RESOURCE_PATH"
+    text = "look models up in this folder before GZ_SIM_RESOURCE_PATH; an MJCF may read files in it"
     add("--model-path", metavar="DIR", action="append", default=[], help=text)
     add("--force", action="store_true", help="overwrite what exists")
     text = (
@@ -117,6 +117,7 @@ def _world(arguments: argparse.Namespace) -> int:
         raise UsageError(f"the name of a world file ends in .yaml, not '{target.name}'")
     if arguments.kind == "scene" and arguments.model_path:
         raise UsageError("--model-path is for SDF; a scene holds its meshes itself")
+    from harness.world.mjcf.scene import load_mjcf
     from harness.world.moveit_scene.scene import load_scene
     from harness.world.sdf.round_meshes import round_meshes
     from harness.world.sdf.world import load_sdf
@@ -129,7 +130,8 @@ def _world(arguments: argparse.Namespace) -> int:
         imported = scene.imported
         meshes = {target.parent / name: stl_bytes(mesh) for name, mesh in scene.meshes.items()}
     else:
-        imported = load_sdf(source, [Path(folder) for folder in arguments.model_path])
+        load = load_mjcf if arguments.kind == "mjcf" else load_sdf
+        imported = load(source, [Path(folder) for folder in arguments.model_path])
         meshes = {
             target.parent / mesh.name: mesh.read_bytes() for mesh in round_meshes(imported.world)
         }

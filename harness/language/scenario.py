@@ -206,12 +206,12 @@ class WorldChoice(SpecModel):
     short = "name"
 
     name: str = Field(
-        description="The name of a world under worlds/, or the path of a .yaml or .sdf file."
+        description="The name of a world under worlds/, or the path of a .yaml, .sdf or MJCF file."
     )
     model_path: tuple[str, ...] = Field(
         default=(),
         description="Folders where an SDF world's models are looked up and may be read;"
-        " before those of GZ_SIM_RESOURCE_PATH.",
+        " before those of GZ_SIM_RESOURCE_PATH. An MJCF scene may read files in them.",
     )
 
 

@@ -13,7 +13,7 @@ from harness.core.solids import point_inertia
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.poses import Pose
-from harness.language.world import FrictionSpec, InertiaSpec, ShapeSpec
+from harness.language.world import FrictionSpec, ShapeSpec
 from harness.world.plain_values import rounded, significant
 
 GEOMETRIES = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
@@ -66,7 +66,7 @@ def mass_words(whole: MassProperties) -> dict[str, Any]:
     return {
         "mass": significant(whole.mass),
         "center_of_mass": (x, y, z),
-        "inertia": InertiaSpec(**moments),
+        "inertia": moments,
     }
 
 
@@ -78,16 +78,8 @@ def look_words(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> dict[str, A
         shapes, visuals = colored, []
     friction = Counter(shape.friction for shape in shapes).most_common(1)[0][0] if shapes else None
     words["friction"] = _short(friction)
-    default = FrictionSpec()
     shapes = [
-        shape.model_copy(
-            update={
-                "friction": None
-                if (shape.friction or default) == (friction or default)
-                else _short(shape.friction or default)
-            }
-        )
-        for shape in shapes
+        shape.model_copy(update={"friction": _own(shape.friction, friction)}) for shape in shapes
     ]
     colors = {shape.color for shape in (*shapes, *visuals)}
     if len(colors) == 1:
@@ -125,6 +117,17 @@ def _colored(shapes: list[ShapeSpec], visuals: list[ShapeSpec]) -> list[ShapeSpe
 
 def _form(shape: ShapeSpec) -> tuple[object, ...]:
     return (shape.pose, *(getattr(shape, kind) for kind in GEOMETRIES))
+
+
+def _own(
+    friction: FrictionSpec | float | None, shared: FrictionSpec | float | None
+) -> FrictionSpec | float | None:
+    """The friction of a shape for a file; None where it is that of the object."""
+    default = FrictionSpec()
+    if (friction or default) == (shared or default):
+        return None
+    short = _short(friction)
+    return default.sliding if short is None else short
 
 
 def _short(friction: FrictionSpec | float | None) -> FrictionSpec | float | None:

@@ -217,3 +217,16 @@ def test_the_round_meshes_are_what_their_formulas_give():
     corners = read_triangles(Mesh(SPHERE)).vertices
     assert np.linalg.norm(corners, axis=1) == pytest.approx(np.ones(len(corners)), abs=1e-6)
     assert CONE.read_bytes() == stl_bytes(cone(1.0, 1.0))
+
+
+def test_a_collision_keeps_its_friction_of_1_next_to_collisions_of_others(tmp_path):
+    def collision(name, mu):
+        surface = f"<surface><friction><ode><mu>{mu}</mu></ode></friction></surface>"
+        shape = "<geometry><sphere><radius>0.1</radius></sphere></geometry>"
+        return f'<collision name="{name}">{shape}{surface}</collision>'
+
+    more = collision("c1", 0.5) + collision("c2", 1.0) + collision("c3", 0.0)
+    objects = {item.name: item for item in load(tmp_path, text_with("link", more)).world.objects}
+    assert objects["m"].friction == 0.5
+    named = {shape.name: shape.friction for shape in objects["m"].shapes}
+    assert (named["c1"], named["c2"], named["c3"]) == (None, 1.0, 0.0)

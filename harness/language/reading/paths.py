@@ -9,7 +9,7 @@ from harness.language.files.source import Entry, Located
 
 ROBOT_FILES = ("urdf", "xacro", "mjcf", "srdf", "kinematics")
 FOLDER_LISTS = ("packages", "model_path")
-WORLD_FILES = (".yaml", ".yml", ".sdf", ".world")
+WORLD_FILES = (".yaml", ".yml", ".sdf", ".world", ".xml")
 
 
 def paths_from(root: Located, old: Path, new: Path) -> Located:

@@ -1,0 +1,1 @@
+"""Imports MJCF scenes as worlds."""
