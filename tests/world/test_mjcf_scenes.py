@@ -242,10 +242,16 @@ def test_a_cabinet_stays_without_its_drawer_and_a_table_without_its_robot(tmp_pa
          "</mujoco>", 2, "large"),
         (f"<mujoco><worldbody>\n<body name='{'n' * 101}'><geom size='1'/></body></worldbody>"
          "</mujoco>", 2, "has more than 100 characters"),
+        ("<mujoco><worldbody>\n<geom size='1' pos='nan 0 0'/></worldbody></mujoco>", 2,
+         "pos of <geom> is not a number"),
+        ("<mujoco><option\n timestep='NaN'/></mujoco>", 2, "timestep of <option> is not a number"),
+        ("<mujoco><worldbody>\n<body><freejoint/><geom size='1' mass=' -nan '/></body></worldbody>"
+         "</mujoco>", 2, "mass of <geom> is not a number"),
         ("<mujoco><option gravity='0 0 1e12'/>\n<worldbody/></mujoco>", 1, "large"),
     ],
 )  # fmt: skip
-def test_mistakes_are_located(tmp_path, text, line, message):
+def test_mistakes_are_located(tmp_path, monkeypatch, text, line, message):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / "own.xml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SpecError) as caught:
@@ -253,6 +259,7 @@ def test_mistakes_are_located(tmp_path, text, line, message):
     problem = caught.value.problems[0]
     assert problem.line == line, problem
     assert message in f"{problem.message} {problem.hint}"
+    assert [each.name for each in tmp_path.iterdir()] == ["own.xml"]
 
 
 CELL = """<mujoco>

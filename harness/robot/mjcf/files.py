@@ -30,12 +30,15 @@ MOST: Mapping[str, Mapping[str, int]] = {
 The height of a cube's texture covers six sides.
 """
 
+NAMES = ("name", "class", "childclass", "model", "body", "mesh", "joint", "material")
+"""Attributes that are names, so that `nan` is one."""
+
 MOST_COPIES = 1000
 """Most copies by all `<replicate>` together."""
 
 UNUSED = {
-    "composite": "deformable bodies are not part of an arm",
-    "flexcomp": "deformable bodies are not part of an arm",
+    "composite": "deformable bodies are not read",
+    "flexcomp": "deformable bodies are not read",
     "extension": "plugins are not loaded",
     "model": "models of other files are not attached",
 }
@@ -117,7 +120,9 @@ def _check(item: XmlElement, key: str, folder: Path, packages: PackagePath) -> N
 
 
 def _refuse_unbounded(roots: Sequence[XmlElement]) -> None:
-    """Refuse elements that a robot does not need, and numbers above their limits.
+    """Refuse elements that are not read, numbers above their limits, and NaN.
+
+    MuJoCo writes a log into the current folder for a NaN, and takes it as left out.
 
     Raises:
         SpecError: An element or number is refused; at the element or its attribute.
@@ -126,6 +131,10 @@ def _refuse_unbounded(roots: Sequence[XmlElement]) -> None:
     for item in (item for root in roots for item in root.walk()):
         if item.tag in UNUSED:
             item.refuse(UNUSED[item.tag], f"remove the <{item.tag}>")
+        for name, text in item.attributes.items():
+            words = (word.lstrip("+-") for word in text.lower().split())
+            if name not in NAMES and "nan" in words:
+                item.refuse(f"{name} of <{item.tag}> is not a number: `{text[:40]}`", at=name)
         for name, most in MOST.get(item.tag, {}).items():
             if max(_numbers(item.get(name)), default=0.0) > most:
                 item.refuse(f"<{item.tag}> has a {name} above {most}", at=name)
