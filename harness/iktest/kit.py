@@ -22,6 +22,7 @@ from harness.iktest.convention import (
 )
 from harness.iktest.learned import Learned
 from harness.iktest.properties import BRANCHES, PROPERTIES, Property, within_reach
+from harness.iktest.region import separate_regions
 from harness.iktest.report import IkFinding, IkReport, PropertyResult, Speed, write_ik_report
 from harness.iktest.search import draw, shrink_case
 from harness.iktest.solver import InProcess, Isolated, Solver
@@ -201,7 +202,7 @@ class _Search:
         return Speed(float(median), float(slow), max(times), len(times))
 
     def _learn(self) -> None:
-        """How the function counts, and the error that all of its answers share."""
+        """How the function counts, the error that answers share, and the regions of mistakes."""
         trial = self._trial
         if trial.has_hung:
             return
@@ -214,6 +215,11 @@ class _Search:
                 learned, trial.other_convention = found, found.text(trial.chain)
         trial.count_by(learned.convention)
         trial.offset = learned.offset
+        pairs = self._answers(targets)
+        flaws = [trial.misses(*pair) for pair in pairs]
+        common = trial.offset.text() if trial.offset else ""
+        is_other = np.array([flaw is not None and flaw.kind != common for flaw in flaws], bool)
+        trial.regions = separate_regions(trial.chain, pairs, is_other)
 
     def _learned(
         self, convention: Convention, pairs: Sequence[tuple[Target, FloatArray]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from harness.core.types import FloatArray
 from harness.iktest.convention import Convention
@@ -19,7 +19,7 @@ class Learned:
 
     Attributes:
         convention: How the function counts.
-        offset: The error that all answers share; None without one.
+        offset: The error that many answers share; None without one.
         right: The number of answers that reach their targets.
         shifted: The number of answers that miss them by the offset.
         answers: The number of answers.
@@ -56,6 +56,8 @@ class Learned:
         is_wrong = [shift > tolerances[0] or turn > tolerances[1] for shift, turn in errors]
         misses = [each for each, wrong in zip(poses, is_wrong, strict=True) if wrong]
         offset = common_offset(task, misses)
+        if offset and len(misses) < len(pairs):
+            offset = replace(offset, is_everywhere=False)
         shifted = sum(offset.explains(task, *each) for each in misses) if offset else 0
         targets = len({id(target) for target, _ in pairs})
         return cls(convention, offset, len(pairs) - len(misses), shifted, len(pairs), targets)

@@ -1,4 +1,4 @@
-"""An error that is the same at every target: a wrong base height, a wrong tool, a turned base."""
+"""An error that many targets share: a wrong base height, a wrong tool, a turned base."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ LEAST_COUNT, LEAST_SHARE = 5, 0.15
 
 @dataclass(frozen=True, eq=False)
 class Offset:
-    """The error that all answers share.
+    """The error that many answers share.
 
     Attributes:
         frame: `world`, or `link`: the reached link's own.
+        is_everywhere: Whether no answer is right.
         error: Shift [m], then for poses the turn's rotation vector [rad], for positions with a
             pitch that of the pitch [rad]; shape (3,), (4,) or (6,).
     """
 
     frame: Literal["world", "link"]
     error: FloatArray
+    is_everywhere: bool = True
 
     def explains(self, task: Task, target: SE3, reached: SE3) -> bool:
         """Whether a miss shows this error."""
@@ -48,7 +50,8 @@ class Offset:
                 turn += " down" if self.error[3] > 0 else " up"
             parts = [*(parts if np.linalg.norm(self.error[:3]) > SAME else []), turn]
         where = "the world's axes" if self.frame == "world" else "the link's own axes"
-        return f"is {' and '.join(parts)} in {where}, at every target"
+        targets = "every target" if self.is_everywhere else "many targets"
+        return f"is {' and '.join(parts)} in {where}, at {targets}"
 
 
 def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | None:
@@ -68,14 +71,14 @@ def common_offset(task: Task, misses: Sequence[tuple[SE3, SE3]]) -> Offset | Non
         winner = int(np.argmax(counts))
         count = int(counts[winner])
         places = [misses[int(index)][0].translation for index in np.flatnonzero(alike[winner])]
-        is_common = count >= LEAST_SHARE * len(misses) and _different(places) >= LEAST_COUNT
+        is_common = count >= LEAST_SHARE * len(misses) and number_of_places(places) >= LEAST_COUNT
         is_common = is_common and np.abs(errors[winner]).max() > SAME
         if is_common and (best is None or count > best[0]):
             best = count, Offset(frame, np.median(errors[alike[winner]], axis=0))
     return None if best is None else best[1]
 
 
-def _different(places: Sequence[FloatArray]) -> int:
+def number_of_places(places: Sequence[FloatArray]) -> int:
     """How many of some points lie apart; Hypothesis tries a target and others next to it."""
     kept: list[FloatArray] = []
     for place in places:

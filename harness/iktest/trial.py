@@ -13,6 +13,7 @@ from harness.iktest.calls import CallOutcome
 from harness.iktest.contract import Value
 from harness.iktest.convention import Convention
 from harness.iktest.offset import Offset, numbers_text
+from harness.iktest.region import Region, coordinates
 from harness.iktest.solver import Solver
 from harness.robot.chain import Chain
 from harness.strategies.poses import Target
@@ -50,7 +51,8 @@ class SolverTrial:
         orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         convention: How the function counts, as far as it is known; answers are converted from it.
         other_convention: The flaw that the convention is, in words; empty for the contract's.
-        offset: Error that all answers share, once it is known.
+        offset: Error that many answers share, once it is known.
+        regions: Regions of different mistakes, once they are known.
         last_cost: Cost of the calls since it was last read.
         has_hung: Whether a call ever hung.
         outcomes: The outcomes of the queries since the list was cleared.
@@ -64,6 +66,7 @@ class SolverTrial:
     convention: Convention = field(init=False)
     other_convention: str = ""
     offset: Offset | None = None
+    regions: tuple[Region, ...] = ()
     has_hung: bool = False
     outcomes: list[CallOutcome] = field(default_factory=list[CallOutcome])
     _cost: int = 0
@@ -120,7 +123,9 @@ class SolverTrial:
         if self.offset is not None and self.offset.explains(self.task, target.pose, reached):
             kind = self.offset.text()
         else:
-            kind = "misses the position" if off else f"misses the {what}"
+            here = coordinates(self.chain, target, answer)
+            regions = (f" {each.text()}" for each in self.regions if each.contains(here))
+            kind = f"misses the {'position' if off else what}{next(regions, '')}"
         parts = [shift_text(target.pose, reached)] if off else []
         parts += [f"{what} off by {np.degrees(turn):.3g} deg"] if turned else []
         return self.flaw(kind, "; ".join(parts), target, answer)
