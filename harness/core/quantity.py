@@ -67,18 +67,6 @@ def distinct(first: float, second: float, text: Callable[[float, int], str]) -> 
     return next((pair for pair in pairs if pair[0] != pair[1]), usual)
 
 
-def share_of(value: object) -> float:
-    """A share from its text, such as `0.9` or `90 %`.
-
-    Raises:
-        ValueError: The value is not a share.
-    """
-    number, unit = split_quantity(value)
-    if unit not in ("", "%"):
-        raise ValueError(f"`{value}` is not a share")
-    return number / 100 if unit else number
-
-
 def constant_of(text: str) -> float | None:
     """The value of a constant expression such as `-pi/2` or `3*(pi - 1)`; None for other text.
 
