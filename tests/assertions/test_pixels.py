@@ -14,8 +14,8 @@ STATED = {
     "green": range(75, 165),
     "cyan": range(165, 200),
     "blue": range(200, 255),
-    "purple": range(255, 295),
-    "pink": range(295, 340),
+    "purple": range(255, 305),
+    "pink": range(305, 340),
 }
 """Whole degrees of each colour, as a colour wheel is divided."""
 

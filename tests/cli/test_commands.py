@@ -65,7 +65,6 @@ def test_the_version_is_the_packages(capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "COMMAND"),
         (["run"], "PATH"),
         (["run", "x", "--set", "robot"], "'robot' is not PATH=VALUE"),
         (["run", "x", "-j", "0"], "'0' is not a number from 1"),

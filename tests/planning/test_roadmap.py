@@ -34,7 +34,7 @@ def test_a_way_leads_from_the_start_to_the_goal_along_free_edges(trial, name):
 
 @pytest.mark.parametrize("name", ["PRMstar", "BITstar"])
 def test_a_planner_that_improves_its_way_uses_its_share_and_finds_shorter_ones(trial, name):
-    budgets = (10_000, 80_000)
+    budgets = (100_000, 800_000)
     quick, thorough = (
         [trial.search(name, seed, budget) for seed in range(3)] for budget in budgets
     )

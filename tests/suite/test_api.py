@@ -59,7 +59,7 @@ def run_with_plugins(folder):
 
 
 def test_the_step_and_the_expectations_of_the_page_run(tmp_path):
-    (step,) = (each for each in blocks_of_the_page("python") if "(Step):" in each)
+    (step,) = (each for each in blocks_of_the_page("python") if "class Remark(Step):" in each)
     (expectations,) = (each for each in blocks_of_the_page("python") if "(Predicate):" in each)
     scenario, expect = blocks_of_the_page("yaml")
     (tmp_path / "remarks.py").write_text(step, encoding="utf-8")

@@ -37,7 +37,8 @@ def test_planned_clearance_stands_next_to_the_actual_one(weak_grip):
     pair = tuple(found.values["pair"])
     row = round(found.time / weak_grip.timestep)
     assert found.values["actual"] == weak_grip.signals.clearances[pair][row]
-    assert found.values["planned"] == pytest.approx(found.values["actual"], abs=5e-4)
+    grip = 1.5e-3  # [m] how far the set point of the fingers is beyond where the object stops them
+    assert found.values["planned"] == pytest.approx(found.values["actual"], abs=grip)
 
 
 def test_coming_nearer_than_planned_can_be_forbidden_and_is_measured_against_the_plan(tmp_path):
