@@ -114,3 +114,8 @@ def test_folders_of_data_hold_short_pages_about_the_data(folder):
     for page in (ROOT / folder).rglob("*.md"):
         assert page.name == "README.md"
         assert len(page.read_text(encoding="utf-8").split()) < 500, name(page)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_no_page_has_both_sides_of_a_merge(page):
+    assert not re.search(r"(?m)^(<{7}|>{7}) ", page.read_text(encoding="utf-8"))
