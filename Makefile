@@ -1,13 +1,13 @@
 # Short names for those who have make; the README's commands need none.
 PYTHON ?= python3
 
-.PHONY: demo test lint sweep bench docs pictures
+.PHONY: demo test lint nightly bench docs pictures
 
 demo: .venv/.installed
 	.venv/bin/harness run scenarios/lessons/03_ur_sixteen_steps.scenario.yaml
 
 test: .venv/.installed
-	.venv/bin/python -m pytest
+	.venv/bin/python -m pytest -n auto
 
 lint: .venv/.installed
 	.venv/bin/ruff check .
@@ -15,8 +15,8 @@ lint: .venv/.installed
 	.venv/bin/pyright --pythonpath .venv/bin/python
 	.venv/bin/lint-imports
 
-sweep: .venv/.installed
-	.venv/bin/python -m pytest -m sweep
+nightly:
+	.ci/nightly
 
 bench: .venv/.installed
 	.venv/bin/python -m pytest -m benchmark -s

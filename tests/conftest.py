@@ -2,13 +2,15 @@
 
 import os
 import signal
+import sys
 
 import pytest
 from xdist.scheduler import LoadFileScheduling
 
-pytest_plugins = ["pytester", "tests.reporting.browser"]
+pytest_plugins = ["pytester", "tests.extras", "tests.reporting.browser"]
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 """Hundreds of tests start a process: each would compile the package again, half a second long."""
 
 

@@ -137,9 +137,9 @@ CORRUPTED = """
 Recordings can be wrong as well. `tests/assertions/test_mutations.py` traces the signals that each
 predicate reads; it shifts, freezes and drops each of them, fills it with NaN or with holes, mixes
 it with a second source, exchanges it with another from the start or from some moment on, and glues
-objects to the hand. No corrupted recording may pass (`pytest -m mutation`).
+objects to the hand. No corrupted recording may pass.
 `tests/assertions/test_metamorphic.py` shifts, turns and renames the world; no verdict may change
-(`pytest -m metamorphic`: 612 cases, and six in the physics with more friction, mass or grip).
+(612 cases, and six in the physics with more friction, mass or grip). `pytest -m nightly` runs all.
 
 A second opinion comes from a slow and simple judge (`tests/second_opinion`) that shares no code
 with the verdicts: geometry and a balance of forces from MuJoCo's raw states, on random pick, push,
@@ -159,7 +159,7 @@ how much the grip explains; it now counts the one and has no opinion of the othe
 | `collision` of hand and thing, hand and wall, held thing and wall | 77 | 1,624 |
 | `clearance` | 897 | 100 |
 
-Eight runs are part of each test run; `pytest -m second_opinion` compares a thousand.
+Eight runs are part of each test run; `pytest -m nightly` compares a thousand.
 
 The package's own tests notice errors in this code (`tests/code_mutation`): cosmic-ray changes one
 operator, number or name of expectations, observation, verification, digest or engine at random, and
@@ -170,7 +170,7 @@ of hand-made runs and files are compared now (`tests/approved.txt`). Of 110 muta
 (seed 20261128), which no test was written against, 103 were noticed and three change nothing:
 103 of 107, 96 %; of 200 of three later draws (seeds 20261201, 20261123, 20261123142) 189 were, and
 four change nothing. `survivors.yaml` lists what changes nothing, with the reasons.
-`pytest -m code_mutation` draws more; it requires 95 %.
+`pytest -m needs_mutation` draws more; it requires 95 %.
 """
 
 

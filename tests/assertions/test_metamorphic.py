@@ -107,7 +107,7 @@ def test_no_verdict_depends_on_how_the_world_is_described(pair):
     check_unchanged(*pair)
 
 
-@pytest.mark.metamorphic
+@pytest.mark.nightly
 @pytest.mark.parametrize("pair", ALL, ids=name_of)
 def test_no_verdict_depends_on_any_description_of_the_world(pair):
     check_unchanged(*pair)

@@ -51,7 +51,6 @@ from tests.assertions.picture_mutants import SUBJECTS, corrupted, seen_run
 from tests.assertions.signal_shifts import array_of, directions, shifted, with_array
 from tests.assertions.synthetic_run import lift_run
 
-pytestmark = pytest.mark.mutation
 MOMENTS = range(0, N, 10)
 HOLE = 30
 """Samples of a hole: 0.3 s, longer than any gap that a verdict bridges."""

@@ -87,8 +87,8 @@ def trivial(batch, _files):
     return BatchResult(tuple(results), "", "", 0.01)
 
 
+@pytest.mark.needs_cluster
 def test_the_memory_of_a_driver_does_not_grow_with_the_number_of_cases(tmp_path, print_row):
-    pytest.importorskip("ray")
     from harness.suite.ray_cluster import RayCluster
 
     count, heading = 100_000, "memory of the driver of a Ray cluster"
@@ -108,9 +108,9 @@ def test_the_memory_of_a_driver_does_not_grow_with_the_number_of_cases(tmp_path,
             print_row(heading, str(number), f"{memory:.0f} MB")
 
 
+@pytest.mark.needs_cluster
 def test_what_ray_costs_a_case(tmp_path, print_row):
     """In turns, so that a busy machine slows both alike; the cluster's start does not count."""
-    pytest.importorskip("ray")
     heading = "24 picks with two processes, in turns"
     print_row(heading, "", "wall a case", "cases", "goal")
     file = picks(tmp_path, 24)

@@ -72,7 +72,7 @@ def test_an_interrupted_suite_counts_what_is_missing(folder):
     assert "--resume" in lines
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("option", ["--no-report", "--in-process"])
 def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, number, option):

@@ -12,7 +12,7 @@ import yaml
 from tests.code_mutation.mutants import Mutant, draw
 from tests.code_mutation.workshop import ROOT, Workshop, WorkshopError
 
-pytestmark = pytest.mark.code_mutation
+pytestmark = pytest.mark.needs_mutation
 
 COUNT = int(os.environ.get("CODE_MUTANTS", "200"))
 SEED = int(os.environ.get("CODE_MUTANTS_SEED", "0"))

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from docs import ROOT
+from tests.extras import PREFIX, extra_of
 
 PAGE = (ROOT / "docs/guides/extending.md").read_text(encoding="utf-8")
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -66,14 +67,14 @@ def commands(section):
     return [line for block in COMMANDS.findall(SECTIONS[section]) for line in block.splitlines()]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("section", ["Add a step", "Add an expectation", "Add a planner"])
 def test_a_worked_example_runs(tree, section):
     printed = [carry_out(tree, command) for command in commands(section)]
     assert "passed" in printed[-1]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_what_was_added_reaches_every_output(tree):
     carry_out(tree, ".venv/bin/python -m docs.generate")
     assert "turn_joint  armharness  Turn one joint by an angle" in re.sub(
@@ -94,7 +95,7 @@ def test_what_was_added_reaches_every_output(tree):
     assert "turn_joint joint1 by 0.523599 rad" in explained
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_what_was_added_satisfies_the_checks_of_the_page(tree):
     checks = [command for command in commands("Checks") if "pyright" not in command]
     assert len(checks) == 3
@@ -102,7 +103,7 @@ def test_what_was_added_satisfies_the_checks_of_the_page(tree):
         carry_out(tree, command)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_an_expectation_without_evidence_is_named(tree):
     file = tree / "tests/expectations/test_tcp_height.py"
     text = file.read_text(encoding="utf-8")
@@ -122,8 +123,18 @@ def test_the_set_up_is_that_of_ci():
     assert set(commands("Set-up") + commands("Checks")) <= set(ci)
 
 
-def test_every_long_run_has_its_command():
+def test_the_page_names_every_marker_and_every_extra_that_a_test_needs():
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    markers = declared["tool"]["pytest"]["ini_options"]["markers"]
-    commands = re.findall(r"(?m)^python -m pytest -m (\w+)", SECTIONS["Long runs and timings"])
-    assert sorted(commands) == sorted(marker.partition(":")[0] for marker in markers)
+    markers = {
+        each.partition(":")[0] for each in declared["tool"]["pytest"]["ini_options"]["markers"]
+    }
+    extras = {extra_of(each) for each in markers if each.startswith(PREFIX)}
+    assert markers == {
+        "nightly",
+        "benchmark",
+        *(f"{PREFIX}{extra}".replace("-", "_") for extra in extras),
+    }
+    assert extras <= set(declared["project"]["optional-dependencies"])
+    section = SECTIONS["What a change has to pass"]
+    assert set(re.findall(r"-m (\w+)", section)) >= {"nightly", "benchmark"}
+    assert extras <= set(re.findall(r"`([\w-]+)`", section))

@@ -48,7 +48,7 @@ def test_the_commands_of_the_page_exist(capsys):
         assert all(word in said for word in words if word.startswith("--"))
 
 
-@pytest.mark.ros
+@pytest.mark.needs_ros
 def test_the_node_of_the_page_moves_the_arm(tmp_path):
     require_control_msgs()
     file, node = tmp_path / "turn.scenario.yaml", tmp_path / "student.py"

@@ -38,7 +38,7 @@ def test_a_slippery_box_is_not_lifted_and_a_rough_one_is(tmp_path):
     assert is_lifted(tmp_path, friction=1.0)
 
 
-@pytest.mark.metamorphic
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("what", "values"),
     [
@@ -56,7 +56,7 @@ def test_more_friction_less_mass_and_a_firmer_grip_lift_what_less_of_it_lifted(
     assert not lifted[0]
 
 
-@pytest.mark.metamorphic
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("what", "values"),
     [

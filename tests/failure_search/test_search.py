@@ -207,7 +207,7 @@ def test_a_single_parameter_at_a_larger_change_is_preferred_to_two(tmp_path):
     assert total == pytest.approx(0.95, abs=0.005)
 
 
-@pytest.mark.search
+@pytest.mark.nightly
 def test_a_thin_failure_is_found_within_100_runs_in_18_of_20_seeds(tmp_path):
     found = []
     for seed in range(1, 21):
@@ -222,7 +222,7 @@ def test_a_thin_failure_is_found_within_100_runs_in_18_of_20_seeds(tmp_path):
     assert sum(document["first_failure"] <= 100 for document in found) >= 18
 
 
-@pytest.mark.search
+@pytest.mark.nightly
 def test_an_interrupted_search_goes_on_with_resume(tmp_path):
     import signal
     import time

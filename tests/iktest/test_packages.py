@@ -7,7 +7,7 @@ import pytest
 from docs import ROOT
 from docs.generators.ik_packages import report_of
 
-pytestmark = pytest.mark.ik_packages
+pytestmark = pytest.mark.needs_ik_packages
 
 PAGE = (ROOT / "docs/reference/ik_packages.md").read_text(encoding="utf-8")
 

@@ -36,7 +36,7 @@ regions are not connected.)
 
 ```sh
 pip install -e '.[packages]'
-python -m pytest -m packages          # tries all arms, and compares them with this page
+python -m pytest -m needs_packages    # tries all arms, and compares them with this page
 python -m tests.packages.page         # tries all arms, and writes this page
 ```
 """

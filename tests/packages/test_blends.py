@@ -11,7 +11,7 @@ from harness.ports.motions import MotionSequence, SequenceItem
 from harness.robot.load import load_robot
 from tests.planning.lesson import Cell
 
-pytestmark = pytest.mark.packages
+pytestmark = pytest.mark.needs_packages
 
 FOLDER = "package://example-robot-data/robots"
 SLOW = PlanningOptions(velocity_scaling=0.2, acceleration_scaling=0.2)

@@ -18,7 +18,7 @@ from harness.recording.read_run import read_run
 from harness.robot.load import load_robot
 from harness.robot_tools.robot_source import RobotSource, load_source
 
-pytestmark = pytest.mark.packages
+pytestmark = pytest.mark.needs_packages
 
 PAGE = (ROOT / "docs/guides/bring_your_own_arm.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"(?ms)^```(sh|text|yaml)\n(.*?)^```$", PAGE)

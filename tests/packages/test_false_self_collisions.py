@@ -1,6 +1,6 @@
 """Convex parts of vendors' meshes against the exact surfaces, at random configurations.
 
-`pytest -m packages -s` prints the table.
+`pytest -m needs_packages -s` prints the table.
 """
 
 import sys
@@ -19,7 +19,7 @@ from tests.packages.arms import ARMS
 from tests.packages.trial import Trial, loaded
 from tests.planning.test_false_self_collisions import self_collision
 
-pytestmark = pytest.mark.packages
+pytestmark = pytest.mark.needs_packages
 SAMPLES = 10_000
 STATED = {
     "kinova_description/robots/kinova.urdf": 0.01,

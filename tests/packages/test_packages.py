@@ -9,7 +9,7 @@ from tests.packages.arms import ARMS, OTHERS, PACKAGES, WITH_GRIPPER
 from tests.packages.page import PAGE, RENEW, page, pick_row, row, written
 from tests.packages.trial import try_arm, try_pick
 
-pytestmark = pytest.mark.packages
+pytestmark = pytest.mark.needs_packages
 SUFFIXES = (".urdf", ".xacro", ".sdf")
 AGREEMENT = 1e-9  # [m], [kg]
 

@@ -51,7 +51,7 @@ The remaining error is in the record of the step (`ik_solutions`, `residual`) an
 goal's `tolerance`; otherwise the step fails with GOAL_CONSTRAINTS_VIOLATED. The poses in the table
 are reachable: they are those of joint positions of the arm.
 
-`{renew}` writes this page; `python -m pytest -m measured` compares it with new measurements.
+`{renew}` writes this page; `python -m pytest -m nightly` compares it with new measurements.
 """
 
 

@@ -41,7 +41,7 @@ def test_a_sample_of_random_reachable_goals_is_found(arm):
         assert success.residual < 1e-8
 
 
-@pytest.mark.measured
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("arm", ARMS)
 def test_the_rates_are_those_of_the_page(arm, kind):

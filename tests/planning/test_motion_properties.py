@@ -1,6 +1,6 @@
 """What each kind of motion promises, on problems that hypothesis makes up.
 
-A few of each in every run; a hundred of each with `python -m pytest -m properties`.
+A few of each in every run; a hundred of each with `python -m pytest -m nightly`.
 """
 
 from collections import Counter
@@ -372,7 +372,7 @@ def test_on_a_few_problems(name):
     holds(name, FEW)
 
 
-@pytest.mark.properties
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", PROPERTIES)
 def test_on_many_problems(name):
     holds(name, MANY)

@@ -211,7 +211,7 @@ def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
     assert (pytester.path / "reports/tests/test_holds-1/run.json").is_file()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_other_plugins_work_next_to_it(pytester, write):
     write(holds=HOLDS, again=HOLDS.replace("0.1 s", "0.15 s"))
     words = ["-n", "2", "--randomly-seed=7", "--timeout=120", "--html=report.html",

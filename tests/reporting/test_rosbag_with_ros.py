@@ -13,7 +13,7 @@ from mcap.reader import make_reader
 
 from tests.reporting.bag_runs import everything
 
-pytestmark = [pytest.mark.ros, pytest.mark.filterwarnings("ignore::DeprecationWarning")]
+pytestmark = [pytest.mark.needs_ros, pytest.mark.filterwarnings("ignore::DeprecationWarning")]
 WITHOUT_WHEELS = {"tf2_msgs", "moveit_msgs"}
 """There are no wheels of these messages; the other readers decode them."""
 
@@ -31,7 +31,7 @@ def ros():
         try:
             return importlib.import_module("rclpy.serialization")
         except ImportError as error:
-            pytest.fail(f"-m ros needs the extra `ros`: pip install -e '.[test,ros]': {error}")
+            pytest.fail(f"this needs the extra `ros`: pip install -e '.[test,ros]': {error}")
 
 
 def message_class(msgtype):

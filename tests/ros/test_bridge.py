@@ -157,7 +157,7 @@ def test_a_gripper_stalls_on_an_object(tmp_path):
         assert refused.is_accepted is False
 
 
-@pytest.mark.determinism
+@pytest.mark.nightly
 def test_twenty_recorded_sessions_replay_to_their_digests(tmp_path):
     """Each session has commands at other moments: the wall clock chose them."""
     digests = {}

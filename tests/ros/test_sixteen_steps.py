@@ -34,7 +34,7 @@ def motions_of(run):
     return motions
 
 
-@pytest.mark.ros
+@pytest.mark.needs_ros
 def test_the_sixteen_steps_earn_every_point_and_replay(tmp_path):
     require_control_msgs()
     planned = run_case(LESSON, report_dir=tmp_path / "planned", stills=False, page=False)

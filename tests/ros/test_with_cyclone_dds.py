@@ -11,7 +11,7 @@ from harness.ros.interfaces import CANCEL
 from harness.ros.rtps.graph import RtpsGraph
 from tests.ros.bridging import bridge, scenario
 
-pytestmark = pytest.mark.ros
+pytestmark = pytest.mark.needs_ros
 WITHOUT_MULTICAST = """<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32
 </MaxAutoParticipantIndex><Peers><Peer address="localhost"/></Peers></Discovery></Domain>

@@ -19,7 +19,7 @@ from harness.ros.domain import free_domain
 from harness.ros.handover import replay
 from tests.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
 
-pytestmark = pytest.mark.ros
+pytestmark = pytest.mark.needs_ros
 STUDENT = Path(__file__).parent / "student"
 
 

@@ -48,7 +48,7 @@ def test_a_few_random_runs_are_judged_as_the_simple_judge_does(number, tmp_path)
     assert counts, "nothing was compared"
 
 
-@pytest.mark.second_opinion
+@pytest.mark.nightly
 def test_many_random_runs_are_judged_as_the_simple_judge_does(tmp_path, capsys):
     counts, found = Counter(), []
     for number in range(MANY):

@@ -210,7 +210,7 @@ class Mouse:
             yield
 
 
-@pytest.mark.mouse  # the picture is drawn in software
+@pytest.mark.nightly  # the picture is drawn in software
 def test_handles_and_ghosts_are_used_with_the_mouse(browser, serve):
     served = serve()
     size, xyz = [0.06, 0.06, 0.06], [0.2, -0.15, 0.03]

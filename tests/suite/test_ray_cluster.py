@@ -16,7 +16,7 @@ import pytest
 
 from tests.suite.ball import RATE, ball
 
-pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.needs_cluster, pytest.mark.timeout(600)]
 
 ENVIRONMENT = {**os.environ, "RAY_AUTH_MODE": "disabled", "RAY_USAGE_STATS_ENABLED": "0"}
 

@@ -11,7 +11,7 @@ import pytest
 import harness
 from harness.core.resources import data_folder
 
-pytestmark = pytest.mark.determinism
+pytestmark = pytest.mark.nightly
 LESSONS = data_folder("scenarios") / "lessons"
 ARMS = ["ur3e", "ur5e"]
 CASES = {

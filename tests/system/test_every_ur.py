@@ -62,7 +62,7 @@ def test_an_arm_of_universal_robots_reaches_up_and_picks(tmp_path, model):
     check(tmp_path, model)
 
 
-@pytest.mark.sweep
+@pytest.mark.nightly
 @pytest.mark.parametrize("model", [name for name in UR_TYPES if name not in FEW])
 def test_every_other_arm_of_universal_robots_does_too(tmp_path, model):
     check(tmp_path, model)

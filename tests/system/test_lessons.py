@@ -87,7 +87,7 @@ def test_without_the_boxes_the_path_is_another(flagship, tmp_path):
     )
 
 
-@pytest.mark.sweep
+@pytest.mark.nightly
 @pytest.mark.parametrize("model", ["ur3e", "ur5e"])
 @pytest.mark.parametrize("seed", range(1, 21))
 def test_the_flagship_passes_on_both_arms_for_twenty_seeds(model, seed):
