@@ -1,7 +1,7 @@
 """How far bodies move, and how fast: by the points of their shapes, wherever their frames are.
 
 A body has moved as far as the point of it that moved furthest. Where it is, is its middle: the
-centre of its mass, which is the point that counts of a mesh. How high it is, is its lowest point
+centre of its mass. How high it is, is its lowest point
 (`lowest_points`). The origin of a frame is where a designer put it.
 """
 
@@ -15,10 +15,24 @@ import numpy as np
 from harness.assertions.poses import put_samples
 from harness.assertions.temporal import first_within, trailing_max
 from harness.assertions.window import object_record
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere, reach
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Shape,
+    Sphere,
+    bounds_of,
+    center_of,
+    reach,
+)
 from harness.core.pose_arrays import rotate, rotations_of, times_each, turn_between
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import TIME_RESOLUTION, ObjectRecord, Run
+
+SIGNS = np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T
+"""The corners of a cube about the origin, shape (8, 3)."""
 
 STILL = 0.05
 """What moves at no time during so long is still; a turning point of a swing is not [s]."""
@@ -54,9 +68,19 @@ class Balls:
 
 
 def balls_of(record: ObjectRecord) -> Balls:
-    """The balls of an object; its middle where it has no shape that is known, as of a mesh."""
+    """The balls of an object; its middle where it has no shape that is known.
+
+    For all hulls of meshes together the corners of the box along the object's axes stand: they have
+    hundreds of corners.
+    """
+    hulls = [shape for shape in record.shapes if _is_hull(shape)]
     found: list[tuple[FloatArray, float]] = []
+    if (bounds := bounds_of(hulls)) is not None:
+        lower, upper = bounds
+        found += [(corner, 0.0) for corner in np.where(SIGNS > 0, upper, lower)]
     for shape in record.shapes:
+        if _is_hull(shape):
+            continue
         centers, radius = _balls(shape.geometry)
         placed = [(shape.pose.apply(center), radius) for center in centers]
         found += placed or [(middle_of(record), 0.0)]
@@ -64,12 +88,15 @@ def balls_of(record: ObjectRecord) -> Balls:
     return Balls(np.array([center for center, _ in found]), np.array([r for _, r in found]))
 
 
+def _is_hull(shape: Shape) -> bool:
+    return isinstance(shape.geometry, Mesh) and shape.geometry.hull is not None
+
+
 def _balls(geometry: Geometry) -> tuple[FloatArray, float]:
     """Centres of balls of one radius whose hull holds a shape; none of planes and meshes."""
     match geometry:
         case Box(size=size):
-            signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
-            return signs * np.array(size), 0.0
+            return 0.5 * SIGNS * np.array(size), 0.0
         case Cylinder(radius=radius, length=length) | Capsule(radius=radius, length=length):
             return np.array([[0, 0, -length / 2], [0, 0, length / 2]]), radius
         case Sphere(radius=radius):
@@ -85,7 +112,7 @@ def middle_of(record: ObjectRecord) -> FloatArray:
     """
     if record.center_of_mass:
         return np.array(record.center_of_mass)
-    middles = [shape.pose.translation for shape in record.shapes]
+    middles = [center_of(shape) for shape in record.shapes]
     return np.mean(middles, axis=0) if middles else np.zeros(3)
 
 
@@ -95,14 +122,14 @@ def middles(record: ObjectRecord, poses: FloatArray) -> FloatArray:
 
 
 def lowest_points(record: ObjectRecord, poses: FloatArray) -> FloatArray:
-    """Height of an object's lowest point [m], shape (N,); of its middle where a shape is a mesh."""
+    """Height of an object's lowest point [m], shape (N,); of its middle where that is unknown."""
     lowest = [middles(record, poses)[:, 2]] if not record.shapes else []
     for shape in record.shapes:
         centre = poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2]
         vertical = np.stack(  # height of the shape's axes
             [rotate(poses[:, 3:], shape.pose.rotation[:, axis])[:, 2] for axis in range(3)], axis=1
         )
-        below = reach(shape.geometry, vertical)
+        below = reach(shape.geometry, -vertical)
         lowest.append(middles(record, poses)[:, 2] if below is None else centre - below)
     return np.min(lowest, axis=0)
 

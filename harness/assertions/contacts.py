@@ -275,7 +275,7 @@ def _is_physical(run: Run, name: str) -> bool:
 
 
 def _least_known_width(run: Run, name: str) -> float:
-    """The least width of an object [m]; 0 of a link, and of a mesh."""
+    """The least width of an object [m]; 0 of a link, and of triangles."""
     shapes = [record.shapes for record in run.objects if record.name == name]
     return least_thickness(shapes[0]) if shapes else 0.0
 

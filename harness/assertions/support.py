@@ -23,6 +23,7 @@ from harness.assertions.hold import gripped, weight_of
 from harness.assertions.poses import object_poses
 from harness.assertions.temporal import without_gaps
 from harness.assertions.window import NotObservable, object_record
+from harness.core.geometry import center_of
 from harness.core.pose_arrays import rotate
 from harness.core.types import BoolArray, FloatArray
 from harness.recording.run import Run
@@ -46,7 +47,7 @@ def is_below(run: Run, support: str, name: str) -> BoolArray:
     except NotObservable:
         return np.zeros(len(lowest), dtype=bool)
     centres = [
-        poses[:, 2] + rotate(poses[:, 3:], shape.pose.translation)[:, 2] for shape in record.shapes
+        poses[:, 2] + rotate(poses[:, 3:], center_of(shape))[:, 2] for shape in record.shapes
     ] or [poses[:, 2]]
     return np.min(centres, axis=0) <= lowest + SINKING
 

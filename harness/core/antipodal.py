@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Hull, Mesh, Shape, Sphere
 from harness.core.types import BoolArray, FloatArray
 
 GIVE = 0.003
@@ -69,7 +69,7 @@ def combined_press(presses: list[FloatArray]) -> FloatArray:
 
 
 def least_thickness(shapes: tuple[Shape, ...]) -> float:
-    """Thickness of the thinnest shape [m]; 0 where that is not known, as of a mesh."""
+    """Thickness of the thinnest shape [m]; 0 where that is not known, as of triangles."""
     return min((_thickness(shape.geometry) for shape in shapes), default=0.0)
 
 
@@ -81,5 +81,7 @@ def _thickness(geometry: Geometry) -> float:
             return min(2 * radius, length)
         case Sphere(radius=radius) | Capsule(radius=radius):
             return 2 * radius
+        case Mesh(collision="hull" | "parts", hull=Hull(thickness=thickness)):
+            return thickness
         case _:
             return 0.0

@@ -54,6 +54,23 @@ class Plane:
 
 
 @dataclass(frozen=True)
+class Hull:
+    """The convex hull of a mesh, or of one of its convex parts, in the mesh's frame.
+
+    Attributes:
+        corners: The corners, in any order [m].
+        volume: The volume that it encloses [m^3].
+        centroid: The centre of the volume [m].
+        thickness: The least distance of a face from the corner farthest from it [m].
+    """
+
+    corners: tuple[tuple[float, float, float], ...]
+    volume: float
+    centroid: tuple[float, float, float]
+    thickness: float
+
+
+@dataclass(frozen=True)
 class Mesh:
     """A triangle mesh file (STL, OBJ, DAE, PLY, GLB), its convex hull, or one of its convex parts.
 
@@ -64,12 +81,14 @@ class Mesh:
         scale: The factors from its coordinates to metres.
         collision: How it collides; None before that is decided, and for what is only seen.
         part: The number of the convex part; None for the whole mesh.
+        hull: Its convex hull; None for links, for what is only seen, and in older runs.
     """
 
     path: Path
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     collision: CollisionMode | None = None
     part: int | None = None
+    hull: Hull | None = field(default=None, compare=False, repr=False)
 
 
 Geometry = Box | Cylinder | Sphere | Capsule | Plane | Mesh
@@ -109,10 +128,10 @@ class Shape:
 
 
 def reach(geometry: Geometry, directions: FloatArray) -> FloatArray | None:
-    """How far a shape reaches from its centre along directions [m], shape (N,).
+    """How far a shape reaches from its origin along directions [m], shape (N,).
 
     Args:
-        geometry: The shape; of planes and meshes the result is None.
+        geometry: The shape; of planes and of meshes without a hull the result is None.
         directions: Unit vectors in the shape's frame, shape (N, 3).
     """
     along = np.abs(directions)
@@ -126,12 +145,43 @@ def reach(geometry: Geometry, directions: FloatArray) -> FloatArray | None:
             return np.full(len(along), radius)
         case Capsule(radius=radius, length=length):
             return 0.5 * length * along[:, 2] + radius
+        case Mesh(hull=Hull(corners=corners)):
+            farthest = np.full(len(directions), -np.inf)
+            for corner in corners:  # one after the other: N times hundreds would be much memory
+                np.maximum(farthest, directions @ np.array(corner), out=farthest)
+            return farthest
         case Plane() | Mesh():
             return None
 
 
+def bounds_of(shapes: Iterable[Shape]) -> tuple[FloatArray, FloatArray] | None:
+    """Lower and upper corner of the box along a body's axes that holds shapes [m], (3,) each.
+
+    None without shapes, and where one reaches an unknown distance, as a plane does.
+    """
+    lows: list[FloatArray] = []
+    highs: list[FloatArray] = []
+    for shape in shapes:
+        below = reach(shape.geometry, -shape.pose.rotation)
+        above = reach(shape.geometry, shape.pose.rotation)
+        if below is None or above is None:
+            return None
+        lows.append(shape.pose.translation - below)
+        highs.append(shape.pose.translation + above)
+    return (np.min(lows, axis=0), np.max(highs, axis=0)) if lows else None
+
+
+def center_of(shape: Shape) -> FloatArray:
+    """The centre of a shape's volume in the body's frame [m], shape (3,)."""
+    match shape.geometry:
+        case Mesh(hull=Hull(centroid=centroid)):
+            return shape.pose.apply(np.array(centroid))
+        case _:
+            return shape.pose.translation
+
+
 def bounding_radius(shape: Shape) -> float:
-    """Radius of the bounding sphere about the body's origin [m]; inf for planes and meshes."""
+    """Radius of the bounding sphere about the body's origin [m]; inf where `reach` is None."""
     offset = float(np.linalg.norm(shape.pose.translation))
     match shape.geometry:
         case Box(size=size):
@@ -142,6 +192,8 @@ def bounding_radius(shape: Shape) -> float:
             return offset + radius
         case Capsule(radius=radius, length=length):
             return offset + radius + 0.5 * length
+        case Mesh(hull=Hull(corners=corners)):
+            return float(np.linalg.norm(shape.pose.apply(np.array(corners)), axis=1).max())
         case Plane() | Mesh():
             return float("inf")
 
@@ -152,7 +204,7 @@ def undivided(shapes: Iterable[Shape]) -> tuple[Shape, ...]:
     for shape in shapes:
         if isinstance(shape.geometry, Mesh) and shape.geometry.part is not None:
             if shape.geometry.part == 0:
-                whole.append(replace(shape, geometry=replace(shape.geometry, part=None)))
+                whole.append(replace(shape, geometry=replace(shape.geometry, part=None, hull=None)))
         else:
             whole.append(shape)
     return tuple(whole)

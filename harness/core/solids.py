@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Sphere
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
 from harness.core.types import FloatArray
 
 TRIANGLE_SLACK = 1e-3
@@ -27,6 +27,14 @@ def is_inertia_of_a_body(tensor: FloatArray) -> bool:
 def point_inertia(mass: float, offset: FloatArray) -> FloatArray:
     """Inertia of a point mass at an offset (3,) [m]: the term of the parallel axis theorem."""
     return mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+
+
+def volume_of(geometry: Geometry) -> float | None:
+    """Volume [m^3], of a mesh that of its hull; None for planes and meshes without one."""
+    if isinstance(geometry, Mesh):
+        return None if geometry.hull is None else geometry.hull.volume
+    solid = solid_of(geometry)
+    return None if solid is None else solid[0]
 
 
 def solid_of(geometry: Geometry) -> tuple[float, FloatArray] | None:

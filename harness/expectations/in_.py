@@ -21,9 +21,9 @@ from harness.assertions.poses import (
 from harness.assertions.text import amount, amounts
 from harness.assertions.window import NotObservable, Window, object_record
 from harness.cell.scope import At
-from harness.core.geometry import Shape, reach
+from harness.core.geometry import Mesh, Shape, bounds_of, center_of
 from harness.core.pose_arrays import angle_between, relative, rotate
-from harness.core.solids import solid_of
+from harness.core.solids import volume_of
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.language.base import AngleBetween, Name
@@ -87,7 +87,7 @@ class In(ObjectPredicate):
             record, (lower, upper), content, window.cut(relative(container, poses))
         )
         lean = window.cut(angle_between(rotate(container[:, 3:], UP), UP))
-        with suppress(NotObservable):  # of a mesh it is not known what it surrounds
+        with suppress(NotObservable):  # of triangles it is not known what they surround
             bounds = outline(content)
             around = _inside(content, bounds, record, window.cut(relative(poses, container)))[0]
             if np.prod(bounds[1] - bounds[0]) > np.prod(upper - lower):
@@ -128,20 +128,13 @@ def outline(record: ObjectRecord) -> tuple[FloatArray, FloatArray]:
     """Lower and upper corner of the box along an object's axes that holds its shapes [m].
 
     Raises:
-        NotObservable: Its extent is not known from the record: it has no shape, a plane or a mesh.
+        NotObservable: It has no shape, a plane, or in an older run a mesh.
     """
     if not record.shapes:
         raise NotObservable(f"no collision shape of '{record.name}' was recorded")
-    corners = [_corners(shape, record.name) for shape in record.shapes]
-    lows, highs = zip(*corners, strict=True)
-    return np.min(lows, axis=0), np.max(highs, axis=0)
-
-
-def _corners(shape: Shape, name: str) -> tuple[FloatArray, FloatArray]:
-    half = reach(shape.geometry, shape.pose.rotation)  # along each axis of the object
-    if half is None:
-        raise NotObservable(f"the extent of '{name}' is not known: it is no box or cylinder")
-    return shape.pose.translation - half, shape.pose.translation + half
+    if (bounds := bounds_of(record.shapes)) is None:
+        raise NotObservable(f"the extent of '{record.name}' is not recorded")
+    return bounds
 
 
 def _inside(
@@ -162,7 +155,7 @@ def _inside(
         NotObservable: The share of a mesh in the object's volume is not known.
     """
     lower, upper = bounds
-    centres = [shape.pose.translation for shape in content.shapes] or [np.zeros(3)]
+    centres = [center_of(shape) for shape in content.shapes] or [np.zeros(3)]
     volumes = _volumes(content)
     shares = volumes / volumes.sum()
     points = [poses[:, :3] + rotate(poses[:, 3:], centre) for centre in centres]
@@ -176,16 +169,16 @@ def _inside(
 
 
 def _volumes(record: ObjectRecord) -> FloatArray:
-    """Volume of each shape of an object [m³]; equal ones where all of them are meshes.
+    """Volume of each shape of an object [m³]; equal ones where none is known.
 
     Raises:
-        NotObservable: It has meshes, whose volume is not recorded, next to other shapes.
+        NotObservable: Some are not known: an older run has no volumes of meshes.
     """
-    solids = [solid_of(shape.geometry) for shape in record.shapes]
-    known = [solid[0] for solid in solids if solid is not None]
-    if known and len(known) < len(solids):
+    volumes = [volume_of(shape.geometry) for shape in record.shapes]
+    known = [volume for volume in volumes if volume is not None]
+    if known and len(known) < len(volumes):
         raise NotObservable(f"the volumes of the meshes of '{record.name}' are not recorded")
-    return np.array(known or [1.0] * max(1, len(solids)))
+    return np.array(known or [1.0] * max(1, len(volumes)))
 
 
 def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:
@@ -194,7 +187,13 @@ def _enclosed(record: ObjectRecord, points: FloatArray) -> FloatArray:
     Args:
         record: The record of the container.
         points: The points in the container's frame [m], shape (n, 3).
+
+    Raises:
+        NotObservable: It collides as triangles, whose shape is not recorded.
     """
+    for shape in record.shapes:
+        if isinstance(shape.geometry, Mesh) and shape.geometry.collision == "exact":
+            raise NotObservable(f"what the triangles of '{record.name}' surround is not recorded")
     down, *around = (
         np.any([_is_ahead(shape, points, way) for shape in record.shapes], axis=0)
         for way in (-Z, X, -X, Y, -Y)
@@ -207,16 +206,23 @@ def _is_ahead(shape: Shape, points: FloatArray, way: FloatArray) -> BoolArray:
     """Points from which a ray along a direction meets the box around a shape, shape (n,)."""
     starts = (points - shape.pose.translation) @ shape.pose.rotation
     ray = way @ shape.pose.rotation
-    half = _half_sizes(shape)
+    lower, upper = _own_bounds(shape)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ends = np.sort([(side * half - starts) / ray for side in (-1, 1)], axis=0)
-    outside = np.abs(starts) > half
+        ends = np.sort([(side - starts) / ray for side in (lower, upper)], axis=0)
+    outside = (starts < lower) | (starts > upper)
     along = np.abs(ray) > PARALLEL
     enters = np.where(along, ends[0], -np.inf).max(axis=1)
     leaves = np.where(along, ends[1], np.inf).min(axis=1)
     return (leaves >= np.maximum(enters, 0.0)) & ~(outside & ~along).any(axis=1)
 
 
-def _half_sizes(shape: Shape) -> FloatArray:
-    """Half sizes of the box around a shape, along the shape's own axes [m], shape (3,)."""
-    return _corners(replace(shape, pose=SE3.identity()), "")[1]
+def _own_bounds(shape: Shape) -> tuple[FloatArray, FloatArray]:
+    """Corners of the box around a shape, along the shape's own axes [m], shape (3,) each.
+
+    Raises:
+        NotObservable: Its extent is not known from the record.
+    """
+    bounds = bounds_of([replace(shape, pose=SE3.identity())])
+    if bounds is None:
+        raise NotObservable("the extent of a shape is not recorded")
+    return bounds

@@ -62,9 +62,9 @@ class Lifted(ObjectPredicate):
     opposite sides for 0.1 s, as `grasped` defines it; on average over that time the hand carries at
     least half of its weight, friction included; and within it the object moves in the hand by at
     most 5 mm and 0.1 rad. What is struck, bounces, or is thrown through the open hand fails one of
-    them. The height is that of the object's lowest point (the centre of mass of meshes) above where
-    it was at the start, as far as the motion of the hand has given it since the hold began. An
-    object that lies on fingers that do not press it is not lifted unless `cradled` says so.
+    them. The height is that of the object's lowest point above where it was at the start, as far as
+    the motion of the hand has given it since the hold began. An object that lies on fingers that do
+    not press it is not lifted unless `cradled` says so.
     """
 
     judged = "eventually"

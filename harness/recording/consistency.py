@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from itertools import chain
 
 import numpy as np
 
+from harness.core.geometry import Mesh
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import BY_NAME, BY_PAIR
 from harness.recording.npz_file import ArrayHeader
 from harness.recording.robot_record import MeshRecord, RobotRecord
-from harness.recording.run import Run
+from harness.recording.run import ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 
@@ -83,11 +85,25 @@ def run_flaws(run: Run) -> Iterator[Inconsistency]:
     yield from _robot_flaws(run.robot)
     for index, record in enumerate(run.objects):
         yield from _length(f"objects[{index}].pose", record.pose, 7, may_be_empty=True)
+        yield from _hull_flaws(f"objects[{index}]", record)
     for index, record in enumerate(run.attachments):
         yield from _length(f"attachments[{index}].pose_in_link", record.pose_in_link, 7)
     for index, step in enumerate(run.steps):
         yield from _step_flaws(f"steps[{index}]", step, len(times))
     yield from _camera_flaws(run)
+
+
+def _hull_flaws(key: str, record: ObjectRecord) -> Iterator[Inconsistency]:
+    for number, shape in enumerate(record.shapes):
+        hull = shape.geometry.hull if isinstance(shape.geometry, Mesh) else None
+        if hull is None:
+            continue
+        numbers = [*chain(*hull.corners), *hull.centroid, hull.thickness]
+        if not hull.corners or not np.isfinite(numbers).all() or not 0 < hull.volume < np.inf:
+            yield (
+                f"{key}.shapes[{number}].geometry.hull",
+                "expected corners, a volume above 0 and finite numbers",
+            )
 
 
 def _robot_flaws(robot: RobotRecord) -> Iterator[Inconsistency]:

@@ -13,14 +13,14 @@ import logging
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from harness.core.errors import RobotError
-from harness.core.geometry import Mesh, Shape
+from harness.core.geometry import Hull, Mesh, Shape
 from harness.core.inputs import read_input
 from harness.core.memory import limited_memory
 from harness.core.solids import solid_of
@@ -263,6 +263,41 @@ def hull_solid(geometry: Mesh) -> tuple[float, FloatArray, FloatArray]:
     hull = convex_hull(geometry)
     inertia = np.array(hull.computeMomentofInertiaRelatedToCOM(), dtype=float)
     return float(hull.computeVolume()), np.array(hull.computeCOM()), (inertia + inertia.T) / 2
+
+
+def with_hull(shape: Shape) -> Shape:
+    """The shape; a mesh with its hull, unless it collides as triangles that enclose nothing.
+
+    Raises:
+        RobotError: As `convex_hull`.
+    """
+    mesh = shape.geometry
+    if not isinstance(mesh, Mesh):
+        return shape
+    try:
+        return replace(shape, geometry=replace(mesh, hull=_measured_hull(mesh)))
+    except RobotError:
+        if mesh.collision != "exact":
+            raise
+        return shape
+
+
+@lru_cache(maxsize=512)
+def _measured_hull(geometry: Mesh) -> Hull:
+    hull, corners = convex_hull(geometry), hull_points(geometry)
+    faces = [hull.polygons(number) for number in range(hull.num_polygons)]
+    first, second, third = (corners[[face[k] for face in faces]] for k in range(3))
+    normals = np.cross(second - first, third - first)
+    lengths = np.linalg.norm(normals, axis=1)
+    is_face = lengths > 0
+    normals = normals[is_face] / lengths[is_face, None]
+    heights = np.abs(corners @ normals.T - np.einsum("ij,ij->i", first[is_face], normals))
+    return Hull(
+        corners=tuple((float(x), float(y), float(z)) for x, y, z in corners),
+        volume=float(hull.computeVolume()),
+        centroid=tuple(np.array(hull.computeCOM()).tolist()),
+        thickness=float(heights.max(axis=0).min()),
+    )
 
 
 def shape_solid(shape: Shape) -> tuple[float, FloatArray, FloatArray] | None:

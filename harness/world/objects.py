@@ -29,7 +29,7 @@ from harness.core.world import Light, World, WorldObject
 from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.decomposed_meshes import PATIENCE, reported
-from harness.robot.mesh_file import shape_solid
+from harness.robot.mesh_file import shape_solid, with_hull
 from harness.world.markers import plate, printed
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
@@ -59,7 +59,7 @@ def resolve_object(
     given = tuple(_shape(part, spec.color, base_dir) for part in parts)
     try:
         with reported(f"computing convex shapes of '{spec.name}'", after=PATIENCE):
-            shapes = collision_shapes(given, collision)
+            shapes = tuple(map(with_hull, collision_shapes(given, collision)))
     except RobotError as error:
         raise ObjectUnusableError(str(error)) from error
     mass, center, inertia = 0.0, np.array(spec.center_of_mass, dtype=float), np.zeros((3, 3))

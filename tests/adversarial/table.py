@@ -99,7 +99,8 @@ LIMITS = """
   moves by more than its own and the other's least width in one, or a link overlaps an object by
   more than 1 mm without a recorded contact, `never: in_contact` and `never: collision` carry the
   warning `contact may be missed`. Distances are interpolated there, to within 2 mm: what is thinner
-  than that together with a link may pass without a warning, and objects of meshes have none.
+  than that together with a link may pass without a warning, and an object of triangles
+  (`collision: exact`) has none of its own motion.
 - **Resting** is slow motion, at most 5 mm/s and 0.05 rad/s for 50 ms, not a proof of equilibrium:
   what creeps more slowly rests.
 - **`sees`** reads pictures. What a transparent body covers is hidden in the segmentation
@@ -120,7 +121,7 @@ LIMITS = """
   the resultant, and friction is no part of it.
 - **Supports by friction** carry nothing for `placed` and `on`: what a vice clamps rests on nothing.
 - **Origins**: a formula's x(), y(), z() and speed() are those of the object's origin. `in` counts
-  shapes by their middles, and of meshes nothing but the centre of mass and the origin is known.
+  shapes by their middles; of a mesh that collides as triangles it is not known what they surround.
 - **Forces below 0.001 N** are no contact: what weighs less than 0.2 g rests on nothing, and touches
   nothing where it lies.
 - **Two objects in one grip** touch one finger each: neither is between the fingers, so that neither
