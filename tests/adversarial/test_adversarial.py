@@ -23,6 +23,10 @@ from tests.adversarial.table import (
     without_numbers,
 )
 
+TITLES = {scene.title for scene in ALL_SCENES}
+REPRESENTATIVES = {title for rule in RULES for title in (rule.fires[0], rule.silent[0])} & TITLES
+"""Of each rule a scene in which it fires, and one in which it must not."""
+
 
 @pytest.fixture(scope="module")
 def run_of(tmp_path_factory):
@@ -37,6 +41,7 @@ def run_of(tmp_path_factory):
     return run
 
 
+@pytest.mark.nightly(but=REPRESENTATIVES)
 @pytest.mark.parametrize("scene", ALL_SCENES, ids=lambda scene: scene.title)
 def test_the_naive_check_is_fooled_and_the_harness_is_not(scene, run_of):
     result, run = run_of(scene)
@@ -119,6 +124,7 @@ def exit_code_in(tmp_path_factory):
     return exit_code
 
 
+@pytest.mark.nightly(but=["ASCII alone"])
 @pytest.mark.parametrize("scene", ENVIRONMENTS, ids=lambda scene: scene.title)
 def test_a_run_goes_on_in_any_environment(scene, exit_code_in):
     assert exit_code_in(scene) == 1, "its expectation fails"
@@ -134,6 +140,7 @@ def test_every_rule_has_three_scenes_and_one_in_which_it_must_not_fire(rule):
     assert rule.silent
 
 
+@pytest.mark.nightly
 def test_the_page_of_verdicts_is_current(run_of, grade_of, said_of, exit_code_in, tmp_path):
     said = page(
         [row_of(scene, run_of(scene)[0]) for scene in ALL_SCENES],

@@ -414,6 +414,7 @@ def test_no_corrupted_picture_goes_on_passing(kind):
     assert survived == []
 
 
+@pytest.mark.nightly(only=["until", "lifted", "placed", "in", "grasped"])
 @pytest.mark.parametrize("case", NAMED)
 def test_no_corrupted_signal_goes_on_passing(case):
     found, tried = survivors(case)

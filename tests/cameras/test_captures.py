@@ -37,6 +37,7 @@ def depth_of(run, index=0):
     return np.load(io.BytesIO(content), allow_pickle=False)["depth"]
 
 
+@pytest.mark.nightly(but=["egl-place0", "rays-place2"])
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("backend", ["rays", "egl"])
 def test_a_known_point_is_at_the_predicted_pixel(place, backend):
@@ -250,6 +251,7 @@ def test_names_of_cameras_and_steps_make_files_of_their_own_inside_the_folder():
     assert all(name.startswith("cameras/") and ".." not in name for name in names)
 
 
+@pytest.mark.nightly(but=["DICT_7X7_1000-999-egl", "DICT_ARUCO_ORIGINAL-100-rays"])
 @pytest.mark.parametrize("backend", ["rays", "egl"])
 @pytest.mark.parametrize(
     ("dictionary", "number"),

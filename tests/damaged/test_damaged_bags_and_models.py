@@ -172,11 +172,13 @@ def test_a_number_beyond_bounds_is_located_in_the_scenario(place, tmp_path):
     assert "1e+308 is too large" in printed
 
 
+@pytest.mark.nightly(but=["0", "1", "2", "3", "4", "5", "6", "7"])
 @pytest.mark.parametrize("seed", range(60))
 def test_no_damaged_bag_ends_in_a_traceback(base, seed):
     bag_trial(base, seed)
 
 
+@pytest.mark.nightly(but=["0", "1", "2", "3", "4", "5", "6", "7"])
 @pytest.mark.parametrize("seed", range(40))
 def test_no_damaged_robot_ends_in_a_traceback(base, seed):
     robot_trial(base, seed)

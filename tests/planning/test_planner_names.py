@@ -89,6 +89,7 @@ def test_no_planner_looks_for_a_way_to_where_the_arm_stands(trial, name):
     assert np.array_equal(found.waypoints, [trial.start, trial.start])
 
 
+@pytest.mark.nightly
 def test_plans_are_freed():
     """A plan that OMPL keeps for good keeps its checker too: 5 MB each."""
     code = (

@@ -200,6 +200,7 @@ def test_what_the_package_refuses_is_refused(tmp_path, title):
     assert caught.value.problems[0].column > 1
 
 
+@pytest.mark.nightly(but=["ur3e", "ur15"])
 @pytest.mark.parametrize("model", [name for name in robot_names() if name.startswith("ur")])
 def test_bundled_files_are_rendered_as_the_package_does(model):
     path = data_folder("robots") / "universal_robots/ur.urdf.xacro"

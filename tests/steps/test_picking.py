@@ -32,6 +32,7 @@ def advice(record, path="steps[0]"):
     )
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("lower", "upper"),
     [
@@ -57,6 +58,7 @@ def test_an_arm_of_four_joints_stacks_boxes_without_a_pose_of_its_gripper(tmp_pa
     assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
     ("robot", "where", "pitch"),
     [
@@ -107,6 +109,7 @@ def test_a_pitch_for_an_arm_of_six_joints_is_refused(tmp_path):
     assert "`grasp_pose` with a rotation" in found[0].hint
 
 
+@pytest.mark.nightly(but=[1, 3])
 @pytest.mark.parametrize(
     ("step", "words"),
     [
@@ -132,6 +135,7 @@ def test_advice_for_a_pick_names_keys_that_it_has(tmp_path, step, words):
     assert set(keys) <= {"grasp_pose", "pitch", "approach", "distance", "direction", "base"}
 
 
+@pytest.mark.nightly(but=["10 deg-10\\xb0 below the horizontal"])
 @pytest.mark.parametrize(
     ("pitch", "words"), [("10 deg", "10° below the horizontal"), ("90 deg", "straight down")]
 )
@@ -141,6 +145,7 @@ def test_a_pick_out_of_reach_says_how_it_approaches(tmp_path, pitch, words):
     assert record.steps[0].message.endswith(f", approached {words}")
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @pytest.mark.parametrize("robot", [OM, UR5E])
 def test_a_place_out_of_reach_gives_the_nearest_pose_and_that_one_is_reached(tmp_path, robot):
     (x, y), far = ((0.2, -0.05), "[0.3, 0.3, 0.04]") if robot == OM else ((0.5, -0.2), "[1, 1, 1]")
@@ -154,6 +159,7 @@ def test_a_place_out_of_reach_gives_the_nearest_pose_and_that_one_is_reached(tmp
     assert not [step for step in record.steps if step.path.startswith("steps[1].")]
 
 
+@pytest.mark.nightly(but=["30 mm"])
 @pytest.mark.parametrize("padding", ["25 mm", "30 mm"])
 def test_padding_does_not_apply_to_what_is_about_to_be_grasped(tmp_path, padding):
     result, _ = run(
@@ -179,6 +185,7 @@ def test_padding_that_is_in_the_way_is_named_with_both_distances(tmp_path):
     assert "only the `padding` of 60.0 mm is not kept" in advice(record)
 
 
+@pytest.mark.nightly(but=[2, 1])
 @pytest.mark.parametrize(
     ("robot", "size", "opening", "words"),
     [
@@ -202,6 +209,7 @@ def test_an_object_that_is_too_wide_is_compared_with_the_gripper(
     assert words in advice(record)
 
 
+@pytest.mark.nightly(but=[2, 1])
 @pytest.mark.parametrize(
     ("robot", "shape", "least", "words"),
     [
@@ -225,6 +233,7 @@ def test_an_object_that_is_too_thin_is_compared_with_the_closed_gripper(
     assert words in advice(record)
 
 
+@pytest.mark.nightly(but=["30 deg"])
 @pytest.mark.parametrize("turn", ["0", "30 deg", "90 deg"])
 def test_a_plate_too_thin_to_hold_across_is_taken_across_its_wide_side(tmp_path, turn):
     pose = f"{{xyz: [0.5, 0.1, 0.05], rpy: [0, 0, {turn}]}}"
@@ -322,6 +331,7 @@ def test_the_first_length_of_an_approach_that_the_arm_can_follow_is_taken(tmp_pa
 TABLE = "- {name: slab, static: true, box: {size: [0.3, 0.3, 0.2]}, pose: {xyz: [0.0, 0.0, 0.3]}}"
 
 
+@pytest.mark.nightly(but=["- pick: cube", "- move_to: up"])
 @pytest.mark.parametrize(
     "step",
     ["- pick: cube", "- move_to: up", "- move_to: {pose: {xyz: [0.4, 0.1, 0.4], rpy: [3, 0, 0]}}"],
@@ -339,6 +349,7 @@ def test_a_robot_that_starts_in_the_ground_is_advised_to_raise_its_base(tmp_path
     assert "what to do: raise the robot's `base`" in "\n".join(found.explanations[0])
 
 
+@pytest.mark.nightly(but=["0.05"])
 @pytest.mark.parametrize("depth", [0.02, 0.05, 0.1])
 def test_the_ground_is_never_to_be_moved_away_from_what_lies_in_it(tmp_path, depth):
     sunk = cube("cube", 3, 0.2, 0.08).replace("0.015]", f"{-depth}]")
@@ -350,6 +361,7 @@ def test_the_ground_is_never_to_be_moved_away_from_what_lies_in_it(tmp_path, dep
     assert "'ground_plane' out of the way" not in text
 
 
+@pytest.mark.nightly(but=["- pick: {object: other, pitch: 80 deg}"])
 @pytest.mark.parametrize("second", ["- pick: other", "- pick: {object: other, pitch: 80 deg}"])
 def test_a_pick_with_a_full_gripper_is_advised_to_put_down_first(tmp_path, second):
     found = check(
@@ -385,6 +397,7 @@ def part(shape, height):
     )
 
 
+@pytest.mark.nightly(but=[2])
 @pytest.mark.parametrize(
     ("shape", "height"),
     [
@@ -403,6 +416,7 @@ def test_fingertips_that_swing_down_stay_above_what_a_small_part_stands_on(tmp_p
     assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
 
 
+@pytest.mark.nightly(but=["3"])
 @pytest.mark.parametrize("size", [2, 3])
 def test_fingers_that_press_the_floor_are_named_and_the_advice_to_grasp_higher_helps(
     tmp_path, size

@@ -114,6 +114,7 @@ def test_a_broken_file_is_a_result_with_its_problems(tmp_path):
     assert "ur99" in str(result)
 
 
+@pytest.mark.nightly(but=["a/b: c"])
 @pytest.mark.parametrize("title", ["Home", "a/b: c", "<x>"])
 def test_a_model_that_fails_names_no_file_and_quotes_its_own_lines(title, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -106,6 +106,7 @@ def test_no_command_prints_what_acts(hostile, arguments):
     command(hostile, *arguments)
 
 
+@pytest.mark.nightly(but=["a log-run", "a log-check"])
 @pytest.mark.parametrize("verb", ["run", "check"])
 def test_annotations_for_github_are_the_programs_alone(hostile, verb):
     arguments = RUN if verb == "run" else ["check", "a.scenario.yaml"]
@@ -117,11 +118,13 @@ def test_a_recording_of_a_hostile_run_is_graded_harmlessly(hostile):
     command(hostile, "grade", "a.scenario.yaml", "recorded")
 
 
+@pytest.mark.nightly(but=["a terminal"])
 def test_a_terminal_gets_only_the_programs_own_sequences(hostile):
     session = run_in_terminal(RUN, hostile)
     harmless(STYLING.sub("", session.text).replace("\r\x1b[2K", ""))
 
 
+@pytest.mark.nightly(but=["a log"])
 def test_the_files_of_a_suite_hold_nothing_that_acts(hostile, tmp_path, monkeypatch):
     for name in ("b", "c"):
         text = (hostile / "a.scenario.yaml").read_text(encoding="utf-8")
@@ -144,6 +147,7 @@ def test_the_files_of_a_suite_hold_nothing_that_acts(hostile, tmp_path, monkeypa
     assert said.count("[[ATTACHMENT|") == 2, "only the program's own"
 
 
+@pytest.mark.nightly(but=["a log"])
 def test_pytest_prints_nothing_that_acts(hostile):
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-v", "-rA", "-p", "no:cacheprovider", "a.scenario.yaml",
@@ -206,6 +210,7 @@ def test_messages_about_arguments_are_harmless(tmp_path, arguments):
     harmless(err.getvalue())
 
 
+@pytest.mark.nightly(but=["\\x1b[31mFORGED\\n::error::x", "\\xff\\xfe"])
 @pytest.mark.parametrize("file", ["\x1b[31mFORGED\n::error::x", "\u202eb\u2066", b"\xff\xfe"])
 def test_names_of_files_are_harmless(tmp_path, file):
     place = os.path.join(os.fsencode(tmp_path), os.fsencode(file) + b".scenario.yaml")  # noqa: PTH118

@@ -1,0 +1,33 @@
+"""The default and the nightly run.
+
+`@pytest.mark.nightly(but=["a"])` leaves the parameters `a` of a test in the default run, where they
+represent the others; `@pytest.mark.nightly(only=["b"])` leaves all but `b` there. A number is the
+position in the test's list of parameters, from 0 on, for those with long names.
+"""
+
+from collections import defaultdict
+
+import pytest
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Take the mark from tests whose parameters are part of the default run."""
+    named: dict[str, set[str | int]] = defaultdict(set)
+    found: dict[str, set[str | int]] = defaultdict(set)
+    for item in items:
+        mark = next((each for each in item.own_markers if each.name == "nightly"), None)
+        if mark is None or not mark.kwargs:
+            continue
+        [(word, parameters)] = mark.kwargs.items()
+        name, _, identifier = item.nodeid.removesuffix("]").partition("[")
+        own = {identifier, *item.callspec.indices.values()}
+        named[name].update(parameters)
+        found[name] |= own
+        if bool(own & set(parameters)) == (word == "but"):
+            item.own_markers.remove(mark)
+    if any("::" in argument for argument in config.args):
+        return  # only some parameters were collected
+    for name, names in named.items():
+        if absent := names - found[name]:
+            raise pytest.UsageError(f"{name} has no parameters {absent}")
