@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator
+from functools import cache
 from importlib.metadata import requires
 
 import pytest
@@ -26,6 +27,7 @@ def distributions_of(extra: str) -> Iterator[str]:
             yield requirement.name
 
 
+@cache
 def missing(extra: str) -> list[str]:
     """The distributions of an extra that are not installed."""
     if os.environ.get(OTHER_PYTHON.get(extra, "")):

@@ -32,8 +32,6 @@ def quantity_of(word, measure):
 UNREACHED = make_run(steps=(step("later", N, N, status="not reached"),))
 
 
-SEEN = {kind: seen_run(kind) for kind in SUBJECTS}
-
 THREE = [three for evidence in collected() for three in evidence.three_runs]
 
 
@@ -70,7 +68,7 @@ def test_the_numbers_of_a_verdict_are_those_of_the_reference(three):
 
 @pytest.mark.parametrize("kind", SUBJECTS)
 def test_what_a_camera_sees_is_measured_as_the_reference_says(kind):
-    spec, run, _ = SEEN[kind]
+    spec, run, _ = seen_run(kind)
     answer = verdict(run, spec)
     assert answer.status == "passed"
     assert all(quantity_of("sees", m) for m in answer.measures)

@@ -5,7 +5,6 @@ import math
 from pathlib import Path
 
 import pytest
-from matplotlib.colors import CSS4_COLORS, to_rgba
 
 from harness.core.errors import SpecError
 from harness.core.quantity import constant_of, split_quantity
@@ -128,6 +127,8 @@ def test_lengths_and_joints_are_distinguished():
 
 
 def test_named_colors_are_those_of_css():
+    from matplotlib.colors import CSS4_COLORS, to_rgba
+
     assert {name: f"#{digits}".upper() for name, digits in COLORS.items()} == CSS4_COLORS
     for name in ("red", "RebeccaPurple", "steelblue"):
         assert color_of_name(name) == pytest.approx(to_rgba(name.lower()))

@@ -21,11 +21,15 @@ from harness.strategies import (
 )
 from harness.strategies.tasks import manipulability, natural_task
 
-ARMS = {name: load_chain(name) for name in ("open_manipulator_x", "ur3e")}
-EACH_ARM = pytest.mark.parametrize("chain", ARMS.values(), ids=ARMS.keys())
+EACH_ARM = pytest.mark.parametrize("chain", ["open_manipulator_x", "ur3e"], indirect=True)
 FEW = settings(max_examples=30, deadline=None, database=None, derandomize=True,
                suppress_health_check=list(HealthCheck))  # fmt: skip
 ENOUGH = settings(FEW, max_examples=500)
+
+
+@pytest.fixture
+def chain(request):
+    return load_chain(request.param)
 
 
 def drawn(strategy, count=60):
@@ -142,7 +146,7 @@ def test_lines_are_straight_and_their_joints_never_jump(chain):
 
 
 def test_paths_and_poses_anywhere_are_drawn():
-    chain = ARMS["ur3e"]
+    chain = load_chain("ur3e")
     for path in drawn(joint_paths(chain, min_size=3, max_size=4), 10):
         assert path.waypoints.shape[1] == 6
         assert 3 <= len(path.waypoints) <= 4
@@ -158,7 +162,7 @@ def test_what_fails_everywhere_shrinks_to_home(chain):
 
 
 def test_what_needs_one_joint_shrinks_to_that_joint_at_its_threshold():
-    chain = ARMS["open_manipulator_x"]
+    chain = load_chain("open_manipulator_x")
     found = find(joint_positions(chain), lambda q: q[0] < -1.2345, settings=ENOUGH)
     assert found == pytest.approx([-1.25, *chain.home[1:]])
 
