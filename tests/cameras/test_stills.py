@@ -57,6 +57,7 @@ def mean_colour(picture, viewpoint, point):
     return picture[row - 3 : row + 4, column - 3 : column + 4].reshape(-1, 3).mean(axis=0)
 
 
+@pytest.mark.nightly(but=["egl", "osmesa"])
 @pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
 def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
     run = a_run(ur3e)
@@ -71,6 +72,7 @@ def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
     assert red < 1.2 * max(green, blue)  # it was removed
 
 
+@pytest.mark.nightly(but=["rays"])
 @pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
 def test_an_object_of_the_planner_alone_is_translucent(ur3e, backend):
     run = a_run(ur3e)
@@ -106,6 +108,7 @@ def test_one_picture_is_drawn_for_each_executed_step(ur3e):
     assert (stills.note == "") is (stills.backend != "rays")
 
 
+@pytest.mark.nightly(but=["0.0-1", "0.01-3"])
 @pytest.mark.parametrize(
     ("moved", "drawn"), [(0.0, 1), (0.2 * UNSEEN, 1), (2 * UNSEEN, 3), (0.01, 3), (np.nan, 2)]
 )
@@ -261,6 +264,7 @@ def test_the_overview_holds_every_point():
     assert filled > 0.7
 
 
+@pytest.mark.nightly
 def test_a_mesh_that_cannot_be_drawn_is_named_in_the_note(ur3e, tmp_path):
     collada = Shape(Mesh(tmp_path / "mug.dae"), rgba=(1, 0, 0, 1))
     mug = replace(IMAGINED, name="mug", shapes=(collada,))
@@ -279,6 +283,7 @@ def test_a_colour_of_one_triangle_or_of_none_that_can_be_seen_is_no_error(ur3e, 
     assert picture.geoms["mug"].stop - picture.geoms["mug"].start == 2
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur10e"])
 def test_the_floor_is_not_speckled_by_its_own_shadow(robot):
     """A coarse shadow map leaves no single dark pixels on a bright floor, in any direction."""
@@ -301,6 +306,7 @@ def test_the_floor_is_not_speckled_by_its_own_shadow(robot):
         renderer.close()
 
 
+@pytest.mark.nightly
 def test_a_run_of_many_steps_has_pictures_of_its_first_and_its_last(tmp_path):
     file = tmp_path / "many.scenario.yaml"
     steps = f"[repeat: {{times: {MOST_STEPS + 20}, steps: [wait: 2 ms]}}]"

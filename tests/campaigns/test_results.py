@@ -93,6 +93,7 @@ def test_samples_that_the_sequential_test_did_not_need_are_no_results(tmp_path, 
     assert f"{counted} runs written" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_results_of_cases_that_a_resumed_suite_no_longer_has_are_left_out(reports, capsys):
     text = ball(6, rest="")
     assert reports(text)[1]["left_out"] == 0
@@ -104,6 +105,7 @@ def test_results_of_cases_that_a_resumed_suite_no_longer_has_are_left_out(report
     assert (counted, found["selected"], found["left_out"]) == (6, 6, 0)
 
 
+@pytest.mark.nightly
 def test_results_of_an_older_version_of_a_file_are_replaced(reports, capsys):
     reports(ball(4, rest=""))
     counted, found = reports(ball(4, rest="tags: [changed]\n"), "--resume")

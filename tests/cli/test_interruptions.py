@@ -46,6 +46,7 @@ def once(words, number):
     return send
 
 
+@pytest.mark.nightly(but=["2"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupted_run_says_where_it_stood(folder, number):
     session = run_in_terminal(
@@ -115,6 +116,7 @@ def test_the_first_signal_waits_for_the_end_of_an_import(folder, signals, where)
     assert (done.stdout.strip(), done.stderr) == (where, "")
 
 
+@pytest.mark.nightly(but=[">/dev/full-3", "2>&--1"])
 @pytest.mark.parametrize(
     ("redirection", "code"),
     [(">&-", 1), ("2>&-", 1), ("<&-", 1), ("<&- >&- 2>&-", 1), (">/dev/full", 3),
@@ -132,6 +134,7 @@ def test_a_stream_that_takes_nothing_is_no_failed_scenario(folder, redirection, 
         assert "standard output cannot be written: No space left on device" in done.stderr
 
 
+@pytest.mark.nightly(but=["1-check short.scenario.yaml --json", "1-list planners"])
 @pytest.mark.parametrize("command", ["--help", "list planners", "check short.scenario.yaml --json"])
 @pytest.mark.parametrize("is_unbuffered", ["1", ""])
 def test_no_command_that_cannot_write_says_failed(folder, command, is_unbuffered):
@@ -144,6 +147,7 @@ def test_no_command_that_cannot_write_says_failed(folder, command, is_unbuffered
     assert done.stderr == ("harness: standard output cannot be written: No space left on device\n")
 
 
+@pytest.mark.nightly(but=["osmesa"])
 @pytest.mark.parametrize("library", ["xyz", "osmesa", "egl", "disable"])
 def test_a_graphics_library_that_is_missing_stops_no_run(folder, library):
     for more in ([], ["--in-process"]):

@@ -69,6 +69,7 @@ def test_a_motion_says_why_it_is_no_pick_and_that_it_passed(capsys):
     assert "it was run once and passed" in said
 
 
+@pytest.mark.nightly(but=["jaw"])
 @pytest.mark.parametrize(
     "urdf",
     [SIX, SIX_WITH_JAW, SIX_WITH_TURNING_JAW, FIVE_WITH_TURNING_JAW],

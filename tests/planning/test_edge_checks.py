@@ -91,6 +91,15 @@ ROBOTS = {
 }
 
 
+@pytest.mark.nightly(
+    but=[
+        "0.01-0.025-ur5e with a hull",
+        "0.0-0.000125-ur3e",
+        "0.0-0.025-open_manipulator_x",
+        "0.01-0.025-open_manipulator_x",
+        "0.0-0.000125-open_manipulator_x",
+    ]
+)
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize(
     ("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 8000)]
@@ -124,6 +133,7 @@ def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
         seen[verdicts[0]] += 1
 
 
+@pytest.mark.nightly
 def test_a_bent_motion_is_judged_alike_and_its_first_blocked_state_is_found(stages, tmp_path):
     cell = crowded(ur("ur3e"), tmp_path)
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
@@ -147,6 +157,7 @@ def test_a_bent_motion_is_judged_alike_and_its_first_blocked_state_is_found(stag
     assert {*found} == {True, False}
 
 
+@pytest.mark.nightly(but=["always"])
 @pytest.mark.parametrize("when", ["never", "always"])
 def test_a_motion_that_ends_exactly_at_its_margin_is_judged_as_its_last_state(
     when, stages, tmp_path
@@ -177,6 +188,7 @@ def test_plans_are_the_same_with_and_without_the_compiled_check(stages):
     assert np.array_equal(plans[0].trajectory.positions, plans[1].trajectory.positions)
 
 
+@pytest.mark.nightly(but=["ur3e-arm", "open_manipulator_x-gripper"])
 @pytest.mark.parametrize("kind", ["arm", "gripper"])
 @pytest.mark.parametrize("model", list(HOMES))
 def test_whole_motions_are_as_free_as_their_states(model, kind, stages):

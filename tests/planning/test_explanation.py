@@ -46,6 +46,7 @@ def stage(error, name):
     return {stage.stage: stage for stage in recorded_explanation(error.details).stages}[name]
 
 
+@pytest.mark.nightly(but=["open_manipulator-arm-goal2"])
 @pytest.mark.parametrize(
     ("make", "group", "goal"),
     [

@@ -117,6 +117,7 @@ def test_outcomes_are_reported_with_lines_and_numbers(pytester, write):
     assert 'property name="digest" value="' in junit
 
 
+@pytest.mark.nightly
 def test_reports_go_where_they_are_requested(pytester, write):
     write(holds=HOLDS)
     run(pytester, "--harness-report-dir", "elsewhere").assert_outcomes(passed=1)
@@ -127,6 +128,7 @@ def test_reports_go_where_they_are_requested(pytester, write):
     assert not (pytester.path / "reports").exists()
 
 
+@pytest.mark.nightly
 def test_xdist_and_this_process_give_the_same_digest(pytester, write):
     write(holds=HOLDS, again=HOLDS)
     digests = set()
@@ -165,6 +167,7 @@ def test_a_run_without_scenarios_imports_nothing_of_the_harness_but_the_plugin(p
     assert "1 passed" in result.stdout, result.stdout
 
 
+@pytest.mark.nightly
 def test_every_parametrised_case_is_an_item_with_a_readable_name(pytester, write):
     cases = "parametrize:\n  robot: [open_manipulator_x, ur3e]\n  seed: [1, 2]\n"
     write(holds=HOLDS + cases)
@@ -175,6 +178,7 @@ def test_every_parametrised_case_is_an_item_with_a_readable_name(pytester, write
     run(pytester, "holds.scenario.yaml::Hold still[ur3e-1]").assert_outcomes(passed=1)
 
 
+@pytest.mark.nightly
 def test_random_samples_are_one_item_that_reports_the_rate(pytester, write):
     lines = "params: {time: 0.1 s}\nrandomize:\n  time: {uniform: [0.15 s, 0.25 s]}\nsamples: 4\n"
     varied = HOLDS.replace("wait: 0.1 s", 'wait: "${time}"') + lines
@@ -253,6 +257,7 @@ def test_junit_of_samples_has_the_smallest_margin_and_every_seed_and_digest(pyte
     assert results["rates"][0]["rate"]["passed"] == 3
 
 
+@pytest.mark.nightly(but=["xdist"])
 @pytest.mark.parametrize("options", [[], ["-n2"]], ids=["alone", "xdist"])
 def test_a_session_leaves_the_files_of_a_suite_in_file_order(pytester, write, options):
     write(a_fails=FAILS, b_holds=HOLDS, c_invalid=INVALID)
@@ -268,6 +273,7 @@ def test_a_session_leaves_the_files_of_a_suite_in_file_order(pytester, write, op
     assert (whole.get("tests"), whole.get("failures"), whole.get("errors")) == ("3", "1", "1")
 
 
+@pytest.mark.nightly
 def test_margins_are_in_junit_and_reported_when_they_get_small(pytester, write):
     def reported(wait):
         write(tight=TIGHT.replace("wait: 0.1 s", f"wait: {wait} s"))
@@ -319,6 +325,7 @@ def test_in_an_action_of_github_a_session_annotates_and_sums_up(pytester, write,
     assert summary.read_text().startswith("## ❌ armharness: 1 of 2 passed")
 
 
+@pytest.mark.nightly
 def test_a_warning_of_a_verdict_fails_a_strict_session(pytester, write):
     write(holds=HOLDS + "  - eventually: {static: {}}\n")
     run(pytester).assert_outcomes(passed=1)
@@ -327,6 +334,7 @@ def test_a_warning_of_a_verdict_fails_a_strict_session(pytester, write):
     result.stdout.re_match_lines([".*warning: already true at the start.*"])
 
 
+@pytest.mark.nightly(but=["workers0"])
 @pytest.mark.parametrize("workers", [(), ("-n", "2")])
 def test_last_failed_runs_exactly_what_failed(pytester, write, workers):
     case = "parametrize: {params.t: ['0.1 s', '1.5 s']}\nparams: {t: 0.1 s}\n"
@@ -356,6 +364,7 @@ def test_last_failed_runs_exactly_what_failed(pytester, write, workers):
     assert sorted(left) == ["holds.scenario.yaml::Hold still", failed[0], failed[3]]
 
 
+@pytest.mark.nightly
 def test_stepwise_continues_with_the_case_that_failed(pytester, write):
     case = "parametrize: {params.t: ['2.5 s', '0.1 s']}\nparams: {t: 0.1 s}\n"
     write(varied=FAILS.replace("wait: 0.1 s", "wait: ${t}") + case)

@@ -145,6 +145,7 @@ def test_the_base_pose_moves_everything():
     assert moved == pytest.approx([1 - y, 2 + x, 3 + z], abs=1e-12)
 
 
+@pytest.mark.nightly(but=["ur3e", "ur7e"])
 @pytest.mark.parametrize("model", UR_TYPES)
 def test_a_type_weighs_what_its_maker_says(model):
     alone = robot(model=model)

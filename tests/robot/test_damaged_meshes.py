@@ -93,6 +93,7 @@ def nearly_flat(thickness):
     return points.reshape(-1, 3, 3)
 
 
+@pytest.mark.nightly(but=["0"])
 @pytest.mark.parametrize("thickness", [0, 1e-12, 1e-10, 1e-8])
 def test_a_mesh_as_thin_as_its_rounding_is_flat_and_crashes_nothing(tmp_path, thickness):
     """In a process of its own, since Qhull ends with signal 11 on such points."""
@@ -134,6 +135,7 @@ def test_a_robot_with_a_damaged_mesh_is_refused_at_its_line(tmp_path, capsys, mo
     assert "Traceback" not in error
 
 
+@pytest.mark.nightly
 def test_triangles_without_order_do_not_fill_the_memory():
     rng = np.random.default_rng(0)
     soup = rng.uniform(-0.15, 0.15, (6000, 3, 3))

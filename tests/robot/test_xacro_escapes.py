@@ -261,6 +261,7 @@ CONTENT = {
 }
 
 
+@pytest.mark.nightly(only=["files that are read again and again", "a long text of expressions"])
 @pytest.mark.parametrize("title", CONTENT)
 def test_documents_without_an_end_are_refused(tmp_path, title):
     (tmp_path / "many.yaml").write_text("".join(f"key{n}: 1\n" for n in range(30_000)))

@@ -45,6 +45,7 @@ def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
     )
 
 
+@pytest.mark.nightly(but=["[0, 90 deg, 40 deg]"])
 @pytest.mark.parametrize("turn", ["[90 deg, 0, 0]", "[0, 90 deg, 40 deg]"])
 def test_a_lying_bar_is_taken_across_its_narrow_level_side(tmp_path, turn):
     result, _ = run(
@@ -68,6 +69,7 @@ def test_a_lying_bar_is_taken_across_its_narrow_level_side(tmp_path, turn):
     assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
 
 
+@pytest.mark.nightly(but=["shapes"])
 @pytest.mark.parametrize("kind", ["mesh", "shapes"])
 def test_what_is_no_simple_shape_is_taken_by_the_box_around_it(tmp_path, kind):
     """A square cup that stands on its foot, and two blocks on each other."""
@@ -164,6 +166,7 @@ def test_what_stays_attached_to_the_end_is_not_released(tmp_path):
     assert "attached in the planning scene" in second
 
 
+@pytest.mark.nightly
 def test_a_welded_grasp_says_so_in_its_verdicts(tmp_path):
     """Without friction nothing could be lifted: the report must show what held it."""
     result, _ = run(
@@ -229,6 +232,7 @@ def test_a_weld_that_failed_holds_nothing(tmp_path, again):
     assert failures(result) == []
 
 
+@pytest.mark.nightly(but=["gripper: open-True"])
 @pytest.mark.parametrize(("lets_go", "hits"), [("release: red_box", False),
                                                ("gripper: open", True)])  # fmt: skip
 def test_a_weld_holds_until_a_step_releases_it(tmp_path, lets_go, hits):
@@ -259,6 +263,7 @@ def test_a_weld_holds_until_a_step_releases_it(tmp_path, lets_go, hits):
 PLATES = "[0.06, 0.01, 0.13]", "0.25, 0.02", "0.25, -0.12"
 
 
+@pytest.mark.nightly(but=["box: {size: [12 cm, 4 cm, 12 cm]}-2-0"])
 @pytest.mark.parametrize(
     ("shape", "grasps", "taken"),
     [
@@ -321,6 +326,7 @@ def test_what_the_hand_overlaps_at_the_start_is_a_note_although_it_opens_first(
 STANDING_AT = "{frame: base_link, xyz: [0.28, -0.1, 0.055]"
 
 
+@pytest.mark.nightly(but=["box: {size: [4 cm, 4 cm, 12 cm]}--4-2"])
 @pytest.mark.parametrize(
     ("shape", "stated", "turns", "taken"),
     [

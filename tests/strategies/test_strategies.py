@@ -71,6 +71,7 @@ def test_the_jacobian_is_the_change_of_the_pose(chain):
             assert np.allclose(jacobian[3:, index], angular / (4 * step), atol=1e-6)
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @EACH_ARM
 def test_positions_fill_the_limits_and_stay_inside(chain):
     for strategy in (joint_positions(chain), near_limit_positions(chain),
@@ -91,6 +92,7 @@ def test_positions_near_limits_have_a_joint_within_a_hundredth_of_one(chain):
         assert away.min() <= 0.01 + 1e-12
 
 
+@pytest.mark.nightly(but=["ur3e"])
 @EACH_ARM
 def test_positions_near_singularities_are_far_more_singular_than_others(chain):
     task = natural_task(chain)
@@ -107,6 +109,7 @@ def test_reachable_poses_carry_what_reaches_them(chain):
         assert np.array_equal(again.matrix(), target.pose.matrix())
 
 
+@pytest.mark.nightly(but=["True-ur3e", "False-open_manipulator_x"])
 @EACH_ARM
 @pytest.mark.parametrize("any_orientation", [True, False])
 def test_no_joint_positions_reach_an_unreachable_pose(chain, any_orientation):
@@ -127,6 +130,7 @@ def test_no_joint_positions_reach_an_unreachable_pose(chain, any_orientation):
         assert np.linalg.norm(last.translation - centre) > radius * 1.0009
 
 
+@pytest.mark.nightly(but=["ur3e"])
 @EACH_ARM
 def test_lines_are_straight_and_their_joints_never_jump(chain):
     lengths = []
@@ -154,6 +158,7 @@ def test_paths_and_poses_anywhere_are_drawn():
     assert 0 < sum(known) < len(known)
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @EACH_ARM
 def test_what_fails_everywhere_shrinks_to_home(chain):
     assert np.array_equal(find(joint_positions(chain), lambda _: True, settings=FEW), chain.home)
