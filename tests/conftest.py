@@ -7,7 +7,13 @@ import sys
 import pytest
 from xdist.scheduler import LoadFileScheduling
 
-pytest_plugins = ["pytester", "tests.extras", "tests.lanes", "tests.reporting.browser"]
+pytest_plugins = [
+    "pytester",
+    "tests.extras",
+    "tests.lanes",
+    "tests.recorded",
+    "tests.reporting.browser",
+]
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False

@@ -4,16 +4,12 @@ import pytest
 
 from harness.recording.read_run import read_run
 from tests.grading.recordings import SCENARIO, students_recording
-from tests.running import run_case
 
 
 @pytest.fixture(scope="session")
-def folder(tmp_path_factory):
+def folder(recorded_run):
     """The scenario's own run."""
-    folder = tmp_path_factory.mktemp("graded") / "run"
-    result = run_case(SCENARIO, report_dir=folder, stills=False, page=False)
-    assert result.outcome == "passed", result.message
-    return folder
+    return recorded_run(SCENARIO) / "run"
 
 
 @pytest.fixture(scope="session")

@@ -232,15 +232,14 @@ LESSONS = sorted((data_folder("scenarios") / "lessons").glob("*.scenario.yaml"))
 
 
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda path: path.name.partition(".")[0])
-def test_a_lesson_loses_no_point_when_its_own_bag_is_graded(lesson, tmp_path):
+def test_a_lesson_loses_no_point_when_its_own_bag_is_graded(lesson, recorded_run, tmp_path):
     """What the bag shows is judged as in the run; contacts alone cannot be seen in it."""
-    result = run_case(lesson, report_dir=tmp_path / "run", stills=False, page=False)
-    stored = read_run(tmp_path / "run")
+    stored = read_run(recorded_run(lesson) / "run")
     for kind in ("mcap", "sqlite3"):
         write_bag(tmp_path / kind, stored, BagOptions(storage=kind))
         rows = grade_bag(lesson, tmp_path / kind).rows
         judged = [(row.verdict.expectation, row.verdict.status) for row in rows]
-        expected = [(verdict.expectation, verdict.status) for verdict in result.verdicts]
+        expected = [(verdict.expectation, verdict.status) for verdict in stored.verdicts]
         for (name, status), (run_name, run_status) in zip(judged, expected, strict=True):
             assert name == run_name
             assert status in (run_status, "not observable"), name
@@ -267,11 +266,9 @@ def test_a_bag_of_another_robot_is_refused_for_a_gripper_alone(recording, tmp_pa
         assert message in said
 
 
-@pytest.fixture(scope="module")
-def gripper_run(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("gripper") / "run"
-    assert run_case(GRIPPER_ALONE, report_dir=folder, stills=False, page=False).outcome == "passed"
-    return read_run(folder).run
+@pytest.fixture
+def gripper_run(recorded_run):
+    return read_run(recorded_run(GRIPPER_ALONE) / "run").run
 
 
 def test_a_gripper_alone_is_graded_from_joint_states_and_from_frames(gripper_run, tmp_path):

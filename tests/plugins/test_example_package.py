@@ -66,6 +66,7 @@ def test_every_plug_in_of_the_package_is_used_in_one_run(site, tmp_path):
     assert rows[0].startswith("passed,0.")
 
 
+@pytest.mark.nightly
 def test_a_robot_of_the_package_moves(site, tmp_path):
     (tmp_path / "gantry.scenario.yaml").write_text(GANTRY, encoding="utf-8")
     assert "passed" in harness(tmp_path, "run", "gantry.scenario.yaml", "--no-report", site=site)
@@ -74,6 +75,7 @@ def test_a_robot_of_the_package_moves(site, tmp_path):
     assert "robot.model: 'gantry' is not known" in out
 
 
+@pytest.mark.nightly(but=["steps", "robots"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_lists_name_the_package(site, tmp_path, kind):
     rows = [row.split() for row in harness(tmp_path, "list", kind, site=site).splitlines()]
@@ -102,6 +104,7 @@ def test_without_the_package_every_name_is_a_located_error(tmp_path):
     assert "a reporter of a plug-in that is not installed needs `--plugin`" in words
 
 
+@pytest.mark.nightly
 def test_a_world_format_and_a_reporter_that_go_wrong_are_named(site, tmp_path):
     (tmp_path / "boxes.csv").write_text("crate,0.6,high\n", encoding="utf-8")
     (tmp_path / "bad.py").write_text(BAD, encoding="utf-8")

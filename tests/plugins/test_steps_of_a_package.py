@@ -86,6 +86,7 @@ def typed_result(run, library):
     return done.stdout.strip()
 
 
+@pytest.mark.nightly(but=["installed"])
 def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     folder, library, package, options = plugged_in
 
@@ -117,6 +118,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     assert "names.scenario.yaml:13:22: there is no joint 'joint9'" in problems
 
 
+@pytest.mark.nightly(but=["file"])
 def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
     folder, library, _, options = plugged_in
     out = harness(folder, "run", "remarks.scenario.yaml", *options, path=library)
@@ -205,6 +207,7 @@ def test_a_plug_in_that_cannot_be_used_is_refused_with_its_reason(tmp_path, modu
     assert reason in said
 
 
+@pytest.mark.nightly
 def test_a_scenario_cannot_name_a_module(tmp_path):
     (tmp_path / "remarks.py").write_text(SOURCE, encoding="utf-8")
     for key in ("plugin: remarks", "plugins: [remarks]", "HARNESS_PLUGINS: remarks"):
@@ -214,6 +217,7 @@ def test_a_scenario_cannot_name_a_module(tmp_path):
         assert f"unknown key `{key.partition(':')[0]}`" in said
 
 
+@pytest.mark.nightly(but=["ini"])
 @pytest.mark.parametrize("given", ["option", "ini"])
 def test_pytest_collects_and_runs_a_scenario_with_a_plug_in(tmp_path, given):
     (tmp_path / "remarks.scenario.yaml").write_text(SCENARIO, encoding="utf-8")

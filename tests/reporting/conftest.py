@@ -1,10 +1,6 @@
 """Real runs whose pages are opened."""
 
-from pathlib import Path
-
 import pytest
-
-from tests.running import run_case
 
 HOSTILE = """\
 scenario: "<script>document.title = 'taken over'</script> & <b>bold</b>"
@@ -31,12 +27,6 @@ expect:
 
 
 @pytest.fixture(scope="session")
-def failed_run(tmp_path_factory):
+def failed_run(recorded_run):
     """The folder of a run of which one step's and one final expectation do not hold."""
-    folder = tmp_path_factory.mktemp("failed")
-    file = folder / "hostile.scenario.yaml"
-    file.write_text(HOSTILE)
-    result = run_case(file, report_dir=folder / "run")
-    assert result.outcome == "failed", result.message
-    assert Path(result.page) == folder / "run" / "report.html"
-    return folder / "run"
+    return recorded_run(HOSTILE, "failed", page=True, stills=True) / "run"

@@ -24,10 +24,8 @@ def run_json(capsys, *arguments):
 
 
 @pytest.fixture(scope="module")
-def flagship(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("flagship")
-    result = run_case(FLAGSHIP, report_dir=folder / "run", stills=False)
-    return result, read_run(folder / "run").run
+def flagship(recorded_run):
+    return read_run(recorded_run(FLAGSHIP) / "run")
 
 
 def test_all_lessons_pass_with_equal_digests_in_a_row_side_by_side_and_alone(flagship, capsys):
@@ -41,22 +39,20 @@ def test_all_lessons_pass_with_equal_digests_in_a_row_side_by_side_and_alone(fla
     assert len(side_by_side) == 2
     assert digests.items() >= {(name, case["digest"]) for name, case in side_by_side.items()}
     assert alone[FIRST.name]["digest"] == digests[FIRST.name]
-    in_this_process, _ = flagship
-    assert in_this_process.digest == digests[FLAGSHIP.name]
+    assert flagship.digest == digests[FLAGSHIP.name]
 
 
 def test_the_flagship_keeps_every_promise_of_the_lesson(flagship):
-    result, run = flagship
-    assert result.outcome == "passed"
-    assert len(result.verdicts) >= 25
-    assert all(verdict.margin > 0 for verdict in result.verdicts if verdict.unit == "m")
+    run = flagship.run
+    assert len(flagship.verdicts) >= 25
+    assert all(verdict.margin > 0 for verdict in flagship.verdicts if verdict.unit == "m")
     fingers = {record.id: record.result for record in run.steps}["step_12"].plain()
     assert fingers["stalled"]
     assert fingers["position"] == pytest.approx(0.576, abs=0.004)  # pads on the 60 mm cylinder
 
 
 def test_what_the_steps_of_the_flagship_added_is_gone_at_the_end(flagship):
-    _, run = flagship
+    run = flagship.run
     end = run.signals.times[-1]
     added = ("hanging_box", "upper_box", "cylinder", "low_box")
     there = {obj.name: obj.present[-1][1] for obj in run.objects}
@@ -67,7 +63,7 @@ def test_what_the_steps_of_the_flagship_added_is_gone_at_the_end(flagship):
 
 
 def test_without_the_boxes_the_path_is_another(flagship, tmp_path):
-    _, with_boxes = flagship
+    with_boxes = flagship.run
     text = FLAGSHIP.read_text()
     for frame in ("xyz: [0, -0.6, 0.5]", "xyz: [0.3, 0.3, 0.7]"):
         assert frame in text
