@@ -68,6 +68,7 @@ def distance_to_boundary(values):
     return abs(total - 0.14) / 0.7
 
 
+@pytest.mark.nightly
 def test_a_thin_failure_is_found_shrunk_to_its_boundary_and_written_as_a_scenario(tmp_path):
     code, found = search(tmp_path, THIN, "--seed", "2")
     assert code == 1
@@ -102,6 +103,7 @@ def test_without_a_failure_the_bound_is_stated_and_the_workers_do_not_matter(tmp
     assert {**again, "file": ""} == {**found, "file": ""}
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("rate", "says"),
     [
@@ -121,6 +123,7 @@ def test_the_page_judges_the_rate_that_the_file_requires(tmp_path, rate, says):
     assert says in page.read_text()
 
 
+@pytest.mark.nightly
 def test_the_file_says_how_it_is_searched_and_options_take_precedence(tmp_path):
     text = TWO_KINDS.replace('- formula: "always (y', '- name: south\n    formula: "always (y')
     text = text.replace("0.3)", "0.49)")  # rarely found by chance
@@ -169,6 +172,7 @@ def test_what_cannot_be_searched_is_refused(tmp_path, capsys, text, options, mes
     assert not list(tmp_path.rglob("search.json"))
 
 
+@pytest.mark.nightly
 def test_starts_with_overlaps_do_not_count_where_the_file_redraws_them(tmp_path, capsys):
     post = (
         "  - {name: post, box: {size: [0.4, 0.9, 0.7]}, pose: {xyz: [0.3, 0, 0.8]}, static: true}\n"
@@ -196,6 +200,7 @@ def test_a_scenario_that_fails_as_written_needs_no_search(tmp_path, capsys):
     assert "the scenario fails unchanged" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_a_single_parameter_at_a_larger_change_is_preferred_to_two(tmp_path):
     """A sample fails with x + z > 0.5; x alone is enough, further out."""
     text = SAFE.replace("x(ball) < 3", "x(ball) + z(ball) < 0.95")

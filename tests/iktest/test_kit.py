@@ -54,6 +54,7 @@ def test_a_tool_of_another_length_is_reported_in_the_links_axes():
     assert np.array_equal(finding.target.joint_positions, HOME)
 
 
+@pytest.mark.nightly
 def test_an_answer_beyond_a_limit_is_found_with_its_joint():
     def ik(x, y, z, pitch):
         return [[q1 + 2 * np.pi * (q1 < -1), *rest] for q1, *rest in correct(x, y, z, pitch)]
@@ -74,6 +75,7 @@ def test_a_refusal_within_reach_is_found_at_its_threshold():
     assert 0.1 < finding.target.pose.translation[1] < 0.12
 
 
+@pytest.mark.nightly
 def test_arithmetic_that_breaks_and_nan_are_found_where_they_show():
     def nan(x, y, z, pitch):
         return correct(x, y, z, pitch) if np.hypot(x, y) < 0.3 else [np.arccos(2 + x * x)] * 4
@@ -89,6 +91,7 @@ def test_arithmetic_that_breaks_and_nan_are_found_where_they_show():
     assert finding.kind.startswith("raises ZeroDivisionError at test_kit.py:")
 
 
+@pytest.mark.nightly
 def test_the_nearest_point_is_no_answer_to_a_target_out_of_reach():
     def ik(x, y, z, pitch):
         return correct(x, y, z, pitch) or [0.0, 0.0, 0.0, 0.0]
@@ -98,6 +101,7 @@ def test_the_nearest_point_is_no_answer_to_a_target_out_of_reach():
     assert "position off by" in finding.detail
 
 
+@pytest.mark.nightly
 def test_another_branch_in_mid_line_is_a_jump_and_a_steep_motion_is_none():
     def ik(x, y, z, pitch):
         ways = correct(x, y, z, pitch)
@@ -109,6 +113,7 @@ def test_another_branch_in_mid_line_is_a_jump_and_a_steep_motion_is_none():
     assert "continuity" not in found(correct)
 
 
+@pytest.mark.nightly
 def test_an_answer_that_depends_on_the_call_before_is_found():
     counter = itertools.count()
 

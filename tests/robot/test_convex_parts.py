@@ -77,6 +77,7 @@ def decomposed(name):
     return decompose(vertices[faces])
 
 
+@pytest.mark.nightly(but=["cup"])
 @pytest.mark.parametrize("name", VESSELS)
 def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(name, tmp_path):
     vertices, faces = VESSELS[name]
@@ -141,6 +142,7 @@ def test_thin_triangles_have_no_more_points_than_their_length_needs():
     assert {tuple(corner) for corner in needle[0]} <= {tuple(point) for point in points}
 
 
+@pytest.mark.nightly
 def test_a_mesh_whose_parts_are_stored_is_not_read_again(tmp_path):
     path = write_obj(tmp_path / "bin.obj", *vessel(**BIN))
     shapes = collision_shapes([Shape(Mesh(path))])

@@ -112,6 +112,7 @@ def test_without_nodes_a_run_says_which_command_to_use(tmp_path, capsys):
     assert "harness grade SCENARIO --node COMMAND" in re.sub(r"\s+", " ", capsys.readouterr().out)
 
 
+@pytest.mark.nightly
 def test_a_planned_lesson_is_handed_over_as_a_whole(tmp_path, capsys):
     steps = "- wait: 1 s\n  expect: [{always: within_limits}]"
     file = scenario(tmp_path, steps)
@@ -128,6 +129,7 @@ def test_an_end_that_is_measured_after_the_run_is_refused(tmp_path):
     assert "measured after the run" in message
 
 
+@pytest.mark.nightly(but=["wait: 10 ms"])
 @pytest.mark.parametrize("step", ["wait: 10 ms", "move_to: {joints: {joint1: 0.1}}"])
 def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
     file = scenario(tmp_path, f"- {step}")

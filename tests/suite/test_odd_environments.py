@@ -115,6 +115,7 @@ def test_a_working_directory_that_was_deleted_is_named(folder, words):
     assert list(folder.iterdir()) == [folder / "a.scenario.yaml"]
 
 
+@pytest.mark.nightly
 def test_python_without_docstrings_gives_the_same_digest():
     found = [
         harness("run", "a.scenario.yaml", "--no-page", "--json", PYTHONOPTIMIZE=level)

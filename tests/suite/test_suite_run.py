@@ -89,6 +89,7 @@ def test_a_failing_sample_runs_alone_to_the_same_digest_with_the_printed_command
     assert (again["digest"], again["seed"]) == (worst["digest"], worst["seed"])
 
 
+@pytest.mark.nightly
 def test_only_failed_samples_leave_reports_unless_all_are_kept(sampled):
     folder, path, found = sampled
     root = folder / "reports/varied"
@@ -121,6 +122,7 @@ def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
     assert "at least 60.0% is not confirmed: take more samples, or require less" in done.stdout
 
 
+@pytest.mark.nightly
 def test_samples_that_vary_nothing_are_reported_and_their_rate_is_refused(varied):
     same = "samples: 3\nexpect_rate: {at_least: 0.1, stop_early: false}"
     path = varied(VARIED.replace('wait: "${time}"', "wait: 0.1 s").replace("samples: 12", same))
@@ -130,6 +132,7 @@ def test_samples_that_vary_nothing_are_reported_and_their_rate_is_refused(varied
     assert "success rates not confirmed" in done.stdout
 
 
+@pytest.mark.nightly
 def test_a_grid_that_varies_nothing_is_reported(tmp_path):
     """A parameter that only a step's name reads, and one that a wait reads."""
     text = "scenario: s\nrobot: open_manipulator_x\nparams: {x: 10 ms}\nsteps:\n  - {%s}\n"
@@ -141,6 +144,7 @@ def test_a_grid_that_varies_nothing_is_reported(tmp_path):
     assert "varied.scenario.yaml: its" not in said
 
 
+@pytest.mark.nightly(but=["parametrize: {seed: []}"])
 @pytest.mark.parametrize("line", ["parametrize: {seed: []}", "parametrize: {time: [], seed: [1]}"])
 def test_a_grid_without_values_is_an_error_of_its_file_in_a_suite(line, varied):
     path = varied()
@@ -151,6 +155,7 @@ def test_a_grid_without_values_is_an_error_of_its_file_in_a_suite(line, varied):
     assert "2 files found, 2 collected, 2 run" in done.stdout
 
 
+@pytest.mark.nightly
 def test_a_suite_reports_the_files_that_a_selection_left_out(varied):
     path = varied()
     (path.parent / "grid.scenario.yaml").write_text(GRID)
@@ -158,6 +163,7 @@ def test_a_suite_reports_the_files_that_a_selection_left_out(varied):
     assert "2 files found, 1 collected, 1 run" in done.stdout
 
 
+@pytest.mark.nightly
 def test_samples_of_what_has_none_are_refused_and_leave_files_next_to_sampled_ones_alone(varied):
     path = varied()
     plain = path.with_name("plain.scenario.yaml")
@@ -176,6 +182,7 @@ def test_samples_of_what_has_none_are_refused_and_leave_files_next_to_sampled_on
     assert [case["case"] for case in both["cases"]] == ["sample0", "sample1", ""]
 
 
+@pytest.mark.nightly
 def test_a_table_reports_which_quantity_decides(varied):
     path = varied(GRID)
     done = harness("run", path, "--no-report", cwd=path.parent)
