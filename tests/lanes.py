@@ -6,8 +6,11 @@ position in the test's list of parameters, from 0 on, for those with long names.
 """
 
 from collections import defaultdict
+from collections.abc import Callable
 
 import pytest
+from hypothesis import given, settings
+from hypothesis.strategies import SearchStrategy
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -31,3 +34,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for name, names in named.items():
         if absent := names - found[name]:
             raise pytest.UsageError(f"{name} has no parameters {absent}")
+
+
+def property_test(
+    *strategies: SearchStrategy, few: int, many: int
+) -> Callable[[Callable], Callable]:
+    """A property of `few` examples in the default run, and of `many` in the nightly run."""
+
+    def decorate(function: Callable[..., None]) -> Callable[[int], None]:
+        @pytest.mark.nightly(only=[str(many)])
+        @pytest.mark.parametrize("examples", [few, many])
+        def test(examples: int) -> None:
+            enough = settings(deadline=None, derandomize=True, max_examples=examples)
+            enough(given(*strategies)(function))()
+
+        test.__name__, test.__doc__ = function.__name__, function.__doc__
+        return test
+
+    return decorate

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.assertions.formula import TINY, Evaluation, formula_verdict
@@ -18,6 +17,7 @@ from tests.assertions import evidence_runs as shared
 from tests.assertions.evidence import AT_ONCE, Evidence, Free
 from tests.assertions.synthetic_run import at, force, heights, lift_run, make_run, verdict
 from tests.engine.front_door import problems
+from tests.lanes import property_test
 
 EPS = 1e-9
 
@@ -114,8 +114,7 @@ def brute(node, i, columns, times, side):
     return max(options, default=-math.inf)
 
 
-@settings(deadline=None, derandomize=True, max_examples=400)
-@given(signals(), formulas)
+@property_test(signals(), formulas, few=50, many=400)
 def test_a_formula_is_worth_what_its_definition_says(signal, formula):
     x, y, times = signal
     window = window_of(run_of(x, y, times))
@@ -126,8 +125,7 @@ def test_a_formula_is_worth_what_its_definition_says(signal, formula):
         assert bounds.high[i] == brute(formula, i, columns, times, 1), "at most"
 
 
-@settings(deadline=None, derandomize=True, max_examples=400)
-@given(signals(), formulas)
+@property_test(signals(), formulas, few=50, many=400)
 def test_what_decides_a_formula_is_a_sample_with_its_margin(signal, formula):
     x, y, times = signal
     evaluation = Evaluation(window_of(run_of(x, y, times)))
@@ -268,8 +266,7 @@ def _word(function, *arguments):
 optional = st.none() | spans
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
-@given(signals(), optional, optional)
+@property_test(signals(), optional, optional, few=25, many=200)
 def test_temporal_words_agree_with_their_formulas(signal, hold, within):
     """Where a formula is not decided, because a hold or deadline ends too late, a word may fail."""
     x, y, times = signal

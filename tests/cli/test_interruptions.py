@@ -147,7 +147,7 @@ def test_no_command_that_cannot_write_says_failed(folder, command, is_unbuffered
     assert done.stderr == ("harness: standard output cannot be written: No space left on device\n")
 
 
-@pytest.mark.nightly(but=["osmesa"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("library", ["xyz", "osmesa", "egl", "disable"])
 def test_a_graphics_library_that_is_missing_stops_no_run(folder, library):
     for more in ([], ["--in-process"]):

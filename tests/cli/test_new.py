@@ -82,6 +82,7 @@ def test_a_gripper_without_an_srdf_gets_a_pick_that_passes(capsys, folder, urdf)
     assert code == 0, said
 
 
+@pytest.mark.nightly
 def test_what_is_in_reach_on_the_floor_alone_is_picked_there(capsys, folder):
     """The wrist bends by 66 degrees, so that the hand points down only near the floor."""
     wrist = 'name="e_joint"(.*?)lower="-3" upper="3"'
@@ -93,6 +94,7 @@ def test_what_is_in_reach_on_the_floor_alone_is_picked_there(capsys, folder):
     assert "it was run once and passed" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_an_arm_far_from_the_root_of_its_robot_picks_too(capsys, folder):
     """Places for the box are measured from the link that carries the arm."""
     cell = (
@@ -106,6 +108,7 @@ def test_an_arm_far_from_the_root_of_its_robot_picks_too(capsys, folder):
     assert "it was run once and passed" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_the_box_is_as_heavy_as_the_fingers_can_hold(capsys, folder):
     weak = SIX.replace('effort="40"', 'effort="1.5"')
     assert weak != SIX
@@ -135,6 +138,7 @@ def test_no_pick_is_tried_after_its_time(tmp_path, capsys, monkeypatch, seconds,
     assert "it was run once and passed" in said
 
 
+@pytest.mark.nightly(but=["1.23456789"])
 @pytest.mark.parametrize("start", ["1.23456789", "-1.23456789"])
 def test_goals_stay_inside_limits_that_rounding_would_exceed(capsys, folder, start):
     """The robot starts on a limit of many digits."""
@@ -148,6 +152,7 @@ def test_goals_stay_inside_limits_that_rounding_would_exceed(capsys, folder, sta
     assert code == 0, said
 
 
+@pytest.mark.nightly(but=["3.1"])
 @pytest.mark.parametrize("bend", ["3.1", "2.9"])
 def test_a_robot_that_starts_in_collision_gets_a_start_that_is_free(capsys, folder, bend):
     """All joints at zero, or the only named state, is in collision."""

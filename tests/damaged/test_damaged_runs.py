@@ -209,6 +209,7 @@ def zeros_npz(path, name, shape):
             left -= member.write(bytes(min(left, 2**24)))
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("name", "shape", "said"),
     [

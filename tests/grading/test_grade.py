@@ -49,6 +49,7 @@ def test_a_bag_of_the_harness_gets_the_verdicts_of_its_run_wherever_they_can_be_
     assert grade.earned == grade.points == 14
 
 
+@pytest.mark.nightly
 def test_a_run_that_fails_fails_as_a_bag_too(tmp_path):
     """Put down elsewhere: the other side of the round trip."""
     wrong = {"steps.3.place.pose.xyz": "[0.3, 0.05, 0.045]"}
@@ -231,6 +232,7 @@ def test_points_add_up_and_count_one_each_where_none_are_given():
 LESSONS = sorted((data_folder("scenarios") / "lessons").glob("*.scenario.yaml"))
 
 
+@pytest.mark.nightly(but=["04_gripper_alone", "01_open_manipulator_first_steps"])
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda path: path.name.partition(".")[0])
 def test_a_lesson_loses_no_point_when_its_own_bag_is_graded(lesson, recorded_run, tmp_path):
     """What the bag shows is judged as in the run; contacts alone cannot be seen in it."""

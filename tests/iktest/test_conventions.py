@@ -38,6 +38,7 @@ def centimetres_and_degrees(x, y, z, pitch):
     return [in_degrees(*each) for each in targets(0.01, pi / 180)(x, y, z, pitch)]
 
 
+@pytest.mark.nightly(but=["ik-it is taken in degrees", "ik-`pitch` counts upwards"])
 @pytest.mark.parametrize(
     ("ik", "words"),
     [
@@ -74,6 +75,7 @@ def test_a_convention_is_one_finding(ik, words):
     assert not report.has_passed
 
 
+@pytest.mark.nightly
 def test_what_is_wrong_besides_is_found_too():
     ik = answers(in_degrees)
 
@@ -91,6 +93,7 @@ def test_what_is_wrong_besides_is_found_too():
     assert kinds[1] == "refuses a target within reach"
 
 
+@pytest.mark.nightly
 def test_lengths_of_a_slide_and_the_zero_of_a_joint_without_limits_are_recognised(tmp_path):
     write_arm(tmp_path)
     source = RobotSource(str(tmp_path / "arm.urdf"), srdf=str(tmp_path / "arm.srdf"))

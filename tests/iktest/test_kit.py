@@ -123,6 +123,7 @@ def test_an_answer_that_depends_on_the_call_before_is_found():
     assert found(ik)["determinism"].kind == "answers differently when called again"
 
 
+@pytest.mark.nightly
 def test_a_way_left_out_is_found_only_where_all_are_claimed():
     def ik(x, y, z, pitch):
         return correct(x, y, z, pitch)[:1]
@@ -133,6 +134,7 @@ def test_a_way_left_out_is_found_only_where_all_are_claimed():
     assert "1 answers, none of them" in finding.detail
 
 
+@pytest.mark.nightly
 def test_the_same_seed_finds_the_same_and_another_draws_others():
     def run(seed):
         calls = []

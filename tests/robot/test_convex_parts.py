@@ -116,6 +116,7 @@ def test_corners_that_hardly_stand_out_of_a_fine_mesh_are_left_out():
     assert heights.max() <= 2e-5
 
 
+@pytest.mark.nightly
 def test_another_process_finds_the_same_parts(tmp_path):
     path = write_obj(tmp_path / "bin.obj", *vessel(**BIN | {"sides": 3}))
     here = decomposition_of(Mesh(path))

@@ -7,12 +7,12 @@ import warnings
 from types import SimpleNamespace
 
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.robot.xacro.expression import Namespace, evaluate
 from harness.robot.xacro.functions import BUILTINS, MATH, PYTHON
 from harness.robot.xacro.values import Budget, Exhausted, ExpressionError, Function, YamlDict
+from tests.lanes import property_test
 
 VALUES = {
     "x": 3,
@@ -108,8 +108,7 @@ def of_harness(expression):
         return None, error
 
 
-@settings(deadline=None, derandomize=True, max_examples=600)
-@given(st.recursive(literals, compound, max_leaves=8))
+@property_test(st.recursive(literals, compound, max_leaves=8), few=75, many=600)
 def test_an_expression_has_the_value_that_python_gives_it(expression):
     """Views and iterators of Python are lists here, and complex numbers are refused."""
     expected, of_eval = of_python(expression)
@@ -123,8 +122,7 @@ def test_an_expression_has_the_value_that_python_gives_it(expression):
         assert has_views or (error is not None and not is_data), (value, error, expected, of_eval)
 
 
-@settings(deadline=None, derandomize=True, max_examples=1000)
-@given(st.lists(PIECES, max_size=20), st.sampled_from(["", " "]))
+@property_test(st.lists(PIECES, max_size=20), st.sampled_from(["", " "]), few=125, many=1000)
 def test_any_text_has_a_value_or_a_located_error(pieces, separator):
     text = separator.join(pieces)
     value, error = of_harness(text)

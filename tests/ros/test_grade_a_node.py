@@ -143,6 +143,7 @@ def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
     assert main(["replay", str(folder)]) == 2
 
 
+@pytest.mark.nightly(but=["20 ms"])
 @pytest.mark.parametrize("timeout", ["20 ms", "300"])
 def test_a_step_of_nodes_that_no_node_took_has_nothing_to_replay(tmp_path, capsys, timeout):
     """Five minutes of simulated time would pass before that shows."""

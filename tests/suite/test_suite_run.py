@@ -195,6 +195,7 @@ def test_a_table_reports_which_quantity_decides(varied):
     ).replace("  harness", " harness")
 
 
+@pytest.mark.nightly
 def test_what_is_known_is_not_computed_again_and_what_changed_is(varied):
     path = varied(GRID)
     first = results(path, "--no-page", cwd=path.parent)
@@ -226,6 +227,7 @@ def test_a_case_that_is_not_there_is_named_with_those_that_are(varied):
     assert "0.05_s-1, 0.05_s-2" in done.stderr
 
 
+@pytest.mark.nightly
 def test_a_mistake_in_one_value_is_reported_of_its_cases_alone(varied):
     path = varied(GRID.replace("0.2 s]", "0.2 m]"))
     done = harness("check", path, cwd=path.parent)
@@ -277,6 +279,7 @@ def test_a_mistake_of_the_file_is_reported_once_not_for_every_sample(varied):
     assert "1 invalid of 1 case" in done.stdout
 
 
+@pytest.mark.nightly
 def test_failures_are_reported_in_the_format_that_is_requested(varied):
     path = varied(GRID)
     words = ("--no-report", "--case", "0.2_s-1")

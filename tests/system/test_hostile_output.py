@@ -83,6 +83,7 @@ def hostile(request, tmp_path_factory):
     return folder
 
 
+@pytest.mark.nightly(only=[0, 1, 2, 26, 27, 28])
 @pytest.mark.parametrize(
     "arguments",
     [
