@@ -76,8 +76,7 @@ class PlanningTask:
         dynamics = self.limits.dynamics
         if dynamics is None:
             return None
-        motion = SampledMotion.of(path, self.space.metric, HOLD_RESOLUTION)
-        states = np.array([path[0], *(motion.state(row) for row in range(motion.last + 1))])
+        states = SampledMotion.of(path, self.space.metric, HOLD_RESOLUTION).states()
         if dynamics.can_hold(states):
             return None
         self.checker.can_hold = dynamics.can_hold

@@ -56,6 +56,12 @@ class SampledMotion:
             return count
         return max(1, min(count, math.ceil(count * self.spacing / COUNTED_RESOLUTION)))
 
+    def states(self) -> FloatArray:
+        """Group positions at the start and at each state, shape (1 + `last` + 1, dof)."""
+        numbers = np.arange(-1, self.last + 1)
+        columns = [np.interp(numbers, self.places, column) for column in self.corners.T]
+        return np.stack(columns, axis=1)
+
     def row(self, state: int) -> float:
         """Where a state is: 1.25 is a quarter of the way from the second corner to the third."""
         row = bisect_right(self.places, state, 1, len(self.places) - 1) - 1
