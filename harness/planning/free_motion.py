@@ -19,7 +19,13 @@ from harness.planning.search.find_pipeline import is_built_in
 from harness.planning.search.path_search import Effort, FoundPath, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.task import PlanningTask
-from harness.planning.timing.timing import TimingError, time_blended, time_stopping, time_straight
+from harness.planning.timing.timing import (
+    BlendedPath,
+    TimingError,
+    time_blended,
+    time_stopping,
+    time_straight,
+)
 from harness.planning.verification.verify import (
     FINAL_RESOLUTION,
     VERIFIED_RESOLUTION,
@@ -179,8 +185,11 @@ def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defec
         trajectory = time_straight(names, waypoints[0], end, task.limits)
         return task.defect(trajectory, end) or trajectory
     for blend in BLEND_DEVIATIONS:
+        path = BlendedPath(waypoints, blend)
+        if not all(task.checker.path_free(each, VERIFIED_RESOLUTION) for each in path.blends()):
+            continue
         try:
-            trajectory = time_blended(names, waypoints, task.limits, blend)
+            trajectory = time_blended(names, path, task.limits)
         except TimingError:
             continue
         departure = find_departure(trajectory, waypoints, blend)

@@ -11,7 +11,7 @@ from harness.core.geometry import Box, Shape
 from harness.core.world import WorldObject
 from harness.planning.efforts import InverseDynamics
 from harness.planning.model.robot_model import GroupSpace
-from harness.planning.timing.timing import Limits, time_blended, time_straight
+from harness.planning.timing.timing import BlendedPath, Limits, time_blended, time_straight
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion
@@ -74,7 +74,7 @@ def test_a_motion_is_slowed_until_its_efforts_are_kept(way):
     def timed(limits):
         if way == "straight":
             return time_straight(names, PATH[0], PATH[1], limits)
-        return time_blended(names, PATH, limits, 0.05)
+        return time_blended(names, BlendedPath(PATH, 0.05), limits)
 
     def share(trajectory):
         efforts = dynamics.efforts(

@@ -34,7 +34,7 @@ def ways(seed):
     path = zigzag(seed)
     return {
         "straight": (path[:2], time_straight(NAMES, path[0], path[1], LIMITS)),
-        "toppra": (path, time_blended(NAMES, path, LIMITS, 0.05)),
+        "toppra": (path, time_blended(NAMES, BlendedPath(path, 0.05), LIMITS)),
         "stopping": (path, time_stopping(NAMES, path, LIMITS)),
     }
 
@@ -98,7 +98,7 @@ def test_a_jerk_limit_holds_between_samples_of_every_kind_of_motion(jerk):
     path = zigzag(1)
     for trajectory, without in (
         (time_straight(NAMES, path[0], path[1], limits), ways(1)["straight"][1]),
-        (time_blended(NAMES, path, limits, 0.05), ways(1)["toppra"][1]),
+        (time_blended(NAMES, BlendedPath(path, 0.05), limits), ways(1)["toppra"][1]),
     ):
         changes = np.diff(trajectory.accelerations, axis=0) / np.diff(trajectory.times)[:, None]
         assert np.abs(changes).max() <= jerk * (1 + 1e-6)
@@ -151,7 +151,7 @@ def test_commands_between_set_points_keep_the_joints_accelerations(scaling, coun
         if count == 2:
             trajectory = time_straight(NAMES, *waypoints, limits)
         else:
-            trajectory = time_blended(NAMES, waypoints, limits, 0.05)
+            trajectory = time_blended(NAMES, BlendedPath(waypoints, 0.05), limits)
         commands = sample_trajectory(trajectory, 0.001)
         assert (np.abs(commands.accelerations) <= joints * (1 + 1e-6)).all()
         changes = np.abs(np.diff(commands.velocities, axis=0)) / 0.001
@@ -163,6 +163,6 @@ def test_a_scaled_motion_whose_commands_keep_the_limits_is_not_slowed():
     scaled = Limits.scaled(np.full(6, np.pi), np.full(6, 5.0), 0.3, 0.3)
     free = replace(scaled, commanded=None)
     for limits in (scaled, free):
-        assert time_blended(NAMES, waypoints, limits, 0.05).duration == pytest.approx(
-            time_blended(NAMES, waypoints, scaled, 0.05).duration, abs=0
+        assert time_blended(NAMES, BlendedPath(waypoints, 0.05), limits).duration == pytest.approx(
+            time_blended(NAMES, BlendedPath(waypoints, 0.05), scaled).duration, abs=0
         )

@@ -8,7 +8,7 @@ import pytest
 from harness.core.geometry import Box, Shape
 from harness.core.trajectory import JointTrajectory
 from harness.planning.task import make_task
-from harness.planning.timing.timing import time_blended, time_straight
+from harness.planning.timing.timing import BlendedPath, time_blended, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import find_defect, find_departure
 from harness.ports.goals import JointBand, PathConstraints
@@ -122,7 +122,7 @@ def test_what_is_in_the_way_is_found_with_its_time(good):
 
 def test_a_trajectory_off_the_path_that_was_checked_is_found(task):
     path = np.array([START, START + np.array([0.4, 0.2, 0, 0, 0, 0]), END])
-    trajectory = time_blended(task.space.joint_names, path, task.limits, 0.05)
+    trajectory = time_blended(task.space.joint_names, BlendedPath(path, 0.05), task.limits)
     assert find_departure(trajectory, path, 0.05) is None
     tight = find_departure(trajectory, path, 0.005)
     assert tight is not None

@@ -20,10 +20,9 @@ from harness.planning.timing.limits import (
     TimingError,
     sampled_within_limits,
     stretched,
-    within_limits,
 )
 from harness.planning.timing.profiles import on_grid, resting
-from harness.planning.timing.toppra_solver import LinkLimits, fastest
+from harness.planning.timing.toppra_solver import Bounds, fastest
 
 _MOST_STRETCHES = 8
 _TINY = 1e-9
@@ -57,8 +56,7 @@ def time_curve(
         return resting(joint_names, spline.samples[0])
     grid = spline.grid()
     knots = np.minimum(np.searchsorted(spline.knots, grid, side="right") - 1, len(spline.knots) - 1)
-    timed, duration = fastest(spline, limits, grid, _link_limits(curve, space, grid, knots))
-    timed, total = within_limits(timed, duration, limits)
+    timed, total = fastest(spline, limits, grid, _link_bounds(curve, space, grid, knots))
     base, length, excess = timed, total, np.inf
     for _ in range(_MOST_STRETCHES):
         trajectory = sampled_within_limits(joint_names, timed, total, limits)
@@ -114,9 +112,9 @@ def link_excess(curve: RatedCurve, space: GroupSpace, trajectory: JointTrajector
     return worst
 
 
-def _link_limits(
+def _link_bounds(
     curve: RatedCurve, space: GroupSpace, grid: FloatArray, knots: IntArray
-) -> LinkLimits | None:
+) -> Bounds | None:
     if all(rates is None for rates in curve.rates):
         return None
     positions, first, _ = curve.spline.evaluate(grid)
@@ -144,11 +142,10 @@ def _link_limits(
     free = np.isinf(acceleration)
     pull = np.where(free, 0.0, across * np.where(free, 0.0, squared))
     forward = np.sqrt(np.where(free, np.inf, acceleration**2 - pull**2))
-    return LinkLimits(
-        np.minimum(squared, 1e8),
-        np.column_stack([speed / forward, turning / turn_acceleration]),
-        np.column_stack([along / forward, turning_bend / turn_acceleration]),
-    )
+    speeds = np.column_stack([speed / forward, turning / turn_acceleration])
+    bends = np.column_stack([along / forward, turning_bend / turn_acceleration])
+    none, most = np.zeros_like(speeds), np.ones(2)
+    return Bounds(speeds, bends, none, most, np.minimum(squared, 1e8), between=False)
 
 
 def _link_rates(

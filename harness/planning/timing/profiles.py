@@ -16,8 +16,6 @@ GRID = 0.002
 SAMPLE_PERIOD = 0.01
 """Time between set points [s]: five steps of the grid; the last one may be nearer."""
 
-_INTEGRATION_STEP = 0.0005  # [s]
-
 Curve = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 """Positions, velocities and accelerations, (N, dof) each, at times (N,)."""
 
@@ -155,7 +153,7 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
         L. Biagiotti, C. Melchiorri, "FIR filters for online trajectory planning with time- and
         frequency-domain specifications", Control Engineering Practice 20(12), 2012.
     """
-    count = max(1, int(np.ceil(duration / _INTEGRATION_STEP)))
+    count = max(1, int(np.ceil(duration / GRID)))
     knots: FloatArray = np.linspace(0.0, duration, count + 1)
     step = duration / count
     at, rates, _ = curve(knots)

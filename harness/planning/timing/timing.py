@@ -15,15 +15,16 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.timing.limits import Limits as Limits
 from harness.planning.timing.limits import TimingError as TimingError
-from harness.planning.timing.limits import sampled_within_limits, slowed_to_limits, within_limits
+from harness.planning.timing.limits import sampled_within_limits, slowed_to_limits
 from harness.planning.timing.profiles import Trapezoid, on_grid, resting, straight_curve
 from harness.planning.timing.toppra_solver import fastest
 
-GRID_POINTS_PER_PIECE = 20
+POINTS_PER_PIECE = 20
 """TOPP-RA's grid points on each line and blend; fewer break the limits in between."""
 
 _AT_REST = 1e-9  # [rad] paths shorter than this have nowhere to go
 _LARGEST_SHARE = 0.45  # of a segment that one blend may take
+_ROUNDING = 1e-12  # [rad] parameters that near below a break count as at it
 
 
 class BlendedPath:
@@ -35,22 +36,34 @@ class BlendedPath:
     Attributes:
         breaks: Parameters at which lines and blends meet, shape (K,), from 0 to `length`.
         length: The length of the polyline, the range of the parameter [rad].
+        ends: The first and the last waypoint, shape (2, dof).
     """
 
     def __init__(self, waypoints: FloatArray, deviation: float) -> None:
         """Round the corners of waypoints (N, dof), with at most `deviation` from them [rad]."""
-        self._waypoints = waypoints
         segments = np.diff(waypoints, axis=0)
         lengths = np.linalg.norm(segments, axis=1)
-        self._directions = segments / lengths[:, None]
-        self._knots = np.concatenate([[0.0], np.cumsum(lengths)])
-        self.length = float(self._knots[-1])
-        changes = np.linalg.norm(np.diff(self._directions, axis=0), axis=1)
+        directions = segments / lengths[:, None]
+        knots = np.concatenate([[0.0], np.cumsum(lengths)])
+        self.length = float(knots[-1])
+        self.ends = waypoints[[0, -1]]
+        turns = np.diff(directions, axis=0)
+        changes = np.linalg.norm(turns, axis=1)
         room = _LARGEST_SHARE * np.minimum(lengths[:-1], lengths[1:])
-        self._reaches = np.minimum(room, 4 * deviation / np.maximum(changes, 1e-9))
-        corners = self._knots[1:-1]
-        self.breaks = np.sort(
-            np.concatenate([[0.0, self.length], corners - self._reaches, corners + self._reaches])
+        reaches = np.minimum(room, 4 * deviation / np.maximum(changes, 1e-9))
+        corners, reach = knots[1:-1], reaches[:, None]
+        bends = np.zeros((2 * len(segments) - 1, waypoints.shape[1]))
+        bends[1::2] = turns / (2 * reach)
+        entries = waypoints[1:-1] - reach * directions[:-1]
+        self.breaks = np.concatenate(
+            [[0.0], _alternating(corners - reaches, corners + reaches), [self.length]]
+        )
+        self._pieces = (
+            _alternating(knots[:-1], corners),
+            _alternating(np.zeros(len(segments)), reaches),
+            _alternating(waypoints[:-1], entries),
+            _alternating(directions, directions[:-1]),
+            bends,
         )
 
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -59,25 +72,34 @@ class BlendedPath:
         Where the second derivative jumps, its value is the limit from above (at the end: below).
         """
         s = np.atleast_1d(np.asarray(parameter, dtype=float))
-        segment = np.clip(
-            np.searchsorted(self._knots, s, side="right") - 1, 0, len(self._directions) - 1
+        last = len(self.breaks) - 2
+        piece = np.clip(np.searchsorted(self.breaks, s + _ROUNDING, side="right") - 1, 0, last)
+        knot, reach, entry, direction, bend = (rows.take(piece, axis=0) for rows in self._pieces)
+        u = (s - knot + reach)[:, None]
+        return entry + u * direction + 0.5 * u**2 * bend, direction + u * bend, bend
+
+    def grid(self) -> FloatArray:
+        """Points for TOPP-RA: evenly on every line and blend, shape (M,)."""
+        pieces = [pair for pair in pairwise(self.breaks.tolist()) if pair[1] - pair[0] > 1e-9]
+        grid = np.unique(
+            np.concatenate([np.linspace(*piece, POINTS_PER_PIECE + 1) for piece in pieces])
         )
-        direction = self._directions[segment]
-        positions = self._waypoints[segment] + (s - self._knots[segment])[:, None] * direction
-        first, second = direction.copy(), np.zeros_like(direction)
-        for corner, reach in enumerate(self._reaches):
-            at = self._knots[corner + 1]
-            near = (s >= at - reach - 1e-12) & (s < at + reach - 1e-12)
-            if not near.any() or reach < 1e-9:
-                continue
-            before, after = self._directions[corner], self._directions[corner + 1]
-            u = (s[near] - at + reach)[:, None]
-            bend = (after - before) / (2 * reach)
-            entry = self._waypoints[corner + 1] - reach * before
-            positions[near] = entry + u * before + 0.5 * u**2 * bend
-            first[near] = before + u * bend
-            second[near] = bend
-        return positions, first, second
+        grid = grid[np.concatenate([[True], np.diff(grid) > 1e-10])]
+        grid[0], grid[-1] = 0.0, self.length
+        return grid
+
+    def blends(self) -> list[FloatArray]:
+        """Positions along each blend, shape (`POINTS_PER_PIECE` + 1, dof)."""
+        first, last = self.breaks[1:-1:2], self.breaks[2:-1:2]
+        grids = np.linspace(first, last, POINTS_PER_PIECE + 1, axis=1)
+        return [self.evaluate(grid)[0] for grid in grids]
+
+
+def _alternating(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Rows of two arrays in turn; the first array may have one row more."""
+    found = np.empty((len(first) + len(second), *first.shape[1:]))
+    found[::2], found[1::2] = first, second
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,38 +197,19 @@ def joined(pieces: Sequence[JointTrajectory]) -> JointTrajectory:
 
 
 def time_blended(
-    joint_names: tuple[str, ...], waypoints: FloatArray, limits: Limits, deviation: float
+    joint_names: tuple[str, ...], path: BlendedPath, limits: Limits
 ) -> JointTrajectory:
     """Move along a polyline with rounded corners as fast as the limits allow, timed by TOPP-RA.
 
     Args:
         joint_names: The joint names of the columns.
-        waypoints: The waypoints, shape (N, dof), N > 2.
+        path: The polyline.
         limits: Kept on every 2 ms sample: the times are stretched where TOPP-RA exceeds them.
-        deviation: Largest joint-space distance from a corner [rad].
 
     Raises:
         TimingError: TOPP-RA has no solution.
     """
-    path = BlendedPath(waypoints, deviation)
-    timed, duration = fastest(path, limits, _grid(path))
-    curve, total = within_limits(timed, duration, limits)
+    curve, total = fastest(path, limits, path.grid())
     trajectory = sampled_within_limits(joint_names, curve, total, limits)
-    trajectory.positions[0], trajectory.positions[-1] = waypoints[0], waypoints[-1]
+    trajectory.positions[[0, -1]] = path.ends
     return trajectory
-
-
-def _grid(path: BlendedPath) -> FloatArray:
-    """TOPP-RA's grid points: evenly on every line and blend."""
-    grid = np.unique(
-        np.concatenate(
-            [
-                np.linspace(low, high, GRID_POINTS_PER_PIECE + 1)
-                for low, high in zip(path.breaks[:-1], path.breaks[1:], strict=True)
-                if high - low > 1e-9
-            ]
-        )
-    )
-    grid = grid[np.concatenate([[True], np.diff(grid) > 1e-10])]
-    grid[0], grid[-1] = 0.0, path.length
-    return grid

@@ -1,17 +1,21 @@
 """Computes the fastest times along a joint-space curve under limits, with TOPP-RA."""
 
-# pyright: reportAttributeAccessIssue=false
-
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.timing.limits import Limits, TimingError
-from harness.planning.timing.profiles import SAMPLE_PERIOD, Curve
+from harness.planning.timing.limits import (
+    EFFORT_PERIOD,
+    Limits,
+    TimingError,
+    time_grid,
+    within_limits,
+)
+from harness.planning.timing.profiles import Curve
 
 UNLIMITED_EFFORT = 1e6
 """Stands for no limit [N m or N]: the solver takes finite numbers."""
@@ -28,25 +32,34 @@ class JointCurve(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class LinkLimits:
-    """What a link may do along a curve, at every grid point; shape (M,) each.
+class Bounds:
+    """|speeds u + bends x + offsets| <= most at every grid point, and x <= rate_squared.
 
-    With the parameter's rate squared x and its acceleration u: `rate_squared` bounds x, and
-    |speeds u + bends x| <= 1 bounds accelerations, one column a kind, shape (M, k).
+    x is the square of the parameter's rate and u its acceleration.
+
+    Attributes:
+        speeds: Shape (M, k), like `bends` and `offsets`.
+        most: Shape (k,).
+        rate_squared: Shape (M,); None for no bound.
+        between: Whether the bounds of a grid point hold at the next one too, as it is approached:
+            toppra's scheme "Interpolation".
     """
 
-    rate_squared: FloatArray
     speeds: FloatArray
     bends: FloatArray
+    offsets: FloatArray
+    most: FloatArray
+    rate_squared: FloatArray | None = None
+    between: bool = True
 
 
 def fastest(
-    path: JointCurve, limits: Limits, grid: FloatArray, link_limits: LinkLimits | None = None
+    path: JointCurve, limits: Limits, grid: FloatArray, link_bounds: Bounds | None = None
 ) -> tuple[Curve, float]:
-    """TOPP-RA's solution as a curve over time, and its duration [s].
+    """The fastest motion along a path that keeps the limits, and its duration [s].
 
-    Effort limits take part only where the solution without them breaks them: where it does not,
-    it is the solution with them too.
+    It is TOPP-RA's solution, slowed and smoothed as `within_limits` does. Effort limits take part
+    only where the solution without them breaks them.
 
     Raises:
         TimingError: There is no solution.
@@ -55,94 +68,49 @@ def fastest(
         H. Pham, Q.-C. Pham, "A New Approach to Time-Optimal Path Parameterization Based on
         Reachability Analysis", IEEE T-RO 34(3), 2018.
     """
-    constraints = _joint_constraints(limits)
-    if link_limits is not None:
-        constraints.append(_link_constraint(link_limits, len(limits.velocity)))
-    timed, duration = _solve(path, constraints, grid, len(limits.velocity))
-    times: FloatArray = np.arange(0.0, duration, SAMPLE_PERIOD)
-    if limits.effort_excess(*timed(times)) > 1.0:
-        constraints.append(_effort_constraint(limits))
-        timed, duration = _solve(path, constraints, grid, len(limits.velocity))
-    return timed, duration
+    states = path.evaluate(grid)
+    bounds = [joint_bounds(states, limits)]
+    if link_bounds is not None:
+        bounds.append(link_bounds)
+    weightless = replace(limits, dynamics=None)
+    curve, duration = within_limits(*_solve(path, bounds, grid), weightless)
+    if limits.effort_excess(*curve(time_grid(duration)[::EFFORT_PERIOD])) > 1.0:
+        bounds.append(_effort_bounds(states, limits))
+        return within_limits(*_solve(path, bounds, grid), limits)
+    return curve, duration
 
 
-def _joint_constraints(limits: Limits) -> list[Any]:
-    ta = _toppra()
-    return [
-        ta.constraint.JointVelocityConstraint(np.column_stack([-limits.velocity, limits.velocity])),
-        ta.constraint.JointAccelerationConstraint(
-            np.column_stack([-limits.acceleration, limits.acceleration])
-        ),
-    ]
+def joint_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
+    """Bounds of the joints' velocities and accelerations, at the states of a path's grid points.
+
+    The bound of the rate has single precision, as in the library.
+    """
+    _, first, second = states
+    with np.errstate(divide="ignore"):
+        rate = np.min(limits.velocity / np.abs(first), axis=1).astype(np.float32)
+    none = np.zeros_like(first)
+    return Bounds(first, second, none, limits.acceleration, (rate**2).astype(float))
 
 
-def _effort_constraint(limits: Limits) -> Any:
+def _effort_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
     dynamics = limits.dynamics
     if dynamics is None:
         raise TimingError("the robot has no effort limits")
-    most = np.minimum(dynamics.limits, UNLIMITED_EFFORT)
-    bounds = np.column_stack([-most, most])
-
-    def inverse_dynamics(q: FloatArray, qd: FloatArray, qdd: FloatArray) -> FloatArray:
-        return dynamics.efforts(q[None], qd[None], qdd[None])[0]
-
-    constraint = _toppra().constraint
-    return constraint.JointTorqueConstraint(
-        inverse_dynamics,
-        bounds,
-        np.zeros(len(bounds)),
-        constraint.DiscretizationType.Interpolation,
-    )
+    positions, first, second = states
+    still = np.zeros_like(positions)
+    standing = dynamics.efforts(positions, still, still)
+    speeds = dynamics.efforts(positions, still, first) - standing
+    bends = dynamics.efforts(positions, first, second) - standing
+    return Bounds(speeds, bends, standing, np.minimum(dynamics.limits, UNLIMITED_EFFORT))
 
 
-def _link_constraint(limits: LinkLimits, dof: int) -> Any:
-    constraint = _toppra().constraint
-    kinds = limits.speeds.shape[1]
+def _solve(path: JointCurve, bounds: list[Bounds], grid: FloatArray) -> tuple[Curve, float]:
+    from harness.planning.timing.toppra_library import squared_rates  # here: few motions need it
 
-    class OnLink(constraint.LinearConstraint):
-        def __init__(self) -> None:
-            super().__init__()
-            self.dof = dof
-            self.identical = True
-            self.set_discretization_type(constraint.DiscretizationType.Collocation)
-
-        def compute_constraint_params(self, path: Any, gridpoints: FloatArray) -> tuple[Any, ...]:
-            del path
-            sides = np.vstack([np.eye(kinds), -np.eye(kinds)])
-            x_bound = np.column_stack([np.zeros(len(gridpoints)), limits.rate_squared])
-            none = np.zeros_like(limits.speeds)
-            return limits.speeds, limits.bends, none, sides, np.ones(2 * kinds), None, x_bound
-
-    return OnLink()
-
-
-def _solve(
-    path: JointCurve, constraints: list[Any], grid: FloatArray, dof: int
-) -> tuple[Curve, float]:
-    ta = _toppra()
-
-    class Geometry(ta.interpolator.AbstractGeometricPath):
-        def __call__(self, path_positions: Any, order: int = 0) -> FloatArray:
-            values = path.evaluate(path_positions)[order]
-            return values[0] if np.ndim(path_positions) == 0 else values
-
-        @property
-        def dof(self) -> int:
-            return dof
-
-        @property
-        def path_interval(self) -> FloatArray:
-            return np.array([0.0, path.length])
-
-        @property
-        def waypoints(self) -> None:
-            return None
-
-    solver = ta.algorithm.TOPPRA(constraints, Geometry(), gridpoints=grid)
-    _, rates, _ = solver.compute_parameterization(0, 0)
-    if rates is None or not np.isfinite(rates).all():
+    rates = squared_rates(bounds, grid)
+    if rates is None:
         raise TimingError("TOPP-RA found no times under the limits")
-    return _timed(path, grid, rates)
+    return _timed(path, grid, np.sqrt(rates))
 
 
 def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
@@ -166,9 +134,3 @@ def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve
         return positions, first * rate, second * rate**2 + first * growth[:, None]
 
     return timed, float(ends[-1])
-
-
-def _toppra() -> Any:
-    from harness.planning.timing.toppra_library import toppra  # here: not every motion needs it
-
-    return toppra
