@@ -203,7 +203,7 @@ def time_blended(
 
     Args:
         joint_names: The joint names of the columns.
-        path: The polyline.
+        path: The polyline with its rounded corners.
         limits: Kept on every 2 ms sample: the times are stretched where TOPP-RA exceeds them.
 
     Raises:

@@ -38,9 +38,9 @@ class Bounds:
     x is the square of the parameter's rate and u its acceleration.
 
     Attributes:
-        speeds: Shape (M, k), like `bends` and `offsets`.
-        most: Shape (k,).
-        rate_squared: Shape (M,); None for no bound.
+        speeds: The factors of u, shape (M, k), like `bends` of x and `offsets`.
+        most: The largest magnitudes, shape (k,).
+        rate_squared: The largest x, shape (M,); None for no bound.
         between: Whether the bounds of a grid point hold at the next one too, as it is approached:
             toppra's scheme "Interpolation".
     """
