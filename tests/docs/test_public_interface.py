@@ -41,6 +41,7 @@ def test_the_interface_of_the_package_is_what_it_defines():
     assert own | {"__version__"} == {*harness.__all__}
 
 
+@pytest.mark.nightly
 def test_a_program_that_uses_the_interface_passes_a_type_checker(tmp_path):
     pytest.importorskip("pyright")
     assert (Path(harness.__file__).parent / "py.typed").is_file()

@@ -163,6 +163,7 @@ def test_it_is_judged_reported_and_judged_again(site, scenario, tmp_path):
     assert "no predicate is called `tcp_height`" in said
 
 
+@pytest.mark.nightly
 def test_pytest_collects_it(site, scenario):
     options = ("-p", "no:cacheprovider", "-p", "no:xdist", "-q", scenario.name)
     assert "1 passed" in python("-m", "pytest", *options, site=site, cwd=scenario.parent)
@@ -177,6 +178,7 @@ def test_a_file_that_uses_it_without_the_package_is_refused_at_its_lines(scenari
         assert "up.scenario.yaml:7:14" in said
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("form", ["module", "file"])
 def test_one_module_is_loaded_with_an_option(tmp_path, scenario, form):
     (tmp_path / "heights.py").write_text(TCP_HEIGHT, encoding="utf-8")
@@ -213,6 +215,7 @@ DECLARED = """
 """
 
 
+@pytest.mark.nightly
 def test_a_predicate_that_reads_what_it_does_not_declare_is_an_error_of_the_program(
     tmp_path, scenario
 ):
@@ -242,6 +245,7 @@ class Odd(Predicate):
 """
 
 
+@pytest.mark.nightly(but=[3])
 @pytest.mark.parametrize(
     ("body", "expected"),
     [

@@ -157,6 +157,7 @@ def test_the_reference_page_has_the_steps_of_a_plug_in(tmp_path):
     assert "| `pause` | a time [s] | `0.02` | The step takes this long [s]. |" in section
 
 
+@pytest.mark.nightly
 def test_without_the_plug_in_the_verb_is_a_located_error(tmp_path):
     (tmp_path / "remarks.scenario.yaml").write_text(SCENARIO, encoding="utf-8")
     for command in (["check"], ["explain"], ["run", "--no-report"]):

@@ -66,6 +66,7 @@ def test_a_value_that_an_option_gave_is_part_of_the_conditions():
     assert cases("again") == cases("first")
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("project")
 def test_conditions_that_were_drawn_again_repeat_their_digests():
     cube = "  - {name: cube, box: {size: [0.1, 0.1, 0.1]}, pose: {xyz: [0, 0.2, 0.5]}}\n"

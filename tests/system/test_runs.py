@@ -156,6 +156,7 @@ def test_outcomes_give_the_exit_code_and_the_failure_comes_last_with_how_to_repe
     assert lines[-2] == "2 files found, 2 collected, 2 run"
 
 
+@pytest.mark.nightly
 def test_the_gravest_outcome_is_the_exit_code():
     write("good")
     write("late", expect=LATE)
@@ -172,6 +173,7 @@ def test_the_gravest_outcome_is_the_exit_code():
     assert run_json(".", HARNESS_HARD_CAP="0.01")["exit_code"] == 3
 
 
+@pytest.mark.nightly
 def test_digests_are_the_same_alone_in_a_suite_side_by_side_and_in_this_process():
     for name in "abc":
         write(name, wait=f"0.{ord(name) - ord('a') + 1} s")
@@ -187,6 +189,7 @@ def test_digests_are_the_same_alone_in_a_suite_side_by_side_and_in_this_process(
     }
 
 
+@pytest.mark.nightly
 def test_repeat_says_whether_the_digests_are_the_same():
     write("a")
     done = harness("run", "a.scenario.yaml", "--repeat", "3", "-j", "2")
@@ -233,6 +236,7 @@ def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
     assert [path.name for path in Path("reports").iterdir() if path.is_dir()] == ["b"]
 
 
+@pytest.mark.nightly(but=["1"])
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
     write("a")
