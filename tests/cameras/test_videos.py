@@ -67,6 +67,7 @@ def test_every_frame_shows_the_moment_that_the_clock_table_says(tmp_path, backen
         assert abs(centre_of(red_in(film[number]))[0] - column) < 2
 
 
+@pytest.mark.nightly(only=["1280-720"])
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (321, 241), (64, 48), (8, 8)])
 def test_a_video_has_the_camera_s_size_in_even_numbers(width, height, tmp_path):
     run, objects = crossing(2)
@@ -93,6 +94,7 @@ def test_a_video_shows_what_the_camera_delivered(noise):
     assert cv2.PSNR(as_delivered(drawn, camera, run.seed, 0), np.ascontiguousarray(shown)) > 33
 
 
+@pytest.mark.nightly
 def test_a_long_run_is_recorded_more_slowly_and_says_so():
     run, objects = run_with([CAMERA], [], n=2)
     times = np.array([0.0, 2 * MOST_FRAMES / 10.0])

@@ -17,34 +17,33 @@ from tests.running import run_case
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"
 
 
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory):
-    """The lesson, the same again, and with a lower lift that its expectation does not like."""
-    folder = tmp_path_factory.mktemp("runs")
-    for name, overrides in (
-        ("one", {}),
-        ("again", {}),
-        ("lower", {"expect.0.lifted.above": "2 m"}),
-        ("faster", {"planning.max_velocity_scaling_factor": "0.2"}),
-    ):
-        run_case(PICK, overrides=overrides, report_dir=folder / name, stills=False)
-    return folder
+LOWER = {"overrides": {"expect.0.lifted.above": "2 m"}, "outcome": "failed"}
+FASTER = {"overrides": {"planning.max_velocity_scaling_factor": "0.2"}}
 
 
-def compared(runs, second, capsys, *options):
-    code = main(["compare", str(runs / "one"), str(runs / second), *options])
-    return code, capsys.readouterr().out
+@pytest.fixture
+def compared(recorded_run, capsys):
+    """Compares the lesson with another run of it: the exit code, and what is printed."""
+
+    def comparison(second, *options):
+        first = recorded_run(PICK) / "run"
+        code = main(["compare", str(first), str(second), *options])
+        return code, capsys.readouterr().out
+
+    return comparison
 
 
-def test_equal_runs_are_the_same(runs, capsys):
-    code, text = compared(runs, "again", capsys)
+@pytest.mark.nightly
+def test_equal_runs_are_the_same(compared, tmp_path):
+    run_case(PICK, report_dir=tmp_path / "again", stills=False)
+    code, text = compared(tmp_path / "again")
     assert code == 0
     assert text.startswith("same  equal digests")
     assert len(text.splitlines()) == 1
 
 
-def test_another_verdict_on_the_same_motion_is_reported_with_both_margins(runs, capsys):
-    code, text = compared(runs, "lower", capsys)
+def test_another_verdict_on_the_same_motion_is_reported_with_both_margins(compared, recorded_run):
+    code, text = compared(recorded_run(PICK, **LOWER) / "run")
     assert code == 1
     assert "different  the recorded signals are the same; commands or verdicts differ" in text
     assert "outcome\n  passed -> failed" in text
@@ -54,8 +53,9 @@ def test_another_verdict_on_the_same_motion_is_reported_with_both_margins(runs, 
     assert f"scenario\n  {expected % '9 cm'} -> {expected % '2 m'}\nverdicts" in text
 
 
-def test_another_speed_reports_step_signal_durations_and_margins(runs, capsys):
-    code, text = compared(runs, "faster", capsys, "--json")
+@pytest.mark.nightly
+def test_another_speed_reports_step_signal_durations_and_margins(compared, recorded_run):
+    code, text = compared(recorded_run(PICK, **FASTER) / "run", "--json")
     assert code == 1
     comparison = json.loads(text)["comparison"]
     first = comparison["first_difference"]
@@ -66,8 +66,8 @@ def test_another_speed_reports_step_signal_durations_and_margins(runs, capsys):
     assert {"duration", "trajectory", "margin"} <= kinds
 
 
-def test_a_folder_without_a_run_is_wrong_usage(runs, tmp_path, capsys):
-    assert main(["compare", str(runs / "one"), str(tmp_path)]) == 2
+def test_a_folder_without_a_run_is_wrong_usage(recorded_run, tmp_path, capsys):
+    assert main(["compare", str(recorded_run(PICK) / "run"), str(tmp_path)]) == 2
     assert "is not the folder of a run" in capsys.readouterr().err
 
 

@@ -101,6 +101,7 @@ def test_without_the_plug_in_the_solver_is_a_located_error(scenario):
     assert "inverse kinematics solvers: auto, numeric, open_manipulator_x, ur" in out
 
 
+@pytest.mark.nightly
 def test_ik_test_tests_a_registered_solver_by_its_name(tmp_path):
     head, _, _ = WRONG.partition("        return [")
     zero = f"{head}        return IkResult((np.zeros(6),))\n"
@@ -114,6 +115,7 @@ def test_ik_test_tests_a_registered_solver_by_its_name(tmp_path):
     assert "no solver has that name; solvers: own, numeric, open_manipulator_x, ur" in out
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("returned", "reported"),
     [
@@ -129,6 +131,7 @@ def test_ik_test_refuses_a_solver_that_returns_no_ik_result(tmp_path, returned, 
     assert reported in harness(tmp_path, "ik-test", "mine", *arguments, code=2)
 
 
+@pytest.mark.nightly
 def test_ik_test_blames_the_solvers_own_line_and_passes_nothing_that_was_not_observed(tmp_path):
     head, _, _ = WRONG.partition("        return [")
     body = "        return request.missing\n"

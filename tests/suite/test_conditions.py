@@ -58,6 +58,7 @@ def test_stored_conditions_are_the_same_runs_whatever_the_file_draws():
     assert cases("again") == cases("first")
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("project")
 def test_a_value_that_an_option_gave_is_part_of_the_conditions():
     run("ball.scenario.yaml", "--report-dir", "first", "--set", "x=0.1", "--seed", "3")
@@ -81,6 +82,7 @@ def test_conditions_that_were_drawn_again_repeat_their_digests():
     assert cases("again") == cases("first")
 
 
+@pytest.mark.nightly
 def test_the_same_conditions_meet_something_else_and_are_compared_in_pairs(campaign, capsys):
     conditions = str(campaign / "first/conditions.jsonl")
     Path("other.scenario.yaml").write_text(SCENARIO.replace("< 0.3", "< 0.1"))
@@ -96,6 +98,7 @@ def test_the_same_conditions_meet_something_else_and_are_compared_in_pairs(campa
     assert json.loads(capsys.readouterr().out)["comparison"]["pairs"] == 6
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("campaign")
 def test_every_condition_is_run_although_a_sequential_test_could_stop():
     text = SCENARIO.replace("stop_early: false", "stop_early: true")
@@ -104,6 +107,7 @@ def test_every_condition_is_run_although_a_sequential_test_could_stop():
     assert len(cases("again")) == 6
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("campaign")
 def test_conditions_are_divided_into_parts_and_merged(capsys):
     text = SCENARIO.replace("[-20 cm, 60 cm]", "[-1 m, 1 m]")  # what the file draws does not matter
@@ -126,6 +130,7 @@ def test_conditions_are_divided_into_parts_and_merged(capsys):
     assert "they differ in the samples of --conditions" in capsys.readouterr().err
 
 
+@pytest.mark.nightly(but=[0, 2])
 @pytest.mark.usefixtures("project")
 @pytest.mark.parametrize(
     ("content", "options", "message"),
