@@ -19,12 +19,12 @@ from matplotlib.figure import Figure
 from docs import ROOT
 from docs.generators.picture_scenes import PICTURES, expectation, scenario
 from docs.generators.picture_scenes import expectations_of as texts_of
-from harness.assertions.contacts import debounced
-from harness.assertions.margins import MarginSignal
-from harness.assertions.placed import PlacedExpectation
-from harness.assertions.temporal import episodes
-from harness.assertions.window import Window, window_of
 from harness.core.types import FloatArray
+from harness.judging.contacts import debounced
+from harness.judging.margins import MarginSignal
+from harness.judging.placed import PlacedExpectation
+from harness.judging.temporal import episodes
+from harness.judging.window import Window, window_of
 from harness.language.reading.load import load_scenario
 from harness.recording.read_run import read_run
 from harness.recording.run import Run

@@ -13,8 +13,8 @@ from docs.generators.reference import (
 from harness.core.registry import OWN_PACKAGE, Registry, registry
 from harness.language.annotations import description_of, keys_of
 from harness.language.expectation import KIND, ExpectationFields, PredicateFields, Quantity
-from harness.language.formula.formula import SIGNALS
 from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, PREDICATES, TEMPORAL
+from harness.plugins.formulas.language.formula import SIGNALS
 
 JUDGED = {
     "at_end": "Without a temporal word it must hold at the last sample of its window, which"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from importlib.metadata import version
 
 from docs import ROOT
-from harness.iktest import IkReport, IkTest, run_ik_test
-from harness.iktest.properties import BRANCHES, PROPERTIES
-from harness.iktest.text import finding_lines
+from harness.plugins.iktest import IkReport, IkTest, run_ik_test
+from harness.plugins.iktest.properties import BRANCHES, PROPERTIES
+from harness.plugins.iktest.text import finding_lines
 
 PAGE = ROOT / "docs/reference/ik_packages.md"
 SOLVERS = ROOT / "scenarios/ik_test/packages.py"

@@ -1,6 +1,6 @@
 """The short scenarios that pictures of expectations are drawn from, and those expectations."""
 
-from tests.assertions.evidence import pictures
+from tests.judging.evidence import pictures
 
 HEAD = """
 scenario: {title}

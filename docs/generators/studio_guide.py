@@ -71,11 +71,11 @@ def main() -> None:
     """Take the pictures of the guide."""
     from playwright.sync_api import sync_playwright
 
-    from harness.studio.document import new_text
-    from harness.studio.files import StudioFiles
-    from harness.studio.guard import Guard
-    from harness.studio.server import page_assets, start_server
-    from harness.studio.studio import Studio
+    from harness.plugins.studio.document import new_text
+    from harness.plugins.studio.files import StudioFiles
+    from harness.plugins.studio.guard import Guard
+    from harness.plugins.studio.server import page_assets, start_server
+    from harness.plugins.studio.studio import Studio
 
     folder = Path(tempfile.mkdtemp())
     file = folder / "open_manipulator_x_by_hand.scenario.yaml"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from harness.world.mjcf.elements import LEFT_OUT
-from harness.world.mjcf.shapes import SHAPES
-from harness.world.sdf.elements import WORDS
-from harness.world.sdf.model_path import VARIABLES
+from harness.plugins.formats.mjcf.elements import LEFT_OUT
+from harness.plugins.formats.mjcf.shapes import SHAPES
+from harness.plugins.formats.sdf.elements import WORDS
+from harness.plugins.formats.sdf.model_path import VARIABLES
 
 HEAD = """# World file formats
 

@@ -14,35 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from contextlib import AbstractContextManager
     from pathlib import Path
-    from types import FrameType, ModuleType
+    from types import FrameType
 
-COMMANDS = {
-    "run": "run scenarios and judge them",
-    "merge": "merge the parts of a suite that ran with --shard",
-    "results": "query, compare and export the results of many runs",
-    "search": "search for conditions under which a scenario fails",
-    "check": "validate scenarios and the reach of their goals",
-    "explain": "print the program that a scenario becomes",
-    "list": "list robots, worlds, steps and all else that a scenario may name",
-    "view": "open the page of a run",
-    "studio": "open a robot cell in the browser, and make a scenario",
-    "judge": "judge a saved run again",
-    "grade": "grade a recording of another program by a scenario",
-    "bridge": "let ROS 2 nodes command a scenario's robot",
-    "replay": "run the recorded commands of ROS 2 nodes again",
-    "compare": "report what changed from one saved run to another",
-    "new": "write a commented scenario that passes",
-    "export": "write a saved run as a rosbag2, and its robot as a URDF",
-    "import": "convert files of other programs",
-    "robot": "check a robot, or draw it",
-    "ik-test": "test a function that solves inverse kinematics",
-    "bench": "compare planners on the motions of scenarios",
-    "schema": "print the JSON Schema of scenario files",
-}
-JSON_IN_PARTS = ("run", "merge")
-"""Commands that write their JSON case by case, and themselves keep everything else from stdout."""
-MODULES = {"list": "listing", "import": "importing", "ik-test": "ik_test"}
-"""Commands whose module in `harness.cli` has another name."""
+    from harness.cli.command import Command
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
 130 interrupted (Ctrl-C, SIGTERM)"""
@@ -96,7 +70,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     import gc
     from contextlib import nullcontext
 
-    parsed = _parser().parse_args(arguments)
+    words = sys.argv[1:] if arguments is None else arguments
+    parsed = _parser(words).parse_args(words)
     from harness.cli.output import OutputError, complain, guarded, only_json_on_stdout, say
 
     if parsed.command is None:
@@ -104,10 +79,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             say(line)
         return 0
 
-    if parsed.command in ("run", "search", "studio"):
+    command: Command = parsed.implementation
+    if command.collects_garbage:
         gc.enable()
     given = getattr(parsed, "json", False) or getattr(parsed, "format", "") == "json"
-    is_json = given and parsed.command not in JSON_IN_PARTS
+    is_json = given and not command.writes_json_in_parts
     ticks = getattr(parsed, "ticks", True) and not getattr(parsed, "in_process", False)
     try:
         os.getcwd()  # noqa: PTH109 - only whether there is one
@@ -117,10 +93,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if not _load_plugins(getattr(parsed, "plugins", ())):
             return USAGE_EXIT_CODE
-        run = _module(parsed.command).run
         json_only = only_json_on_stdout() if is_json else nullcontext()
         with _package_path(getattr(parsed, "package_folders", ())), json_only:
-            code = guarded(lambda: _begun(run, parsed), ticks=ticks)
+            code = guarded(lambda: _begun(command.run, parsed), ticks=ticks)
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon_stdout()  # the reader of a pipe has left
@@ -228,9 +203,11 @@ def _load_plugins(modules: Sequence[str]) -> bool:
     return True
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser of the command that the words name, or of all commands where they name none."""
     from harness import __version__
     from harness.cli.arguments import CommandParser, Parser
+    from harness.core.registry import registry
 
     parser = Parser(
         prog="harness",
@@ -238,20 +215,20 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
     )
     parser.add_argument("--version", action="version", version=f"armharness {__version__}")
-    commands = parser.add_subparsers(
+    parsers = parser.add_subparsers(
         title="commands",
         metavar="COMMAND",
         dest="command",
         parser_class=CommandParser,
     )
-    for name, text in COMMANDS.items():
-        command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        command.add_options = lambda command, name=name: _module(name).add_options(command)
+    known = registry("command")
+    named = [word for word in words[:1] if word in known.built_in_names]
+    for name in named or known:
+        command: Command = known[name]()
+        text = command.summary()
+        added = parsers.add_parser(
+            name, help=f"{text[0].lower()}{text[1:].rstrip('.')}", description=text
+        )
+        added.set_defaults(implementation=command)
+        added.add_options = command.add_options
     return parser
-
-
-def _module(command: str) -> ModuleType:
-    """The module of a command, which has its options and what it does."""
-    from importlib import import_module
-
-    return import_module(f"harness.cli.{MODULES.get(command, command)}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.arguments import folder, override_argument, positive_number, seconds
+from harness.cli.arguments import folder, override_argument, seconds
 
 STRICT = "fail where a verdict has a warning, such as `already true at the start`"
 
@@ -121,27 +121,8 @@ def add_node(command: argparse.ArgumentParser, allowed: str) -> None:
     )
 
 
-def add_domain(command: argparse.ArgumentParser) -> None:
-    """The options of commands that join a ROS domain."""
-    add = command.add_argument
-    text = "join this ROS domain (default: ROS_DOMAIN_ID or 0; with --node, a free one)"
-    add("--domain", metavar="N", type=int, default=None, help=text)
-    add("--network", action="store_true", help="communicate with nodes on other machines too")
-    text = "communicate through the built-in RTPS, or through an installed rclpy"
-    add("--adapter", choices=("rtps", "rclpy"), default="rtps", help=text)
-
-
-def add_served_robot(command: argparse.ArgumentParser) -> None:
-    """The options of commands that serve a simulated robot to ROS 2 nodes."""
-    add_node(command, "the scenario to start this command: 'python student.py'")
-    add_domain(command)
-    command.add_argument(
-        "--pace",
-        metavar="FACTOR",
-        type=positive_number("simulated seconds in a second"),
-        default=1.0,
-        help="advance this many simulated seconds in one second of wall time (default: 1)",
-    )
+def add_report_options(command: argparse.ArgumentParser) -> None:
+    """The seed and the report of commands that run one case."""
     add_seed(command)
     add_report_dir(command)
     command.add_argument("--no-report", action="store_true", help="write no report")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from harness.cli.output import complain, output, say, say_text
 
 if TYPE_CHECKING:
+    from harness.reporting.result import CaseResult
     from harness.reporting.suite.columns import Columns
     from harness.reporting.terminal import Style
     from harness.session.run_request import RunRequest
@@ -206,3 +207,19 @@ def _command(arguments: argparse.Namespace, job: RunRequest) -> str:
     if arguments.report_dir != "reports":
         words += ["--report-dir", arguments.report_dir]
     return shlex.join(words)
+
+
+def show_case(case: CaseResult, file: Path) -> None:
+    """Print the outcome of one run, with what failed."""
+    from harness.reporting.terminal import Style, case_line, failure, report_link
+    from harness.suite.header import source_lines
+
+    style = Style.of(sys.stdout)
+    output().status(None)
+    for note in case.notes:
+        say(f"note: {note}")
+    say(case_line(case, style))
+    if case.outcome != "passed":
+        say_text(failure(case, style, source=source_lines(file)))
+    elif case.report_dir:
+        say(f"report: {report_link(case, style)}")

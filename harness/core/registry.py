@@ -6,8 +6,10 @@ package names its modules (or classes) in the entry-point group `harness.plugins
     [project.entry-points."harness.plugins"]
     remark = "my_package.remark"
 
-The built-ins of a kind are the modules of one package, found by their names: a built-in is imported
-when its name is first looked up, installed packages when a name is not a built-in's.
+The built-ins of a kind are the modules of one package, and of the folders of its name in the
+packages of `harness.plugins`, such as `harness/plugins/studio/commands`. They are found by their
+names: a built-in is imported when its name is first looked up, installed packages when a name is
+not a built-in's.
 """
 
 from __future__ import annotations
@@ -37,14 +39,20 @@ OWN_PACKAGE = "armharness"
 VARIABLE = "HARNESS_PLUGINS"
 """Environment variable: modules that `--plugin` loads, here and in processes that start later."""
 
+BUNDLED = Path(__file__).parents[1] / "plugins"
+"""The folder of this distribution's plug-ins, each a package; it may be absent."""
+
 BUILT_IN = {
+    "command": "harness.cli.commands",
+    "run_mode": "",
+    "case_runner": "",
     "step": "harness.steps",
-    "expectation": "harness.expectations",
+    "expectation": "harness.judging.expectations",
     "planner": "harness.planning.search.pipelines",
     "ik_solver": "harness.planning.ik.solvers",
     "controller": "harness.simulation.controllers",
     "robot": "",
-    "world_format": "harness.world.formats",
+    "world_format": "",
     "reporter": "harness.reporting.reporters",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
@@ -173,6 +181,14 @@ class Registry(Mapping[str, P]):
     def _what(self) -> str:
         return noun(self.kind)
 
+    def built_in(self) -> list[P]:
+        """The built-in plug-ins, for which no installed package is loaded."""
+        return [self[name] for name in self._built_in_modules]
+
+    def module_of(self, name: str) -> str:
+        """The module that defines a plug-in, or is a built-in one."""
+        return self._built_in_modules.get(name) or str(getattr(self[name], "__module__", ""))
+
     @property
     def built_in_names(self) -> Set[str]:
         """The names of the built-in plug-ins, which may not be imported yet."""
@@ -183,13 +199,23 @@ class Registry(Mapping[str, P]):
         """Module of each built-in by its name; a name that is a keyword has an underscore."""
         if self._modules is None:
             spec = importlib.util.find_spec(self._built_in) if self._built_in else None
-            folders = spec.submodule_search_locations if spec else None
-            self._modules = {
-                module.name.rstrip("_"): f"{self._built_in}.{module.name}"
-                for module in sorted(pkgutil.iter_modules(folders or ()), key=lambda m: m.name)
+            folders = (spec and spec.submodule_search_locations) or ()
+            places = dict.fromkeys(folders, self._built_in)
+            for folder in sorted(BUNDLED.glob(f"*/{self.kind}s")):
+                places[str(folder)] = f"harness.plugins.{folder.parent.name}.{folder.name}"
+            found = (
+                (self._name_of(module.name), f"{package}.{module.name}")
+                for folder, package in places.items()
+                for module in pkgutil.iter_modules([folder])
                 if not module.ispkg and not module.name.startswith("_")
-            }
+            )
+            self._modules = dict(sorted(found))
         return self._modules
+
+    def _name_of(self, module: str) -> str:
+        """The name of the plug-in that a module holds, which may be a keyword or have hyphens."""
+        name = module.rstrip("_")
+        return name.replace("_", "-") if self.kind == "command" else name
 
 
 _registries: dict[str, Registry[Any]] = {

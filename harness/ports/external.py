@@ -16,7 +16,7 @@ class ExternalRequest:
         step: Id of the step.
         line: Its line in the file.
         timeout: Simulated time after which it has failed [s].
-        until: The expectation (`harness.assertions.expectation.Expectation`) whose passing ends
+        until: The expectation (`harness.judging.expectation.Expectation`) whose passing ends
             it; None: it ends with the launched program.
         launch: Name of the command that is started; empty for none.
     """

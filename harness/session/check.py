@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.assertions.expectation_text import describe
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
-from harness.engine.explain import explain
-from harness.engine.predict import predict, touches_at_start, unexpected
+from harness.judging.expectation_text import describe
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.reporting.explanation import explanation_lines
+from harness.session.explain import explain
+from harness.session.predict import predict, touches_at_start, unexpected
 from harness.session.prepare import prepare
 from harness.session.start import overlap_note, start_physics
 from harness.steps.grasp import Grasp

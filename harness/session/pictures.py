@@ -9,11 +9,11 @@ from functools import partial
 
 import numpy as np
 
-from harness.assertions.looks import looks_of_expectations
 from harness.cameras.viewpoint import OVERVIEW_STATES
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
+from harness.judging.looks import looks_of_expectations
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
 from harness.recording.robot_record import MeshRecord
@@ -192,7 +192,7 @@ def _drawings(
         are_steps_drawn: Whether there are pictures of steps.
     """
     from harness.cameras.stills import StepRenderer
-    from harness.observation.visuals import mesh_records
+    from harness.session.observation.visuals import mesh_records
 
     program = prepared.program
     description, objects = program.description, program.all_objects()

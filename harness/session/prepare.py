@@ -7,13 +7,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from harness.assertions.observations import Observations, merged
-from harness.assertions.placed import PlacedExpectation, as_expectation
 from harness.cell.program import Program
 from harness.cell.scope import Prerequisite
 from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
-from harness.engine.compile import Sources, compile_scenario
+from harness.judging.observations import Observations, merged
+from harness.judging.placed import PlacedExpectation, as_expectation
 from harness.language.reading.load import (
     LoadedScenario,
     Reading,
@@ -25,7 +24,6 @@ from harness.language.reading.load import (
 )
 from harness.language.reading.repair import STAND_IN_ROBOT
 from harness.language.scenario import RobotSpec
-from harness.observation.findings import about_file
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.planning.search.find_pipeline import check_planner
@@ -34,6 +32,8 @@ from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
+from harness.session.compile import Sources, compile_scenario
+from harness.session.observation.findings import about_file
 from harness.world.imported import ImportedWorld
 from harness.world.world_format import read_foreign_world
 

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from harness.cell.program import Program, ProgramStep
-from harness.engine.execute import StepEvent
 from harness.ports.simulation import Simulator
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.reporting.result import CaseResult, ProgressEvent
+from harness.session.execute import StepEvent
 
 Notify = Callable[[ProgressEvent], None]
 

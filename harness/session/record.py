@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from harness.core.versions import library_versions
-from harness.engine.execute import Execution
 from harness.language.reading.resolve import resolved_text
-from harness.observation.fault_effects import with_receipts
-from harness.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.ports.kinematics import Kinematics
 from harness.ports.scene import Touch
 from harness.recording.robot_record import GripperRecord, JointRecord, LinkPlacement, RobotRecord
 from harness.recording.run import Run
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
+from harness.session.execute import Execution
+from harness.session.observation.fault_effects import with_receipts
+from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 

@@ -8,12 +8,10 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from harness.assertions.facts import remembered_facts
-from harness.assertions.judge import judge
 from harness.core.errors import HarnessError, SpecError
 from harness.core.memory import free_memory
-from harness.engine.execute import ProgramExecution
-from harness.observation.tracking import never_held
+from harness.judging.facts import remembered_facts
+from harness.judging.judge import judge
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
 from harness.recording.files import write_files
@@ -23,8 +21,10 @@ from harness.recording.write_run import write_run
 from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
+from harness.session.execute import ProgramExecution
 from harness.session.external import ExternalSession, MakeSession, NoPrograms
-from harness.session.observe import explained_run, observed_run, with_believed_poses
+from harness.session.observation.observe import explained_run, observed_run, with_believed_poses
+from harness.session.observation.tracking import never_held
 from harness.session.pictures import Drawings, Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress

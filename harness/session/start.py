@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from harness.core.errors import ModelRefused, Problem, RobotError, SpecError
-from harness.observation.findings import overlap_text
 from harness.ports.scene import Touch
+from harness.session.observation.findings import overlap_text
 from harness.session.prepare import Prepared, prepare
 from harness.session.run_request import RunRequest
 from harness.session.timing import Clock

@@ -7,10 +7,10 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from harness.assertions.placed import as_expectation, check_expectation
 from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
+from harness.judging.placed import as_expectation, check_expectation
 from harness.language.base import Name, PositiveDuration
 from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.step import Step

@@ -7,7 +7,7 @@ import re
 import signal
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import closing, suppress
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from harness.core.error_text import error_text
@@ -15,6 +15,7 @@ from harness.core.errors import HarnessError, SpecError
 from harness.core.interruption import is_interrupted
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
+from harness.suite.case_runner import case_runner
 from harness.suite.environment import prepare_process
 from harness.suite.leftovers import clean_leftovers
 from harness.suite.server import preload
@@ -55,18 +56,12 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
 
 
 def _run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
-    from harness.session import run_case as session  # imports planners and physics
+    name = "nodes" if job.nodes else "live" if job.live else ""
+    if name:
+        return case_runner(name).run(job, notify)
+    from harness.session.run_case import run_case  # imports planners and physics
 
-    if job.nodes:
-        from harness.ros.bridge import run_with_nodes
-
-        return run_with_nodes(job, notify)
-    if job.live:
-        from harness.session.live_stream import LiveStream
-
-        with closing(LiveStream(job.live)) as stream:
-            return session.run_case(job, stream.with_events(notify), start=stream.start_case)
-    return session.run_case(job, notify)
+    return run_case(job, notify)
 
 
 def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:

@@ -11,17 +11,12 @@ from functools import cache
 from importlib.metadata import entry_points
 
 from harness import __version__
-from harness.core.registry import ENTRY_POINTS
+from harness.core.registry import ENTRY_POINTS, registry
 from harness.core.registry import VARIABLE as PLUGINS
 from harness.core.resources import PACKAGE, data_folder
 from harness.core.versions import library_versions
 from harness.recording.plain import to_plain
 from harness.robot.packages import SEARCH_VARIABLE as PACKAGES
-from harness.world.sdf.model_path import FUEL_CACHE
-from harness.world.sdf.model_path import VARIABLES as MODELS
-
-VARIABLES = (PLUGINS, PACKAGES, *MODELS, FUEL_CACHE)
-"""Environment variables that name plug-ins, and folders where files are looked up."""
 
 
 @dataclass(frozen=True)
@@ -79,4 +74,6 @@ def installation() -> Installation:
 
 def search_environment() -> dict[str, str]:
     """The environment variables that name plug-ins and folders of files, where they are set."""
-    return {name: value for name in VARIABLES if (value := os.environ.get(name, ""))}
+    formats = registry("world_format").values()
+    names = [PLUGINS, PACKAGES, *(name for each in formats for name in each.variables)]
+    return {name: value for name in names if (value := os.environ.get(name, ""))}

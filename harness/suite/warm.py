@@ -28,8 +28,8 @@ RUN_MODULES = (
     "harness.session.run_case",
     "harness.session.timed_simulator",
     "harness.simulation.controllers.position_servo",
-    "harness.observation.clearance",
-    "harness.observation.link_overlaps",
+    "harness.session.observation.clearance",
+    "harness.session.observation.link_overlaps",
     "numpy.random",
     "pinocchio",
     "coal",
@@ -38,7 +38,7 @@ RUN_MODULES = (
 """What every run imports until its outcome is known."""
 
 REPORT_MODULES = (
-    "harness.observation.looks_differ",
+    "harness.session.observation.looks_differ",
     "harness.cameras.stills",
     "harness.reporting.html.write",
     "jinja2",

@@ -17,10 +17,12 @@ class WorldFormat(Plugin, ABC):
 
     Attributes:
         suffixes: The suffixes of its files, in lower case, such as `.sdf`.
+        variables: Environment variables that name folders in which its files are looked up.
     """
 
     plugin_kind: ClassVar[str] = "world_format"
     suffixes: ClassVar[tuple[str, ...]] = ()
+    variables: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
     def read(self, path: Path, folders: Sequence[Path]) -> ImportedWorld:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.plugins.iktest.strategies import load_chain
 from harness.robot.chain import Chain
-from harness.strategies import load_chain
 
 
 @lru_cache(maxsize=1)

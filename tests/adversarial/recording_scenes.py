@@ -10,11 +10,11 @@ from functools import cache
 import numpy as np
 
 from harness.core.pose_arrays import relative
-from harness.grading.bag.content import BagTopics
-from harness.grading.grade import grade_bag
+from harness.plugins.grading.bag.content import BagTopics
+from harness.plugins.grading.grade import grade_bag
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.read_run import read_run
-from tests.grading.recordings import (
+from tests.plugins.grading.recordings import (
     GAZEBO_STARTED,
     POSES,
     Recording,

@@ -135,11 +135,11 @@ LIMITS = """
 - **A forged recording** is judged as it is: events, stamps and poses are what programs wrote.
 """
 CORRUPTED = """
-Recordings can be wrong as well. `tests/assertions/test_mutations.py` traces the signals that each
+Recordings can be wrong as well. `tests/judging/test_mutations.py` traces the signals that each
 predicate reads; it shifts, freezes and drops each of them, fills it with NaN or with holes, mixes
 it with a second source, exchanges it with another from the start or from some moment on, and glues
 objects to the hand. No corrupted recording may pass.
-`tests/assertions/test_metamorphic.py` shifts, turns and renames the world; no verdict may change
+`tests/judging/test_metamorphic.py` shifts, turns and renames the world; no verdict may change
 (612 cases, and six in the physics with more friction, mass or grip). `pytest -m nightly` runs all.
 
 A second opinion comes from a slow and simple judge (`tests/second_opinion`) that shares no code

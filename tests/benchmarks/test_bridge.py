@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from harness.ros.domain import free_domain
-from tests.ros.bridging import scenario
-from tests.ros.nodes import Node, follow, point
+from harness.plugins.ros.domain import free_domain
+from tests.plugins.ros.bridging import scenario
+from tests.plugins.ros.nodes import Node, follow, point
 
 pytestmark = pytest.mark.benchmark
 TICK = os.sysconf("SC_CLK_TCK")
@@ -19,7 +19,7 @@ GOALS = 50
 SERVE = """
 import sys, time
 from harness.cli.main import main
-from harness.ros.control.cell import ExternalCell
+from harness.plugins.ros.control.cell import ExternalCell
 
 tick, spent = ExternalCell.tick, []
 

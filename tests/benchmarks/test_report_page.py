@@ -10,7 +10,7 @@ from harness.core.resources import data_folder
 from harness.recording.read_run import read_run
 from harness.recording.stored_run import StoredRun
 from harness.reporting.html.write import write_page
-from tests.assertions.synthetic_run import lift_run
+from tests.judging.synthetic_run import lift_run
 from tests.running import run_case
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"

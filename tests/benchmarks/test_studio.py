@@ -10,11 +10,11 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.core.spatial import SE3
-from harness.studio.document import new_text
+from harness.plugins.studio.document import new_text
 from tests.reporting.browser import wait_for
 
 pytest.importorskip("viser")
-from tests.studio.conftest import serve  # noqa: F401 - a fixture
+from tests.plugins.studio.conftest import serve  # noqa: F401 - a fixture
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
 UR3E = {"model": "ur3e", "gripper": "rh_p12_rn_a"}

@@ -6,21 +6,21 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from harness.assertions.judge import judge
-from harness.assertions.looks import looks_of_expectations
-from harness.assertions.placed import PlacedExpectation
 from harness.cameras.captures import take_pictures
 from harness.core.camera import Camera
 from harness.core.geometry import Shape, Sphere
 from harness.core.spatial import SE3
+from harness.judging.judge import judge
+from harness.judging.looks import looks_of_expectations
+from harness.judging.placed import PlacedExpectation
 from harness.language.cameras import looking_at
 from harness.language.markers import MarkerSpec
 from harness.language.scenario import RobotSpec
 from harness.recording.looks import Look, merged_looks
 from harness.robot.load import load_robot
 from harness.world.markers import plate, printed
-from tests.assertions.synthetic_run import make_run
 from tests.cameras.recorded_runs import GROUND, an_object
+from tests.judging.synthetic_run import make_run
 
 RED, GREEN = (0.9, 0.05, 0.05, 1.0), (0.05, 0.8, 0.05, 1.0)
 SMALL = {"width": 160, "height": 120}

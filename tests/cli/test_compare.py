@@ -11,7 +11,7 @@ from harness.recording.compare import MOST, compare, line_changes
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.comparison import comparison_lines
-from tests.assertions.synthetic_run import ROBOT, make_run
+from tests.judging.synthetic_run import ROBOT, make_run
 from tests.running import run_case
 
 PICK = Path(__file__).parents[2] / "scenarios/lessons/04_ur_pick_by_friction.scenario.yaml"

@@ -6,10 +6,10 @@ import pytest
 
 from harness.cli.main import main
 from harness.language.reading.load import load_world
+from harness.plugins.formats.moveit_scene.scene import load_scene
+from harness.plugins.formats.sdf.world import load_sdf
 from harness.robot.mesh_file import read_triangles
 from harness.session.prepare import prepare
-from harness.world.moveit_scene.scene import load_scene
-from harness.world.sdf.world import load_sdf
 from tests.world.sdf_files import TETRAHEDRON, text_with, write
 from tests.world.test_scene import NEW, OLD
 

@@ -12,12 +12,12 @@ from pathlib import Path
 # What a verdict depends on: the predicates and what they share, what is measured on a finished run,
 # the verification of motions, the digest, and the engine that executes the steps.
 SCOPE = (
-    "harness/assertions",
+    "harness/judging",
     "harness/expectations",
-    "harness/observation",
+    "harness/session/observation",
     "harness/planning/verification",
     "harness/recording/digest.py",
-    "harness/engine",
+    "harness/session",
 )
 
 

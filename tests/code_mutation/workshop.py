@@ -30,10 +30,10 @@ COPIED = (
 )
 # The tests of the scope; the rest of the suite reaches it only through whole runs.
 TESTS = (
-    "tests/assertions",
-    "tests/expectations",
-    "tests/observation",
-    "tests/engine",
+    "tests/judging",
+    "tests/judging/expectations",
+    "tests/session/observation",
+    "tests/session",
     "tests/steps",
     "tests/recording",
     "tests/adversarial",
@@ -48,7 +48,7 @@ TESTS = (
     "tests/system/test_findings.py",
 )
 # Its tests read the defaults and limits of modules, which only imports execute.
-DECLARED = "tests/expectations/test_declared.py"
+DECLARED = "tests/judging/expectations/test_declared.py"
 # Tests that execute a line are run, shortest first, until they add up to this [s].
 LONGEST = 150.0
 # Any other return code of pytest says that the tests did not run.

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from harness.assertions.text import amount, amounts, percentages
+from harness.judging.text import amount, amounts, percentages
 from harness.planning.collision import wording
 from harness.ports.scene import Touch
 from harness.recording.verdict import Measure

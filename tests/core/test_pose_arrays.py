@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from harness.assertions.support import lowest_points
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.pose_arrays import (
     angle_between,
@@ -15,6 +14,7 @@ from harness.core.pose_arrays import (
     rotation_vector,
 )
 from harness.core.spatial import SE3
+from harness.judging.support import lowest_points
 from harness.recording.run import ObjectRecord
 
 RNG = np.random.default_rng(3)

@@ -105,13 +105,11 @@ def test_what_was_added_satisfies_the_checks_of_the_page(tree):
 
 @pytest.mark.nightly
 def test_an_expectation_without_evidence_is_named(tree):
-    file = tree / "tests/expectations/test_tcp_height.py"
+    file = tree / "tests/judging/expectations/test_tcp_height.py"
     text = file.read_text(encoding="utf-8")
     try:
         file.write_text(text.replace("EVIDENCE = ", "PROOF = "), encoding="utf-8")
-        command = (
-            ".venv/bin/python -m pytest tests/assertions/test_three_runs.py -k every_predicate"
-        )
+        command = ".venv/bin/python -m pytest tests/judging/test_three_runs.py -k every_predicate"
         with pytest.raises(AssertionError, match="TcpHeight"):
             carry_out(tree, command)
     finally:

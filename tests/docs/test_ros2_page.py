@@ -7,8 +7,8 @@ import pytest
 
 from docs import ROOT
 from harness.cli.main import main
-from tests.engine.front_door import check_file
-from tests.ros.bridging import PYTHON, bridge, require_control_msgs
+from tests.plugins.ros.bridging import PYTHON, bridge, require_control_msgs
+from tests.session.front_door import check_file
 
 PAGE = (ROOT / "docs/guides/ros2.md").read_text(encoding="utf-8")
 

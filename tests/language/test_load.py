@@ -3,13 +3,13 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import SpecError
-from harness.expectations.always import Always
-from harness.expectations.eventually import Eventually
-from harness.expectations.grasped import Grasped
-from harness.expectations.lifted import Lifted
-from harness.expectations.never import Never
-from harness.expectations.until import Until
-from harness.expectations.within_limits import WithinLimits
+from harness.judging.expectations.always import Always
+from harness.judging.expectations.eventually import Eventually
+from harness.judging.expectations.grasped import Grasped
+from harness.judging.expectations.lifted import Lifted
+from harness.judging.expectations.never import Never
+from harness.judging.expectations.until import Until
+from harness.judging.expectations.within_limits import WithinLimits
 from harness.language.reading.load import bundled_worlds, load_scenario, load_world, parse_scenario
 from harness.steps.add_object import AddObject
 from harness.steps.allow_collisions import AllowCollisions

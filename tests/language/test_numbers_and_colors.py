@@ -8,7 +8,7 @@ import pytest
 
 from harness.core.errors import SpecError
 from harness.core.quantity import constant_of, split_quantity
-from harness.expectations.sees import HUES, HueRange
+from harness.judging.expectations.sees import HUES, HueRange
 from harness.language.colors import COLORS, color_of_name
 from harness.language.reading.load import parse_scenario
 

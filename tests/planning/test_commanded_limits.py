@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.engine.front_door import run
+from tests.session.front_door import run
 
 REST = """
 planning: {max_velocity_scaling_factor: 1.0, max_acceleration_scaling_factor: 1.0}

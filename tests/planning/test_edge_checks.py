@@ -15,10 +15,10 @@ from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion
-from tests.engine.front_door import run
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
 from tests.planning.problem import HOMES, description_of
 from tests.second_opinion.runs import SRDF, URDF
+from tests.session.front_door import run
 
 
 @pytest.fixture

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.assertions.judge import judge
 from harness.core.trajectory import JointTrajectory
+from harness.judging.judge import judge
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.verdict import Verdict
-from tests.assertions.synthetic_run import lift_run, make_run, step
+from tests.judging.synthetic_run import lift_run, make_run, step
 from tests.recording.test_run_folder import EXPECTED, full_run
 
 RUN = full_run()

@@ -9,17 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from harness.assertions.judge import judge
-from harness.assertions.placed import PlacedExpectation
 from harness.core.camera import Camera
 from harness.core.errors import HarnessError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
-from harness.expectations.clearance import Clearance
-from harness.expectations.grasped import Grasped
-from harness.expectations.lifted import Lifted
-from harness.expectations.static import Static
+from harness.judging.expectations.clearance import Clearance
+from harness.judging.expectations.grasped import Grasped
+from harness.judging.expectations.lifted import Lifted
+from harness.judging.expectations.static import Static
+from harness.judging.judge import judge
+from harness.judging.placed import PlacedExpectation
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.explanation import recorded_explanation
@@ -32,7 +32,7 @@ from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import StoredRun
 from harness.recording.write_run import write_run
-from tests.assertions.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
+from tests.judging.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
 
 EXPECTED = [
     PlacedExpectation(Lifted(object="box", above=0.05), "", 3),

@@ -15,7 +15,7 @@ from harness.recording.read_run import read_run
 from harness.recording.step_results import CELL_RESULTS, CartesianPathResult, SceneChange
 from harness.recording.stored_run import StoredRun
 from harness.recording.write_run import write_run
-from tests.assertions.synthetic_run import make_run, step
+from tests.judging.synthetic_run import make_run, step
 
 OUTCOME = GripperOutcome(0.01, 0.02, 3.0, True, False, {"left": ("box",), "right": ()})
 RELEASED = harness.steps.release.Released("box")

@@ -13,7 +13,7 @@ from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Measure, Verdict
 from harness.reporting.html.summary import SummaryPicture
 from harness.reporting.html.write import page_html
-from tests.assertions.synthetic_run import TABLE, lift_run, step, thing
+from tests.judging.synthetic_run import TABLE, lift_run, step, thing
 
 TAKE_OVER = "document.title='taken'"
 ATTACK = (

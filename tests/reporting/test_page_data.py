@@ -24,7 +24,7 @@ from harness.reporting.html.packing import Packer, thin
 from harness.reporting.html.scene import pack_mesh
 from harness.reporting.html.story import last_line, ordered_steps
 from harness.reporting.html.write import page_html
-from tests.assertions.synthetic_run import at, lift_run, make_run, step, thing
+from tests.judging.synthetic_run import at, lift_run, make_run, step, thing
 
 VALUES = st.one_of(st.just(float("nan")), st.floats(-1e6, 1e6))
 SIGNALS = arrays(float, array_shapes(min_dims=2, max_dims=2, max_side=60), elements=VALUES)

@@ -14,7 +14,7 @@ from harness.recording.signals import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.stored_run import StoredRun
 from harness.reporting.html.write import page_html
 from harness.reporting.terminal import failure_place
-from tests.assertions.synthetic_run import (
+from tests.judging.synthetic_run import (
     BOX,
     TABLE,
     changed,

@@ -4,9 +4,9 @@ import pytest
 
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
-from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, URDF, load_arm, write_arm
 from tests.robot.vessels import vessel, write_obj
+from tests.session.front_door import run
 
 CUP = '<collision><geometry><mesh filename="cup.obj"/></geometry></collision>'
 BALL = """<collision><origin xyz="0 0 -0.35"/><geometry><sphere radius="0.01"/></geometry>

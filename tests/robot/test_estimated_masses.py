@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, URDF, load_arm, write_arm
 from tests.robot.vessels import vessel, write_obj
+from tests.session.front_door import run
 from tests.world.sdf_files import TETRAHEDRON
 
 BARE = URDF.replace(INERTIAL, "")

@@ -7,8 +7,8 @@ import pytest
 
 from harness.core.geometry import Box
 from harness.robot.load import gripper_names, robot_names
-from tests.engine.front_door import failures, run
 from tests.robot.models import Arm, robot
+from tests.session.front_door import failures, run
 
 SWAPPED = {"model": "open_manipulator_x", "gripper": "rh_p12_rn_a"}
 

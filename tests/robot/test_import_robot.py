@@ -11,8 +11,8 @@ from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.robot.urdf.urdf import parse_urdf
-from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
+from tests.session.front_door import run
 
 
 def joint(link, parent, axis="0 0 1", mimic=""):

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.observation.couplings import coupling_findings
-from tests.engine.front_door import run
+from harness.session.observation.couplings import coupling_findings
 from tests.robot.arm_files import load_arm, write_arm
 from tests.robot.hands import BLOCK, HAND, PALM, PICK, SIX
+from tests.session.front_door import run
 
 PROXIMAL = """<link name="{name}"><inertial><origin xyz="0 0 0.03"/><mass value="0.05"/>
     <inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial></link>

@@ -12,8 +12,8 @@ from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
 from harness.simulation.servo import bare_robot
-from tests.engine.front_door import run
 from tests.robot.mjcf_arm import LINKAGE, MJCF, TIP
+from tests.session.front_door import run
 
 JOINTS = ("pan", "lift", "elbow", "slide", "pinch")
 LINKS = ("base", "upper", "lower", "wrist", "finger")

@@ -6,7 +6,6 @@ import pytest
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.planning.collision.scene import CoalScene
 from harness.robot_tools.robot_findings import states
-from tests.engine.front_door import check, run
 from tests.planning.seven_joints import SRDF as SEVEN_SRDF
 from tests.planning.seven_joints import seven_joint_urdf
 from tests.robot.arm_files import load_arm, write_arm
@@ -23,6 +22,7 @@ from tests.robot.hands import (
     SIX_WITH_JAW,
     write,
 )
+from tests.session.front_door import check, run
 
 
 def test_an_imported_arm_with_its_own_gripper_holds_what_it_grasps(tmp_path):

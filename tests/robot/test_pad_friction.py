@@ -4,9 +4,9 @@ import pytest
 
 from harness.core.errors import RobotError
 from harness.simulation.robot_mjcf import link_friction
-from tests.engine.front_door import problems, run
 from tests.robot.arm_files import load_arm, write_arm
 from tests.robot.hands import GROUP, HAND, write
+from tests.session.front_door import problems, run
 
 SURFACE = '<gazebo reference="{}">{}</gazebo>'
 

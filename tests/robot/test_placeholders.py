@@ -7,8 +7,8 @@ from harness.core.errors import RobotError, SpecError
 from harness.language.scenario import RobotSpec
 from harness.robot.forward_kinematics import robot_poses
 from harness.robot.load import load_robot
-from tests.engine.front_door import run
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
+from tests.session.front_door import run
 
 TENSOR = '<inertia ixx="0.01" iyy="0.01" izz="0.002"/>'
 END = "</robot>"

@@ -6,7 +6,7 @@ import pytest
 
 import harness
 from harness.cli.main import main
-from harness.observation.findings import NOTHING_EXPECTED
+from harness.session.observation.findings import NOTHING_EXPECTED
 
 HEAD = "scenario: Notes\nrobot: open_manipulator_x\nsteps:\n"
 SILENT = {

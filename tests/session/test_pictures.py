@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from tests.engine.front_door import file_of
+from tests.session.front_door import file_of
 
 PROGRAM = """
 import sys

@@ -15,9 +15,9 @@ from harness.robot.load import load_robot
 from harness.robot.solids import coal_geometry
 from harness.simulation.model import build_model
 from harness.world.objects import resolve_object
-from tests.engine.front_door import check, run
 from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
+from tests.session.front_door import check, run
 
 ARM = "{model: open_manipulator_x}"
 CUP = """\

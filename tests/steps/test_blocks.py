@@ -8,8 +8,8 @@ from harness.cell.scope import MOST_CAPTURES
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from harness.session.rejudge import judge_stored
-from tests.engine.front_door import file_of, problems, run
 from tests.running import run_case
+from tests.session.front_door import file_of, problems, run
 
 BLOCKS = Path(__file__).parents[2] / "scenarios/blocks/repeat_parallel_include.scenario.yaml"
 UP = "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.02}"

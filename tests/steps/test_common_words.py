@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.engine.front_door import check, failures, problems, run
+from tests.session.front_door import check, failures, problems, run
 
 OM = "open_manipulator_x"
 UR3E = "{model: ur3e, gripper: rh_p12_rn_a}"

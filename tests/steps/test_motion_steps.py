@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.engine.front_door import check, problems, run
+from tests.session.front_door import check, problems, run
 
 ARM = "{model: ur3e, gripper: rh_p12_rn_a}"
 START = "{pose: {xyz: [0.25, -0.17, 0.22], quat_xyzw: [0.924, -0.383, 0, 0]}}"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from harness.core.pose_arrays import rotate
-from tests.engine.front_door import problems, run
+from tests.session.front_door import problems, run
 
 ARM = "{model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 0.4]}}"
 BOTTLE = """

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.engine.front_door import UR, check, failures, run
 from tests.robot.vessels import vessel, write_obj
+from tests.session.front_door import UR, check, failures, run
 
 OM = "{model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}"
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from harness.recording.explanation import recorded_explanation
-from tests.engine.front_door import UR, check, failures, problems, run
+from tests.session.front_door import UR, check, failures, problems, run
 
 OM = "open_manipulator_x"
 UR3E = "{model: ur3e, gripper: rh_p12_rn_a}"

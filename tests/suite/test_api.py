@@ -11,10 +11,10 @@ import pytest
 
 import harness
 from harness.core.resources import data_folder
-from harness.expectations.always import Always
-from harness.expectations.duration import DurationCheck
-from harness.expectations.named_target import NamedTarget
-from harness.expectations.within_limits import WithinLimits
+from harness.judging.expectations.always import Always
+from harness.judging.expectations.duration import DurationCheck
+from harness.judging.expectations.named_target import NamedTarget
+from harness.judging.expectations.within_limits import WithinLimits
 from harness.language.reading.load import load_scenario, parse_scenario
 from harness.language.reading.written import scenario_text
 from harness.language.scenario import Scenario

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.recording.read_run import read_run
-from tests.engine.front_door import run
 from tests.running import run_case
+from tests.session.front_door import run
 
 ROOT = Path(__file__).parents[2]
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from tests.engine.front_door import failures, run
 from tests.robot.models import UR_TYPES, Arm, robot
+from tests.session.front_door import failures, run
 
 FEW = ("ur3", "ur8long", "ur30")
 UP = {"shoulder_lift_joint": -1.5707, "wrist_1_joint": -1.5707}

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from harness.recording.read_run import read_run
-from tests.engine.front_door import problems, run
 from tests.running import run_case
+from tests.session.front_door import problems, run
 
 ROOT = Path(__file__).parents[2]
 HOME = "- move_to: mogi_home\n"

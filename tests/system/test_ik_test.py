@@ -9,7 +9,7 @@ import pytest
 
 from docs import ROOT
 from harness.cli.main import main
-from harness.strategies import load_chain
+from harness.plugins.iktest.strategies import load_chain
 
 EXAMPLES = ROOT / "scenarios/ik_test"
 ARM = ["--robot", "open_manipulator_x"]

@@ -8,11 +8,13 @@ BUDGETS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["armharne
 
 
 def lines_by_package() -> dict[str, int]:
-    """Lines of Python and C in each package of harness."""
+    """Lines of Python and C in each package of harness, and in each plug-in."""
     counted: dict[str, int] = {}
     for kind in ("*.py", "*.c", "*.h"):
         for path in (ROOT / "harness").rglob(kind):
-            package = path.relative_to(ROOT / "harness").parts[0].removesuffix(".py")
+            parts = path.relative_to(ROOT / "harness").parts
+            is_plugin = parts[0] == "plugins" and len(parts) > 2
+            package = ".".join(parts[: 1 + is_plugin]).removesuffix(".py")
             count = len(path.read_text(encoding="utf-8").splitlines())
             counted[package] = counted.get(package, 0) + count
     return counted

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.engine.front_door import run
+from tests.session.front_door import run
 
 THROUGH = """
 - gripper: closed

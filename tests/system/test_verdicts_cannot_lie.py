@@ -5,8 +5,8 @@ import textwrap
 import pytest
 
 from harness.cli.main import main
-from tests.engine.front_door import run
 from tests.running import run_case
+from tests.session.front_door import run
 
 PICK = """
 scenario: A pick that looks like one

@@ -1,6 +1,6 @@
 """SDF texts that the tests share."""
 
-from harness.world.sdf.world import load_sdf
+from harness.plugins.formats.sdf.world import load_sdf
 
 BOX = "<box><size>0.1 0.2 0.3</size></box>"
 

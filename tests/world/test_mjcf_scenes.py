@@ -12,8 +12,8 @@ from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
 from harness.language.reading.load import load_world
 from harness.language.world import FrictionSpec
+from harness.plugins.formats.mjcf.scene import load_mjcf
 from harness.robot.mesh_file import read_triangles
-from harness.world.mjcf.scene import load_mjcf
 from harness.world.objects import resolve_object
 from tests.running import run_case
 from tests.world.sdf_files import TETRAHEDRON

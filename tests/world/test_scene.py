@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from harness.core.errors import SpecError
-from harness.world.moveit_scene.scene import load_scene
+from harness.plugins.formats.moveit_scene.scene import load_scene
 
 NEW = """(noname)+
 * table

@@ -3,7 +3,7 @@
 import pytest
 
 from harness.core.errors import SpecError
-from harness.world.sdf.world import load_sdf
+from harness.plugins.formats.sdf.world import load_sdf
 
 LINK = "<link name='{}'/>"
 TWO = LINK.format("a") + LINK.format("b")

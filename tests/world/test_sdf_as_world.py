@@ -12,11 +12,11 @@ from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.core.geometry import Box, Mesh
 from harness.language.reading.load import parse_scenario
+from harness.plugins.formats.sdf.round_meshes import CONE, SPHERE
+from harness.plugins.formats.stl import cone, stl_bytes
 from harness.recording.read_run import read_run
 from harness.robot.mesh_file import hull_points, hull_solid, read_triangles
 from harness.session.prepare import prepare
-from harness.world.sdf.round_meshes import CONE, SPHERE
-from harness.world.stl import cone, stl_bytes
 from tests.running import run_case
 from tests.world.sdf_files import ASCII_STL, COLLADA, CRATE, load, text_with, write
 

@@ -165,7 +165,8 @@ def test_a_file_of_a_hundred_megabytes_is_refused_in_little_memory(tmp_path):
         file.write("</world></sdf>")
     assert path.stat().st_size > 100e6
     script = (
-        "import sys\nfrom pathlib import Path\nfrom harness.world.sdf.world import load_sdf\n"
+        "import sys\nfrom pathlib import Path\n"
+        "from harness.plugins.formats.sdf.world import load_sdf\n"
         "from harness.core.errors import SpecError\n"
         "try: load_sdf(Path(sys.argv[1]))\nexcept SpecError as error: print(error); sys.exit(2)"
     )

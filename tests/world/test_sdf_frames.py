@@ -7,7 +7,7 @@ import pytest
 
 from harness.core.errors import SpecError
 from harness.core.spatial import SE3
-from harness.world.sdf.world import load_sdf
+from harness.plugins.formats.sdf.world import load_sdf
 from tests.world.sdf_files import load, text_with
 
 FRAMES = Path(__file__).parent / "files" / "frames.sdf"

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from harness.core.errors import SpecError
-from harness.world.sdf.elements import WORDS
+from harness.plugins.formats.sdf.elements import WORDS
 from tests.world.sdf_files import BOX, load, text_with
 
 ROWS = [(kind, tag) for kind, words in WORDS.items() for tag in words]

@@ -16,9 +16,9 @@ from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.planning.backend import make_planning
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.formats.moveit_messages.request import read_request
+from harness.plugins.formats.moveit_messages.scene import read_scene
 from harness.robot.packages import PackagePath
-from harness.world.moveit_messages.request import read_request
-from harness.world.moveit_messages.scene import read_scene
 from harness.world.objects import resolve_object
 from tests.benchmarks.planning.arms import Arm
 from tests.benchmarks.planning.problems import (

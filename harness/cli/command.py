@@ -1,0 +1,47 @@
+"""The commands of `harness`, each a plug-in."""
+
+from __future__ import annotations
+
+import argparse
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+from harness.core.registry import Plugin
+
+
+class Command(Plugin, ABC):
+    """A command; the first line of its docstring, a sentence, is its text in `harness --help`.
+
+    A command of a package is registered as a step is: its module is named in the entry-point group
+    `harness.plugins`. It is imported whenever `harness` lists its commands, so that what takes time
+    is imported where it is used.
+
+    Attributes:
+        writes_json_in_parts: Whether `--format json` prints case by case, so that the command
+            itself keeps everything else from standard output.
+        collects_garbage: Whether the command lives long enough for Python's garbage collector.
+    """
+
+    plugin_kind: ClassVar[str] = "command"
+    writes_json_in_parts: ClassVar[bool] = False
+    collects_garbage: ClassVar[bool] = False
+
+    @classmethod
+    def summary(cls) -> str:
+        """The first line of the docstring."""
+        return (cls.__doc__ or cls.name).strip().partition("\n")[0]
+
+    @abstractmethod
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add the arguments of the command."""
+
+    @abstractmethod
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Run the command.
+
+        Returns:
+            The exit code: 0 passed, 1 failed, 2 invalid input, 3 error.
+
+        Raises:
+            HarnessError: What the user gave cannot be used; its text is printed, exit code 2.
+        """

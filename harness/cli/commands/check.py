@@ -1,0 +1,93 @@
+"""`harness check`: the problems of a file that can be found without physics."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import ClassVar
+
+from harness.cli.command import Command
+from harness.cli.output import output, say, say_json, say_text
+from harness.cli.shared_options import add_format, add_paths, add_seed
+from harness.core.printable import counted
+from harness.suite.discovery import discover
+from harness.suite.header import read_header
+from harness.suite.outcome import EXIT_CODES
+
+MOST_CASES = 100
+"""Parametrised cases of a file that are checked; running them checks the rest."""
+
+
+class CheckCommand(Command):
+    """Validate scenarios and the reach of their goals."""
+
+    name: ClassVar[str] = "check"
+
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add the options of `harness check`."""
+        add_paths(command)
+        add_seed(command)
+        add_format(command)
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Check files; problems of all of them are reported."""
+        files = discover(arguments.paths)
+        from harness.reporting.suite.cause import short_problem
+        from harness.reporting.suite.github import problem_annotation
+        from harness.reporting.terminal import Style
+        from harness.session.check import check_file
+
+        style = Style.of(sys.stdout)
+        code = 0
+        documents: list[object] = []
+        lines: list[str] = []
+        format_problem = problem_annotation if arguments.format == "github" else short_problem
+        for file, case, overrides in _cases(arguments, files):
+            found = check_file(file, overrides=overrides, seed=arguments.seed)
+            outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
+            code = max(code, EXIT_CODES[outcome])
+            documents.append({"file": str(file), "case": case, "outcome": outcome,
+                              "problems": found.problems,
+                              "predicted": found.predicted,
+                              "explanations": found.explanations,
+                              "notes": found.notes})  # fmt: skip
+            if arguments.format != "full":
+                lines += [
+                    format_problem(problem) for problem in (*found.problems, *found.predicted)
+                ]
+                continue
+            for note in found.notes:
+                say(f"note: {note}")
+            for problem in found.problems:
+                say_text(str(problem))
+            for problem, explained in zip(found.predicted, found.explanations, strict=True):
+                say_text(str(problem))
+                say(*(f"    {line}" for line in explained))
+            count = len(found.problems)
+            summaries = {
+                "invalid": counted(count, "problem"),
+                "failed": "steps that will fail",
+                "passed": "ok",
+            }
+            name = f"{file} [{case}]" if case else str(file)
+            say(f"{name}: {style.outcome(outcome, summaries[outcome])}")
+        if arguments.format == "json":
+            say_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
+            return code
+        write = output().command if arguments.format == "github" else say
+        for line in dict.fromkeys(lines):
+            write(line)
+        return code
+
+
+def _cases(
+    arguments: argparse.Namespace, files: Sequence[Path]
+) -> Iterator[tuple[Path, str, dict[str, str]]]:
+    """File, case and its values, of every parametrised case; random values are as the file says."""
+    for file in files:
+        overrides = dict(arguments.overrides)
+        for case in islice(read_header(file, overrides).variation.parametrized(), MOST_CASES):
+            yield file, case.name, {**case.overrides, **overrides}

@@ -1,0 +1,48 @@
+"""`harness compare`: what changed from one saved run to another."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import ClassVar
+
+from harness.cli.command import Command
+from harness.cli.files import run_folder
+from harness.cli.output import say, say_json
+from harness.cli.shared_options import add_json
+from harness.suite.outcome import EXIT_CODES
+
+
+class CompareCommand(Command):
+    """Report what changed from one saved run to another."""
+
+    name: ClassVar[str] = "compare"
+
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add the options of `harness compare`."""
+        command.add_argument("first", metavar="RUN", help="the report folder of a run")
+        command.add_argument("second", metavar="RUN", help="the report folder of another run")
+        add_json(command)
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Compare two runs' folders; exit code 1 when they are not the same."""
+        folders = [run_folder(arguments.first), run_folder(arguments.second)]
+        from harness.recording.compare import compare
+        from harness.recording.read_run import read_run
+        from harness.recording.stored_run import blames_changes
+        from harness.reporting.comparison import comparison_lines
+        from harness.reporting.terminal import Style
+
+        first, second = (read_run(folder) for folder in folders)
+        with blames_changes(folders[0], first), blames_changes(folders[1], second):
+            comparison = compare(first, second)
+            lines = list(comparison_lines(comparison, Style.of(sys.stdout)))
+        is_good = comparison.is_same and not comparison.warnings
+        code = 0 if is_good else EXIT_CODES["failed"]
+        if arguments.json:
+            facts = {"exit_code": code, "comparison": comparison}
+            say_json({"format": "armharness-comparison/1", **facts})
+            return code
+        for line in lines:
+            say(line)
+        return code

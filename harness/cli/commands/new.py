@@ -1,0 +1,74 @@
+"""`harness new`: a scenario to start from."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from pathlib import Path
+from typing import ClassVar
+
+from harness.cli.command import Command
+from harness.cli.output import output, say, say_text
+from harness.cli.robot_options import ROBOT, add_robot_options, source_of
+from harness.suite.discovery import SUFFIX, UsageError
+
+TEMPLATE = Path(__file__).parent / "templates" / "new.scenario.yaml"
+
+
+class NewCommand(Command):
+    """Write a commented scenario that passes."""
+
+    name: ClassVar[str] = "new"
+
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add the options of `harness new`."""
+        text = "the scenario file to write, for example first.scenario.yaml"
+        command.add_argument("file", metavar="FILE", help=text)
+        command.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
+        add_robot_options(command)
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Write a scenario to a new file."""
+        file = Path(arguments.file)
+        if not file.name.endswith(SUFFIX):
+            stem = file.name.removesuffix(".yaml").removesuffix(".yml")
+            better = file.with_name(f"{stem}{SUFFIX}")
+            raise UsageError(f"the name of a scenario ends in {SUFFIX}: try '{better}'")
+        if file.exists():
+            raise UsageError(f"'{file}' exists already; nothing was written")
+        is_new_folder = not file.parent.exists()
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            text, lines = _content(arguments, file)
+            with file.open("x", encoding="utf-8") as new:
+                new.write(text)
+        except OSError as error:
+            raise UsageError(f"cannot write '{file}': {error.strerror}") from error
+        finally:
+            if is_new_folder and file.parent.is_dir() and not any(file.parent.iterdir()):
+                file.parent.rmdir()
+        name = shlex.quote(str(file))
+        say(f"wrote {file}")
+        for line in lines:
+            say_text(line)
+        say(f"check it: harness check {name}", f"run it:   harness run {name}")
+        return 0
+
+
+def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, list[str]]:
+    """The scenario, and what to say about it."""
+    if not arguments.robot:
+        for option in ("srdf", "gripper", "group", "tcp_link", "package_path", "args"):
+            if getattr(arguments, option):
+                raise UsageError(f"--{option.replace('_', '-')} goes with --robot")
+        return TEMPLATE.read_text(encoding="utf-8"), []
+    from harness.robot_tools.first_scenario import first_scenario
+
+    source = source_of(arguments)
+    if source.kind == "scenario":
+        raise UsageError(f"--robot is a robot, and '{arguments.robot}' a scenario")
+    found = first_scenario(source, file, lambda text: output().status(lambda: text))
+    lines = [f"it is a motion and no pick: {found.no_pick}"] if found.no_pick else []
+    if found.trouble:
+        return found.text, [*lines, f"no steps were found that pass; the last: {found.trouble}"]
+    return found.text, [*lines, "it was run once and passed"]

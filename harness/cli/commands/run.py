@@ -1,0 +1,265 @@
+"""`harness run`: scenarios, with their progress and results."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from harness.cli.arguments import whole_number
+from harness.cli.command import Command
+from harness.cli.output import complain, only_json_on_stdout, output
+from harness.cli.run_mode import RunMode
+from harness.cli.shared_options import (
+    STRICT,
+    add_format,
+    add_hard_cap,
+    add_history,
+    add_node,
+    add_paths,
+    add_report_dir,
+    add_seed,
+)
+from harness.cli.suite_output import (
+    has_page,
+    show_interruption,
+    show_json,
+    show_lines,
+    show_results,
+    write_suite_files,
+)
+from harness.core.lazy import LazySequence
+from harness.core.registry import registry
+from harness.suite.case_runner import case_runner
+from harness.suite.discovery import UsageError, discover
+from harness.suite.leftovers import clean_report_folder
+
+if TYPE_CHECKING:
+    from harness.reporting.result import CaseResult
+    from harness.suite.conditions import Conditions
+    from harness.suite.suite_run import SuiteRun
+
+BRIEF_FROM = 20
+"""With more runs than this a passed one is a line, without its steps."""
+
+
+class RunCommand(Command):
+    """Run scenarios and judge them."""
+
+    name: ClassVar[str] = "run"
+    writes_json_in_parts: ClassVar[bool] = True
+    collects_garbage: ClassVar[bool] = True
+
+    def __init__(self) -> None:
+        self._modes: list[RunMode] = [mode() for mode in registry("run_mode").built_in()]
+
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add the options of `harness run`."""
+        add = command.add_argument
+        add_paths(command)
+        add_seed(command)
+        text = "run only scenarios whose path, title or tags match: 'pick and not ur5e'"
+        add("-k", metavar="EXPR", dest="expression", default="", help=text)
+        text = "run N scenarios side by side"
+        add("-j", metavar="N", dest="workers", type=whole_number, default=1, help=text)
+        text = "run each case N times and report whether all digests are equal"
+        add("--repeat", metavar="N", type=whole_number, default=1, help=text)
+        text = "run only the case of this name, or the cases whose names match a pattern: 'ur5e-*'"
+        add("--case", metavar="NAME", dest="cases", action="append", default=[], help=text)
+        text = "draw this many samples, instead of the number in the file"
+        add("--samples", metavar="N", type=whole_number, default=None, help=text)
+        text = (
+            "write the reports of all cases, or only of those that failed (default: all; of"
+            " samples, those that failed)"
+        )
+        add("--keep", choices=("all", "failed"), default="", help=text)
+        text = "continue where the same command was interrupted, and keep the results that exist"
+        add("--resume", action="store_true", help=text)
+        add("--strict", action="store_true", help=STRICT)
+        add_report_dir(command)
+        text = (
+            "run part N of COUNT of the suite, or with 'auto' the part that SLURM, Kubernetes or"
+            " GitLab names; `harness merge` joins the parts"
+        )
+        add("--shard", metavar="N/COUNT", default="", help=text)
+        text = (
+            "run the samples of an earlier run, by its conditions.jsonl or its report folder,"
+            " instead of drawing new ones: the same conditions for another version or robot"
+        )
+        add("--conditions", metavar="FILE", default="", help=text)
+        text = (
+            "run the cases on Ray: 'ray' for processes of this machine (-j) or the cluster of"
+            " RAY_ADDRESS, 'ray://HOST:PORT' for another cluster; needs the extra `cluster`"
+        )
+        add("--on", metavar="CLUSTER", dest="cluster", default="", help=text)
+        add("--no-report", action="store_true", help="write no report")
+        add("--no-page", action="store_true", help="write the report without its page")
+        add("--bag", action="store_true", help="write a rosbag2 into the report too")
+        text = "let a reporter of `harness list reporters` write into the report too; repeatable"
+        add("--reporter", metavar="NAME", dest="reporters", action="append", default=[], help=text)
+        add_history(command)
+        add_format(command)
+        add_hard_cap(command, "scenario")
+        add_node(command, "the step `external` to start this command")
+        text = "run all cases in this process, for a debugger"
+        add("--in-process", action="store_true", help=text)
+        for mode in self._modes:
+            mode.add_options(command)
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Run scenarios; print steps and outcomes as they come, and failures last."""
+        files = discover(arguments.paths)
+        modes = [mode for mode in self._modes if mode.is_requested(arguments)]
+        if len(modes) > 1:
+            first, second = (mode.name for mode in modes[:2])
+            raise UsageError(f"the run modes `{first}` and `{second}` exclude each other")
+        return modes[0].run(arguments, files, _run_files) if modes else _run_files(arguments, files)
+
+
+def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str = "") -> int:
+    start = time.monotonic()
+    from harness.suite.warm import WarmServer
+
+    with WarmServer() as server:
+        if not arguments.in_process and not arguments.cluster:
+            server.open()  # it imports for as long as this process takes to get ready
+        suite = _suite(arguments, files, live)
+        update_page = _page_updates(arguments, suite)
+        if arguments.format == "json":
+            with only_json_on_stdout():
+                suite.collect(server, on_result=update_page)
+                write_suite_files(arguments, suite)
+                show_interruption(arguments, suite, time.monotonic() - start)
+            return show_json(suite)
+        if arguments.format != "full":
+            suite.collect(server, on_result=update_page)
+            write_suite_files(arguments, suite)
+            show_interruption(arguments, suite, time.monotonic() - start)
+            return show_lines(arguments, suite)
+        from harness.cli.progress import ProgressLines
+        from harness.reporting.terminal import Style
+
+        names = _case_names(arguments, suite)
+        progress = ProgressLines(
+            output(),
+            names,
+            is_side_by_side=arguments.workers > 1 and not arguments.in_process,
+            is_brief=len(names) > BRIEF_FROM,
+            style=Style.of(sys.stdout),
+        )
+
+        def on_result(index: int, result: CaseResult) -> None:
+            progress.result(index, result)
+            update_page(index, result)
+
+        suite.collect(server, progress.step, on_result)
+        output().status(lambda: "  writing the results")
+    page, columns = write_suite_files(arguments, suite)
+    output().status(None)
+    show_results(arguments, suite, time.monotonic() - start, page, columns)
+    return suite.exit_code
+
+
+def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> SuiteRun:
+    from harness.session.run_request import named_commands
+    from harness.suite.plan import SuiteRequest, planned_cases, record_of
+    from harness.suite.shards import shard_of, write_shard_record
+    from harness.suite.suite_run import SuiteOptions, SuiteRun
+
+    if arguments.nodes:
+        case_runner("nodes")  # refuses where no plug-in runs them
+    if arguments.history and not Path(arguments.history).is_dir():
+        raise UsageError(f"--history '{arguments.history}' is no folder")
+    for name in arguments.reporters:
+        try:
+            registry("reporter").find(name)
+        except LookupError as error:
+            raise UsageError(f"--reporter: {error.args[0]}") from None
+    if arguments.cluster:
+        from harness.suite.ray_cluster import check_cluster
+
+        check_cluster(arguments.cluster)
+        if arguments.in_process:
+            raise UsageError("--on and --in-process exclude each other")
+    root = None if arguments.no_report else Path(arguments.report_dir)
+    if root is not None:
+        clean_report_folder(root)
+    shard = shard_of(arguments.shard) if arguments.shard else None
+    conditions = _conditions(arguments)
+    request = SuiteRequest(
+        expression=arguments.expression,
+        cases=arguments.cases,
+        overrides=dict(arguments.overrides),
+        seed=arguments.seed,
+        samples=arguments.samples,
+        report_root=root,
+        keep=arguments.keep,
+        page=not arguments.no_page,
+        bag=arguments.bag,
+        shard=shard,
+        strict=arguments.strict,
+        reporters=arguments.reporters,
+        nodes=named_commands(arguments.nodes) if arguments.nodes else {},
+        conditions=conditions,
+        live=live,
+    )
+    plan = planned_cases(files, request)
+    if shard is not None and root is None:
+        complain("note: with --no-report a part leaves nothing to merge; use --no-page instead")
+    if shard is not None and root is not None:
+        write_shard_record(record_of(files, request, shard, root))
+        if conditions is not None:
+            conditions.copy(root)  # a merge has neither the scenario files nor the conditions
+    is_whole = arguments.repeat == 1 and (len(plan) > 1 or shard is not None)
+    how = SuiteOptions(
+        workers=arguments.workers,
+        repeat=arguments.repeat,
+        in_process=arguments.in_process,
+        hard_cap=arguments.hard_cap,
+        stream=root if arguments.resume or is_whole else None,
+        resume=arguments.resume,
+        is_part=shard is not None,
+        cluster=arguments.cluster,
+    )
+    return SuiteRun(plan, how, files)
+
+
+def _conditions(arguments: argparse.Namespace) -> Conditions | None:
+    """The samples of `--conditions`."""
+    if not arguments.conditions:
+        return None
+    from harness.suite.conditions import read_conditions
+
+    given = {"--seed": arguments.seed, "--samples": arguments.samples}
+    for option, value in given.items():
+        if value is not None:
+            raise UsageError(f"--conditions and {option} exclude each other")
+    return read_conditions(Path(arguments.conditions))
+
+
+def _page_updates(
+    arguments: argparse.Namespace, suite: SuiteRun
+) -> Callable[[int, CaseResult], None]:
+    """A function that updates the page of a running suite with each result."""
+    if not has_page(arguments, suite):
+        return lambda *_: None
+    from harness.cli.live_page import LivePage
+
+    page = LivePage(suite, Path(arguments.report_dir))
+    return lambda index, _result: page.result(index)
+
+
+def _case_names(arguments: argparse.Namespace, suite: SuiteRun) -> Sequence[str]:
+    repeat = arguments.repeat
+
+    def name(index: int) -> str:
+        planned = suite.plan[index // repeat]
+        file = planned.file
+        shown = str(file) if arguments.workers == 1 else file.name.split(".")[0]
+        case = f" [{planned.name}]" if planned.name else ""
+        return f"{shown}{case}" + (f" #{index % repeat + 1}" if repeat > 1 else "")
+
+    return LazySequence(len(suite.jobs), name)

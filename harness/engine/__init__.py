@@ -1,1 +1,0 @@
-"""Compiles a scenario to a program, and executes the program."""

@@ -1,9 +1,0 @@
-"""never: a predicate at no sample."""
-
-from __future__ import annotations
-
-from harness.assertions.expectation import TemporalWord
-
-
-class Never(TemporalWord):
-    """The predicate holds at no sample of the window."""

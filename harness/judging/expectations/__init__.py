@@ -1,0 +1,1 @@
+"""The built-in expectations, one module for each word."""

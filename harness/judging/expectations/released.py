@@ -1,0 +1,41 @@
+"""released: no part of the gripper touches the object, and it is not attached."""
+
+from __future__ import annotations
+
+from harness.cell.scope import At
+from harness.judging.at_rest import ATTACHED, CONTACT, released_parts
+from harness.judging.contacts import was_in_robot
+from harness.judging.expectation import ObjectPredicate
+from harness.judging.margins import MarginSignal, all_of
+from harness.judging.poses import present
+from harness.judging.text import amount
+from harness.judging.window import Window
+from harness.recording.verdict import Measure
+
+
+class Released(ObjectPredicate):
+    """No part of the gripper touches the object, and it is not attached."""
+
+    quantities = (CONTACT, ATTACHED)
+    opposite = "grasped"
+
+    def check(self, at: At) -> None:
+        at.scope.check_gripper(at.loc, "`released`")
+        super().check(at)
+
+    def signal(self, window: Window) -> MarginSignal:
+        """No contact with any link of the robot, and not attached in the planning scene."""
+        name = self.object
+        parts = released_parts(window, name)
+        force, hold = (part.values for part in parts)
+
+        def text(index: int, _: Measure) -> str:
+            belief = "attached in the planning scene" if hold[index] else "not attached"
+            return f"the robot touches {name} with {amount(float(force[index]), 'N')}; {belief}"
+
+        return all_of(window, parts, text, present=window.cut(present(window.run, name)))
+
+    def unchanged(self, window: Window) -> str:
+        if was_in_robot(window.run, self.object, slice(window.stop)):
+            return ""
+        return f"the robot never touched {self.object}"

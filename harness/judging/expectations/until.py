@@ -1,0 +1,176 @@
+"""until: one predicate holds at every sample before the one at which another becomes true."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from harness.core.types import FloatArray
+from harness.judging import temporal
+from harness.judging.expectation import InnerPredicate, Predicate, TemporalWord
+from harness.judging.margins import MarginSignal
+from harness.judging.temporal import TIME_RESOLUTION, TooShort, longest_hold
+from harness.judging.text import amount
+from harness.judging.window import NotObservable, NotReached, Window, window_of
+from harness.judging.words import ALREADY_TRUE, one_step
+from harness.recording.run import Run
+from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning
+
+
+class Until(TemporalWord):
+    """The first predicate holds until the second does, and the second does."""
+
+    until: InnerPredicate = Field(description="The predicate that must become true.")
+
+    @model_validator(mode="after")
+    def _check_words(self) -> Until:
+        if self.predicate.for_ is not None or self.predicate.within is not None:
+            raise ValueError(
+                "what holds until then has no `for` and no `within`; write them inside `until:`"
+            )
+        return self
+
+    def predicates(self) -> Mapping[str, Predicate]:
+        return {"predicate": self.predicate, "until": self.until}
+
+    def verdict(self, run: Run, step: str) -> Verdict:
+        """The verdict, without its text and its place in the file.
+
+        Margins of two kinds are compared as SI numbers, as signal temporal logic does; the one that
+        decides is reported in its own unit.
+
+        Raises:
+            NotReached: One of the two was never there.
+            NotObservable: The record lacks what they are about.
+        """
+        holds = [value for value in (self.for_, self.until.for_) if value is not None]
+        withins = [value for value in (self.within, self.until.within) if value is not None]
+        hold, within = max(holds, default=None), min(withins, default=None)
+        during = one_step((self.during, self.predicate.during, self.until.during), step)
+        window = window_of(run, during)
+        first, second = self.predicate.margins(window), self.until.margins(window)
+        low = [_low(margins, skipped) for margins, skipped in ((first, np.inf), (second, -np.inf))]
+        is_open = bool(window.cut_short) and _could_hold(low[0], low[1], window.times, hold, within)
+        try:
+            decision, is_second = temporal.until(low[0], low[1], window.times, hold, within)
+        except TooShort:
+            if is_open:
+                raise NotReached(window.cut_short) from None
+            span = float(window.times[-1] - window.times[0])
+            reason = f"judged over {span:.3f} s, which leaves no room for {hold or 0.0:.3f} s"
+            last = float(window.times[-1])
+            return Verdict("", "failed", span - (hold or 0.0), "s", last, reason=reason)
+        if is_open and not decision.holds:
+            raise NotReached(window.cut_short)
+        if not decision.holds:
+            self._refuse_unknown((first, second), low, window, hold, within)
+        margins = second if is_second else first
+        answer = self._worded(window, margins, decision, hold if is_second else None, is_second)
+        return replace(
+            answer,
+            observed=Observed(
+                int(np.sum(~(first.unknown() | second.unknown()))),
+                int(np.sum(first.unknown() | second.unknown())),
+            ),
+            warnings=self._came_at_once(low[1], window, hold) if decision.holds else (),
+        )
+
+    def _came_at_once(
+        self, second: FloatArray, window: Window, hold: float | None
+    ) -> tuple[VerdictWarning, ...]:
+        """A warning where the second holds from the first sample on: the first was not judged."""
+        held = longest_hold(second, window.times, is_first=True)
+        if second[0] < 0 or held < (hold or 0.0) - TIME_RESOLUTION:
+            return ()
+        message = (
+            f"`{self.until.word}` held at t={window.time(0):.3f} s, the first sample, so that"
+            f" `{self.predicate.word}` was judged at none"
+        )
+        return (VerdictWarning(ALREADY_TRUE, message),)
+
+    def _refuse_unknown(
+        self,
+        signals: tuple[MarginSignal, MarginSignal],
+        low: list[FloatArray],
+        window: Window,
+        hold: float | None,
+        within: float | None,
+    ) -> None:
+        """Refuse a verdict that favourable values of the unknown samples would reverse.
+
+        Raises:
+            NotObservable: They would.
+        """
+        unknown = [margins.unknown() for margins in signals]
+        best = [np.where(mask, np.inf, values) for mask, values in zip(unknown, low, strict=True)]
+        decision, _ = temporal.until(best[0], best[1], window.times, hold, within)
+        if decision.holds:
+            count = int((unknown[0] | unknown[1]).sum())
+            raise NotObservable(f"{count} samples are not known, and would decide it")
+
+    def _worded(
+        self,
+        window: Window,
+        margins: MarginSignal,
+        decision: temporal.Decision,
+        hold: float | None,
+        is_second: bool,
+    ) -> Verdict:
+        word = self.until.word if is_second else self.predicate.word
+        time = window.time(decision.index)
+        status: VerdictStatus = "passed" if decision.holds else "failed"
+        if not math.isfinite(decision.value):
+            if decision.holds:
+                raise NotReached(f"{word} was not there before")
+            reason = f"{word} is not known, or not there, at t={time:.3f} s"
+            return Verdict("", status, time=time, reason=reason)
+        evidence = margins.evidence(decision.index)
+        margin, unit = (
+            (decision.value, margins.unit)
+            if evidence.margin is None
+            else (evidence.margin, evidence.unit)
+        )
+        at = f" at t={time:.3f} s" if evidence.is_moment else ""
+        role = "came" if is_second else "held before it"
+        if not decision.holds:
+            role = "never came" if is_second else "did not hold until then"
+        lasting = "" if hold is None else f" for {amount(hold, 's')}"
+        reason = f"`{word}` {role}{lasting}: {evidence.text}{at}"
+        measures = evidence.measures
+        return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
+
+
+def _could_hold(
+    first: FloatArray,
+    second: FloatArray,
+    times: FloatArray,
+    hold: float | None,
+    within: float | None,
+) -> bool:
+    """Whether it holds if a window that was cut short continues in the best way."""
+    best = [temporal.with_future(margins, np.inf) for margins in (first, second)]
+    decision, _ = temporal.until(best[0], best[1], temporal.later(times), hold, within)
+    return decision.holds
+
+
+def _low(margins: MarginSignal, skipped: float) -> FloatArray:
+    """Margins with unknown samples counted against the expectation.
+
+    Args:
+        margins: The margins of a predicate.
+        skipped: What counts where the predicate does not apply: before an object is there, nothing
+            is required of it, and nothing becomes true.
+
+    Raises:
+        NotReached: It never applies.
+    """
+    values = np.where(np.isnan(margins.values), -np.inf, margins.values)
+    if margins.applies is not None:
+        values = np.where(margins.applies, values, skipped)
+    if not np.isfinite(values).any():
+        raise NotReached("what it is about was not there in the time it is judged over")
+    return values

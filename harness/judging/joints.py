@@ -1,0 +1,126 @@
+"""Joints of a run: their columns, those that may rest on their stops, and distance from targets.
+
+A tolerance that the file does not give is one of angles. For joints that slide, and for widths,
+`SLIDING_TOLERANCE` stands in for it: 0.01 of a metre is a third of a small gripper's travel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from harness.cell.scope import At
+from harness.core.types import FloatArray
+from harness.judging.margins import MarginSignal, Part, all_of
+from harness.judging.text import amounts
+from harness.judging.window import NotObservable, Window
+from harness.language.expectation import Quantity
+from harness.recording.robot_record import JointRecord
+from harness.recording.run import Run
+from harness.recording.verdict import Measure
+
+SLIDING_TOLERANCE = 0.002
+"""[m]"""
+ROUNDING = 1e-9
+"""Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
+
+POSITION_ERROR = Quantity(
+    "joint position error", "rad or m", "at most `tolerance`, for each joint", "position"
+)
+
+
+def check_tolerance(at: At, targets: Mapping[str, float], tolerance: float, is_given: bool) -> None:
+    """Report a tolerance that no possible joint position exceeds; arguments as of `near`."""
+    joints = at.scope.description.joint_by_name
+    reaches = [
+        np.pi
+        if joint.kind == "continuous"
+        else max(joint.upper - targets[name], targets[name] - joint.lower)
+        for name, joint in joints.items()
+        if name in targets
+    ]
+    if is_given and reaches and max(reaches) <= tolerance:
+        at.scope.problems.add(
+            at.key("tolerance"),
+            f"no position of {' or '.join(sorted(targets))} is beyond this tolerance",
+            "angles without a unit are in radians, lengths in metres",
+        )
+
+
+def joint_column(run: Run, name: str) -> tuple[int, JointRecord]:
+    """Place of a joint in the recorded columns, and its record.
+
+    Raises:
+        NotObservable: The robot has no such movable joint.
+    """
+    for column, joint in enumerate(run.robot.joints):
+        if joint.name == name:
+            return column, joint
+    raise NotObservable(f"there is no joint '{name}' in this run")
+
+
+def gripper_joints(run: Run) -> frozenset[str]:
+    """Joints of the gripper's group, and those that follow them."""
+    hand = run.robot.gripper
+    if hand is None:
+        return frozenset()
+    mimics = {joint.name for joint in run.robot.joints if joint.is_mimic}
+    return frozenset(run.robot.groups.get(hand.group, ())) | {hand.joint} | mimics
+
+
+def resting_joints(run: Run) -> frozenset[str]:
+    """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
+    names = gripper_joints(run) | {joint.name for joint in run.robot.joints if joint.is_mimic}
+    if "joint_commands" in run.unrecorded:
+        return names
+    others = names | set(run.robot.groups.get(run.robot.arm_group, ()))
+    for column, joint in enumerate(run.robot.joints):
+        if joint.name in others:
+            continue
+        commands = run.signals.joint_commands[:, column]
+        if commands.size and (commands == commands[0]).all():
+            names |= {joint.name}
+    return names
+
+
+def is_measured(recorded: FloatArray, joint: JointRecord, what: str) -> bool:
+    """Whether a run has measurements of a joint; a mimic joint has no sensor.
+
+    Raises:
+        NotObservable: Nothing is, of a joint of its own.
+    """
+    if not np.isnan(recorded).all():
+        return True
+    if joint.is_mimic:
+        return False
+    raise NotObservable(f"the {what} of {joint.name} was not recorded")
+
+
+def near(
+    window: Window, targets: Mapping[str, float], tolerance: float, is_given: bool
+) -> MarginSignal:
+    """The worst joint's distance from its position [rad or m].
+
+    Args:
+        window: Where it is judged.
+        targets: Position of each joint by its name.
+        tolerance: The tolerance of each joint.
+        is_given: Whether the file gives the tolerance.
+    """
+    parts: list[Part] = []
+    for name in sorted(targets):
+        column, joint = joint_column(window.run, name)
+        error = window.cut(window.run.signals.joint_positions)[:, column] - targets[name]
+        if joint.kind == "continuous":
+            error = np.arctan2(np.sin(error), np.cos(error))
+        slides = joint.kind == "prismatic" and not is_given
+        limit = min(tolerance, SLIDING_TOLERANCE) if slides else tolerance
+        off, unit = np.abs(error), joint.position_unit
+        parts.append(Part(POSITION_ERROR, off, limit, "<=", detail=name, measured_unit=unit))
+
+    def text(_: int, measure: Measure) -> str:
+        off, limit = amounts(measure.value, measure.limit, measure.unit)
+        return f"{measure.detail} is off its target by {off} of {limit}"
+
+    return all_of(window, parts, text)

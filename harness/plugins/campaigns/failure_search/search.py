@@ -1,0 +1,251 @@
+"""One search from a scenario file to its smallest failures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from harness.core.errors import HarnessError, SpecError
+from harness.core.suggestion import did_you_mean
+from harness.language.reading.load import load_scenario
+from harness.language.variation import Search
+from harness.plugins.campaigns.failure_search.closeness import failure_kind
+from harness.plugins.campaigns.failure_search.evaluator import Evaluator, OnRun, Sample
+from harness.plugins.campaigns.failure_search.explore import Exploration, explore
+from harness.plugins.campaigns.failure_search.shrink import shrink
+from harness.plugins.campaigns.failure_search.space import Point, SearchSpace, search_space
+from harness.suite.cases import read_ahead
+from harness.suite.discovery import UsageError
+from harness.suite.header import read_header
+from harness.suite.stream import Stream
+from harness.suite.variation import ONE_CASE, Variation
+from harness.suite.warm import WarmServer
+
+
+@dataclass(frozen=True)
+class SearchRequest:
+    """What is searched, and how far.
+
+    Attributes:
+        file: The scenario file that is searched.
+        overrides: Path -> value as YAML; they take precedence over what varies.
+        case: Name of the parametrised case; empty where there is one.
+        seed: Seed of every run and of the search; None takes the file's.
+        runs: How many runs the search may take; shrinking takes further ones.
+        start: The number of runs that are low-discrepancy samples.
+        batch: Runs that the optimiser proposes together; None: as many as CMA-ES recommends.
+        minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
+        workers: Runs side by side.
+        hard_cap: Wall seconds a run may take; None: the program's own.
+    """
+
+    file: Path
+    overrides: Mapping[str, str]
+    case: str
+    seed: int | None
+    runs: int
+    start: int
+    batch: int | None
+    minimise: str | None
+    workers: int = 1
+    hard_cap: float | None = None
+
+    @classmethod
+    def of(
+        cls,
+        file: Path,
+        overrides: Mapping[str, str],
+        case: str,
+        settings: Mapping[str, Any],
+        *,
+        workers: int,
+        hard_cap: float | None,
+    ) -> SearchRequest:
+        """What a file's `search` says.
+
+        Args:
+            file: The scenario file that is searched.
+            overrides: Path -> value as YAML; they take precedence over what varies.
+            case: Name of the parametrised case; empty where there is one.
+            settings: Settings that take precedence over the file's; those that are None do not.
+            workers: Runs side by side.
+            hard_cap: Wall seconds a run may take; None: the program's own.
+
+        Raises:
+            UsageError: The case or the expectation does not exist.
+            SpecError: The file is invalid.
+        """
+        variation = read_header(file, overrides).variation
+        scenario = load_scenario(
+            file, {**_case_overrides(file, case, variation), **overrides}
+        ).scenario
+        given = {name: value for name, value in settings.items() if value is not None}
+        stated = (scenario.search or Search()).model_copy(update=given)
+        names, minimise = scenario.expectation_names(), stated.minimise
+        if minimise is not None and minimise not in names:
+            known = f"; {did_you_mean(minimise, names, 'names')}" if names else ""
+            raise UsageError(
+                f"--minimise: no expectation of '{file}' is called '{minimise}'{known}"
+            )
+        start = min(stated.start, stated.runs)
+        return cls(
+            *(file, overrides, case),
+            *(stated.seed, stated.runs, start, stated.batch, minimise),
+            workers=workers,
+            hard_cap=hard_cap,
+        )
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A failure and its nearest neighbour of the nominal scenario.
+
+    Attributes:
+        kind: What failed, without numbers.
+        samples: The runs that failed in this way.
+        nearest: The smallest change that fails in this way.
+        shrink_runs: How many runs the shrinking took.
+    """
+
+    kind: str
+    samples: tuple[Sample, ...]
+    nearest: Sample
+    shrink_runs: int
+
+
+@dataclass(frozen=True)
+class SearchResult:
+    """What a search found.
+
+    Attributes:
+        request: What was searched, and how far.
+        overrides: Path -> value as YAML that all runs have in common.
+        space: The parameters that vary, with their nominal values.
+        nominal: The run of the scenario as its file has it.
+        exploration: Every run of the search.
+        failures: One for each kind of failure; if the nominal scenario fails, none.
+        uncounted: Runs that are no evidence: invalid values, or overlaps where the file redraws.
+        variation: The variation of the file, with the rate that it requires.
+    """
+
+    request: SearchRequest
+    overrides: Mapping[str, str]
+    space: SearchSpace
+    nominal: Sample
+    exploration: Exploration
+    failures: tuple[Failure, ...]
+    uncounted: int = 0
+    variation: Variation = ONE_CASE
+
+
+def search(
+    request: SearchRequest,
+    server: WarmServer,
+    *,
+    stream: Stream | None = None,
+    on_run: OnRun = lambda *_: None,
+    on_stage: Callable[[str], None] = lambda _: None,
+) -> SearchResult:
+    """Search for failures of a scenario and shrink each kind of them.
+
+    Args:
+        request: What is searched, and how far.
+        server: The server that forks a process for every run.
+        stream: Takes the results as they come.
+        on_run: Called with the number of each new run and its result.
+        on_stage: Called with what the search does next.
+
+    Raises:
+        UsageError: Nothing varies, or a parametrised case must be named.
+        SpecError: The file is invalid.
+        HarnessError: The nominal scenario ends in an error.
+    """
+    variation = read_header(request.file, request.overrides).variation
+    overrides = {
+        **_case_overrides(request.file, request.case, variation),
+        **request.overrides,
+    }
+    space = search_space(request.file, variation, overrides)
+    space = SearchSpace(
+        tuple(each for each in space.parameters if each.path not in request.overrides)
+    )
+    if not space.parameters:
+        raise UsageError(
+            f"'{request.file}': nothing varies; give ranges with `randomize:` in the file"
+        )
+    server.prepare(read_ahead, frozenset())
+    evaluate = Evaluator(
+        request.file, space, overrides, request.seed, server, request.workers,
+        request.hard_cap, stream, on_run,
+    )  # fmt: skip
+    on_stage("the nominal scenario")
+    [nominal] = evaluate([space.nominal])
+    if nominal.result.outcome == "invalid":
+        raise SpecError(nominal.result.problems)
+    if nominal.result.outcome == "error":
+        raise HarnessError(f"the nominal scenario ends in an error: {nominal.result.message}")
+    if nominal.result.outcome == "failed":
+        return SearchResult(
+            request, overrides, space, nominal, Exploration((), (nominal,), {}, 1), (), 0, variation
+        )
+
+    def is_counted(sample: Sample) -> bool:
+        """Samples with overlapping objects are no evidence where the file draws them again."""
+        is_overlapping = variation.redraw_overlaps and sample.result.overlap > 0
+        return sample.result.outcome != "invalid" and not is_overlapping
+
+    on_stage("searching")
+    exploration = explore(
+        space,
+        evaluate,
+        is_counted,
+        runs=request.runs,
+        start=request.start,
+        batch=request.batch,
+        minimise=request.minimise,
+        seed=variation.seed if request.seed is None else request.seed,
+    )
+    if not exploration.start:
+        problems = [each for s in exploration.samples for each in s.result.problems]
+        if problems:
+            raise SpecError(problems[:1])
+        raise UsageError(
+            f"'{request.file}': bodies overlap at the start of every sample, so that none counts;"
+            " move them, widen the ranges, or leave out `redraw_overlaps`"
+        )
+    failures: list[Failure] = []
+    for kind, samples in exploration.kinds.items():
+        on_stage(f"shrinking: {kind}")
+        failures.append(_shrunk(space, evaluate, kind, samples))
+    uncounted = sum(not is_counted(each) for each in exploration.samples)
+    return SearchResult(
+        request, overrides, space, nominal, exploration, tuple(failures), uncounted, variation
+    )
+
+
+def _case_overrides(file: Path, name: str, variation: Variation) -> dict[str, str]:
+    cases = {each.name: each for each in variation.parametrized()}
+    if name in cases:
+        return dict(cases[name].overrides)
+    known = ", ".join(list(cases)[:10])
+    if not name:
+        raise UsageError(f"'{file}' has {len(cases)} cases; name one of them with --case: {known}")
+    raise UsageError(f"'{file}' has no case '{name}'; cases: {known or 'one'}")
+
+
+def _shrunk(
+    space: SearchSpace, evaluate: Evaluator, kind: str, samples: tuple[Sample, ...]
+) -> Failure:
+    before = len(evaluate.samples)
+
+    def fails(points: Sequence[Point]) -> list[bool]:
+        return [failure_kind(each.result) == kind for each in evaluate(points)]
+
+    def size(sample: Sample) -> tuple[int, float]:
+        return len(space.changed(sample.point)), space.distance(sample.point)
+
+    nearest = shrink(space, min(samples, key=size).point, fails)
+    [sample] = evaluate([nearest])
+    return Failure(kind, samples, sample, len(evaluate.samples) - before)

@@ -1,0 +1,201 @@
+"""The files of a search: a scenario for each failure with its report, a page, and the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from harness.core.files import replaced, writing
+from harness.core.printable import printable
+from harness.language.reading.load import load_scenario
+from harness.language.reading.resolve import resolved_text
+from harness.plugins.campaigns.failure_search.evaluator import Sample
+from harness.plugins.campaigns.failure_search.explore import FailureRate
+from harness.plugins.campaigns.failure_search.search import Failure, SearchResult
+from harness.reporting.json_text import json_text
+from harness.reporting.result import CaseResult
+from harness.reporting.sampled import SampledRate, SuccessRate
+from harness.reporting.suite.cause import cause_of
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.write import write_suite_page
+from harness.session.run_request import RunRequest
+from harness.suite.cases import run_isolated
+from harness.suite.discovery import SUFFIX
+from harness.suite.folders import place_of
+from harness.suite.sampling import Tally
+from harness.suite.warm import WarmServer
+
+FORMAT = "armharness-search/1"
+FOLDER = "search"
+NUMBERS = "search.json"
+
+
+@dataclass(frozen=True)
+class WrittenFailure:
+    """A failure as a scenario file, which was run.
+
+    Attributes:
+        failure: The failure that the file repeats.
+        file: The scenario file that was written.
+        result: The result of running that file, with its report.
+    """
+
+    failure: Failure
+    file: Path
+    result: CaseResult
+
+    @property
+    def is_same(self) -> bool:
+        """Whether the file's run has the digest of the run that was found."""
+        return self.result.digest == self.failure.nearest.result.digest
+
+
+def search_folder(root: Path, file: Path) -> Path:
+    """Where the files of a search go."""
+    return root / FOLDER / place_of(file)
+
+
+def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> list[WrittenFailure]:
+    """Write each shrunk failure as a scenario file, run that file, and report the run.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    files = [folder / f"failure{i}{SUFFIX}" for i in range(1, len(found.failures) + 1)]
+    with writing(folder):
+        for stale in folder.glob(f"failure*{SUFFIX}"):
+            stale.unlink()
+        for file, failure in zip(files, found.failures, strict=True):
+            file.write_text(scenario_text(found, failure, folder), encoding="utf-8")
+    jobs = [RunRequest(file, report_dir=folder / file.name.removesuffix(SUFFIX)) for file in files]
+    cap = found.request.hard_cap
+    results = dict(run_isolated(jobs, server, workers=found.request.workers, hard_cap=cap))
+    return [
+        WrittenFailure(failure, file, results[index])
+        for index, (failure, file) in enumerate(zip(found.failures, files, strict=True))
+    ]
+
+
+def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
+    """A scenario file that fails as the shrunk failure does, without anything that varies."""
+    sample = failure.nearest
+    overrides = {**found.overrides, **found.space.overrides(sample.point)}
+    loaded = load_scenario(found.request.file, overrides, found.request.seed)
+    lines = [
+        f"The smallest change of '{found.request.file}' that was found to fail in this way:",
+        failure.kind,
+        *changes(found, sample),
+        f"digest: {sample.result.digest}",
+    ]
+    comments = "".join(f"# {printable(line)}\n" for line in lines)
+    return comments + resolved_text(loaded, folder=folder)
+
+
+def changes(found: SearchResult, sample: Sample) -> list[str]:
+    """`friction: 1.0 -> 0.42` for each parameter that is not nominal."""
+    space = found.space
+    return [
+        f"{space.parameters[i].path}: {space.parameters[i].nominal} -> {sample.point[i]}"
+        for i in space.changed(sample.point)
+    ]
+
+
+def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder: Path) -> Path:
+    """Write the page and the numbers of a search.
+
+    Returns:
+        The path of the page.
+
+    Raises:
+        HarnessError: A file cannot be written.
+    """
+    runs = [
+        (replace(found.nominal.result, case="nominal"), found.nominal.point),
+        *((each.result, each.point) for each in found.exploration.samples),
+        *((_reported(each), each.failure.nearest.point) for each in written),
+    ]
+    cases = [SuiteCase(result, found.space.values(point)) for result, point in runs]
+    outcome = "failed" if is_failing(found) else "passed"
+    rate = found.exploration.rate
+    rates = [] if rate is None else [_sampled(found, rate)]
+    with writing(folder), replaced(folder / NUMBERS) as file:
+        file.write(json_text(search_document(found, written)).encode())
+    return write_suite_page(folder, SuiteRecord(outcome, cases, rates))
+
+
+def is_failing(found: SearchResult) -> bool:
+    """Whether the scenario fails somewhere."""
+    return found.nominal.result.outcome != "passed" or bool(found.failures)
+
+
+def _reported(written: WrittenFailure) -> CaseResult:
+    """The run of a shrunk failure, with the name and the report of its scenario file."""
+    name = written.file.name.removesuffix(SUFFIX)
+    report, page = written.result.report_dir, written.result.page
+    result = written.failure.nearest.result
+    return replace(result, case=name, report_dir=report, page=page)
+
+
+def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
+    """The share that passes, as the pages of suites show rates."""
+    stated = found.variation
+    if stated.at_least is None:
+        shown = SuccessRate(
+            rate.total - rate.failed,
+            rate.total,
+            1 - rate.high,
+            1 - rate.low,
+            rate.confidence,
+            None,
+            "refuted" if found.failures else "shown",
+        )
+    else:
+        tally = Tally(stated.at_least, stated.confidence, stop_early=False)
+        for each in found.exploration.start:
+            tally.add(each.result.outcome == "passed", each.result.digest)
+        shown = tally.rate(tally.total)
+    return SampledRate(
+        str(found.request.file),
+        "low-discrepancy samples",
+        shown,
+        "passed" if shown.verdict == "shown" else "failed",
+    )
+
+
+def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> dict[str, object]:
+    """The content of `search.json` and `--json`."""
+    exploration = found.exploration
+    return {
+        "format": FORMAT,
+        "file": str(found.request.file),
+        "outcome": "failed" if is_failing(found) else "passed",
+        "nominal": {"outcome": found.nominal.result.outcome, "digest": found.nominal.result.digest},
+        "parameters": {
+            each.path: {"nominal": each.nominal, **each.distribution.plain}
+            for each in found.space.parameters
+        },
+        "runs": len(exploration.samples),
+        "uncounted": found.uncounted,
+        "first_failure": exploration.first_failure or None,
+        "rate": exploration.rate,
+        "failures": [
+            {
+                "kind": each.failure.kind,
+                "cause": cause.text if (cause := cause_of(each.result)) else "",
+                "runs": len(each.failure.samples),
+                "shrink_runs": each.failure.shrink_runs,
+                "values": found.space.values(each.failure.nearest.point),
+                "changed": [
+                    found.space.parameters[i].path
+                    for i in found.space.changed(each.failure.nearest.point)
+                ],
+                "distance": found.space.distance(each.failure.nearest.point),
+                "scenario": str(each.file),
+                "report": each.result.report_dir,
+                "digest": each.result.digest,
+                "is_same_digest": each.is_same,
+            }
+            for each in written
+        ],
+    }

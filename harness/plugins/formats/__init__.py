@@ -1,0 +1,1 @@
+"""Worlds and requests in the formats of other programs: SDF, MJCF, MoveIt."""

@@ -1,0 +1,1 @@
+"""The world formats of other programs."""

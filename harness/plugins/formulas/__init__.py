@@ -1,0 +1,1 @@
+"""Formulas of signal temporal logic as expectations."""

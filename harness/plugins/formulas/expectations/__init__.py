@@ -1,0 +1,1 @@
+"""The expectation of formulas."""

@@ -1,0 +1,80 @@
+"""Which values a number of a formula can have, and the comparisons that no run decides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from harness.plugins.formulas.language.formula import Arithmetic, Comparison, Const, Number, Signal
+
+Range = tuple[float, float]
+
+ANY: Range = (-math.inf, math.inf)
+SIGNAL_RANGES: dict[str, Range] = {
+    "time": (0.0, math.inf),
+    "tilt": (0.0, math.pi),
+    "speed": (0.0, math.inf),
+    "force": (0.0, math.inf),
+}
+"""The least and the largest value of signals that are bounded in every run, in SI."""
+
+RangeOf = Callable[[Signal], Range]
+
+
+def range_of_signal(signal: Signal) -> Range:
+    """The least and the largest value of a signal in any run."""
+    return SIGNAL_RANGES.get(signal.name, ANY)
+
+
+def range_of(node: Number, of_signal: RangeOf = range_of_signal) -> Range:
+    """The least and the largest value of a number, by interval arithmetic.
+
+    Args:
+        node: The number of a formula, with its operands.
+        of_signal: The range of a signal, where more is known of it than of any run.
+    """
+    match node:
+        case Const(value=value):
+            return value, value
+        case Signal():
+            return of_signal(node)
+        case Arithmetic(operator=operator, operands=operands):
+            return _calculated(operator, [range_of(each, of_signal) for each in operands])
+
+
+def _calculated(operator: str, ranges: list[Range]) -> Range:
+    (low, high), other = ranges[0], ranges[-1]
+    match operator:
+        case "neg":
+            return -high, -low
+        case "abs":
+            return 0.0 if low <= 0 <= high else min(abs(low), abs(high)), max(abs(low), abs(high))
+        case "min":
+            return min(low, other[0]), min(high, other[1])
+        case "max":
+            return max(low, other[0]), max(high, other[1])
+        case "+":
+            return low + other[0], high + other[1]
+        case "-":
+            return low - other[1], high - other[0]
+        case "*":
+            products = [0.0 if 0 in (a, b) else a * b for a in (low, high) for b in other]
+            return min(products), max(products)
+        case _:
+            if other[0] <= 0 <= other[1]:
+                return ANY
+            return _calculated("*", [ranges[0], (1 / other[1], 1 / other[0])])
+
+
+def decided(comparison: Comparison, of_signal: RangeOf = range_of_signal) -> bool | None:
+    """Whether a comparison holds in every run, or in none; None where a run decides."""
+    left = range_of(comparison.left, of_signal)
+    right = range_of(comparison.right, of_signal)
+    if comparison.operator.startswith("<"):
+        left, right = right, left
+    if left[0] > right[1] or left[1] < right[0]:
+        return left[0] > right[1]
+    is_strict = "=" not in comparison.operator
+    if is_strict:
+        return False if left[1] == right[0] else None
+    return True if left[0] == right[1] else None

@@ -1,0 +1,163 @@
+"""How a function counts: units of targets and answers, zeros and directions of joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from harness.core.spatial import SE3
+from harness.core.types import FloatArray
+from harness.plugins.iktest.contract import Value, call_arguments
+from harness.plugins.iktest.strategies.poses import Target
+from harness.plugins.iktest.strategies.tasks import Task, task_error, task_jacobians
+from harness.robot.chain import Chain
+
+LENGTHS = {"metres": 1.0, "centimetres": 0.01, "millimetres": 0.001}
+ANGLES = {"": 1.0, "is given in degrees": np.pi / 180, "counts upwards": -1.0}
+STARTS = (0.0, np.pi / 2, -np.pi / 2, np.pi)
+"""Differences of a joint's zero [rad] from which a fit starts."""
+
+MOST_SAMPLES, MOST_STEPS = 10, 12
+KEPT = 0.8
+"""Share of the answers that a convention explains; others may be wrong in another way."""
+
+NO_OFFSET = 1e-6  # [rad or m]
+CONVERGED = 1e-11  # [rad or m] of a step
+NEARLY_RIGHT = 1e-3  # [rad, or m as a share of the reach] of answers that a fit explains
+
+
+@dataclass(frozen=True, eq=False)
+class Convention:
+    """How a function counts: joint positions are `scale * answer + offset`.
+
+    Attributes:
+        scale: The unit of each joint in rad or m, shape (dof,); negative in the other direction.
+        offset: The zero of each joint, shape (dof,) [rad or m].
+        length: The unit of a target's position [m].
+        angle: The unit of a target's pitch [rad], negative if it counts upwards.
+    """
+
+    scale: FloatArray
+    offset: FloatArray
+    length: float = 1.0
+    angle: float = 1.0
+
+    @classmethod
+    def plain(cls, dof: int) -> Convention:
+        """The convention of the contract: radians, metres, and the zeros of the robot."""
+        return cls(np.ones(dof), np.zeros(dof))
+
+    def positions(self, answer: FloatArray) -> FloatArray:
+        """Joint positions of an answer [rad or m]."""
+        return self.scale * answer + self.offset
+
+    def answer(self, positions: FloatArray) -> FloatArray:
+        """The answer that stands for joint positions [rad or m]."""
+        return (positions - self.offset) / self.scale
+
+    def changes(self) -> int:
+        """The number of zeros and directions that differ from the robot's."""
+        return int(np.count_nonzero(self.offset) + np.count_nonzero(self.scale < 0))
+
+    def arguments(self, words: Sequence[str], target: SE3, seed: FloatArray) -> dict[str, Value]:
+        """What a function is called with for a target, by its parameters."""
+        scaled = SE3(target.rotation, target.translation / self.length)
+        found = call_arguments(words, scaled, self.answer(seed))
+        if "pitch" in found:
+            found["pitch"] = float(found["pitch"]) / self.angle
+        return found
+
+    def text(self, chain: Chain) -> str:
+        """What makes answers right, in words."""
+        unit = {value: name for name, value in LENGTHS.items()}
+        sizes = np.abs(self.scale)
+        parts = ["it is taken in degrees"] if np.any(sizes[chain.is_turning] != 1) else []
+        parts += [
+            f"its lengths are taken in {unit[float(size)]}"
+            for size in np.unique(sizes[~chain.is_turning])
+            if size != 1
+        ]
+        rows = zip(chain.joint_names, chain.is_turning, self.scale, self.offset, strict=True)
+        for name, is_turning, scale, offset in rows:
+            amount = f"{abs(offset):.4g} {'rad' if is_turning else 'm'}"
+            if scale < 0 and not offset:
+                parts.append(f"{name} counts in the other direction")
+            elif scale < 0:
+                parts.append(f"{name} is {'-' if offset < 0 else ''}{amount} minus the answer's")
+            elif offset:
+                parts.append(f"{name} is {amount} {'more' if offset > 0 else 'less'}")
+        parts += [f"the target is given in {unit[self.length]}"] if self.length != 1 else []
+        parts += [f"`pitch` {word}" for word, value in ANGLES.items() if value == self.angle != 1]
+        return " and ".join(parts)
+
+
+def target_units(chain: Chain, words: Sequence[str]) -> Iterator[Convention]:
+    """Conventions with other units of targets, the plain one first."""
+    angles = ANGLES.values() if "pitch" in words else [1.0]
+    for length, angle in product(LENGTHS.values(), angles):
+        yield replace(Convention.plain(chain.dof), length=length, angle=angle)
+
+
+def answer_units(chain: Chain, convention: Convention) -> Iterator[Convention]:
+    """The convention with other units of answers, the same first."""
+    lengths = [1.0] if chain.is_turning.all() else LENGTHS.values()
+    turns = [1.0, np.pi / 180] if chain.is_turning.any() else [1.0]
+    for turn, length in product(turns, lengths):
+        yield replace(convention, scale=np.where(chain.is_turning, turn, length))
+
+
+def with_fitted_zeros(
+    chain: Chain, task: Task, convention: Convention, pairs: Sequence[tuple[Target, FloatArray]]
+) -> Iterator[Convention]:
+    """The convention with zeros and a direction of joints for which answers reach their targets.
+
+    Gauss-Newton on the offsets of all joints at once, for each joint in both directions and from
+    a few zeros, on the answers that fit best.
+
+    Args:
+        chain: The chain of the arm that is solved.
+        task: The task of the function.
+        convention: The units of the function.
+        pairs: Targets and what the function answered.
+    """
+    if not pairs:
+        return
+    step = 1 + (len(pairs) - 1) // MOST_SAMPLES
+    targets = [target.pose for target, _ in pairs[::step]]
+    answers = np.array([answer for _, answer in pairs[::step]])
+    for joint, direction, start in product(range(chain.dof), (1.0, -1.0), STARTS):
+        scale, offset = convention.scale.copy(), np.zeros(chain.dof)
+        scale[joint] *= direction
+        offset[joint] = start if chain.is_turning[joint] else 0.0
+        found = _fitted_offset(chain, task, targets, scale * answers, offset)
+        if found is not None:
+            turns = 2 * np.pi * np.round(found / (2 * np.pi)) * chain.is_turning
+            found = np.round(found - turns, 9)
+            offset = np.where(np.abs(found) < NO_OFFSET, 0.0, found)
+            yield replace(convention, scale=scale, offset=offset)
+
+
+def _fitted_offset(
+    chain: Chain, task: Task, targets: Sequence[SE3], answers: FloatArray, offset: FloatArray
+) -> FloatArray | None:
+    """Offsets of the joints with which most answers reach their targets, or None."""
+    reach = max(chain.farthest()[1], 1e-6)
+    count = max(1, round(KEPT * len(targets)))
+    for _ in range(MOST_STEPS):
+        samples = answers + offset
+        errors = np.array(
+            [
+                task_error(task, target, chain.link_pose(each), reach)
+                for target, each in zip(targets, samples, strict=True)
+            ]
+        )
+        best = np.argsort(np.abs(errors).max(axis=1), kind="stable")[:count]
+        rows = task_jacobians(chain, task, samples[best]).reshape(-1, chain.dof)
+        change = np.linalg.lstsq(rows, errors[best].ravel(), rcond=1e-9)[0]
+        offset = offset + change / max(1.0, float(np.abs(change).max()))
+        if np.abs(change).max() < CONVERGED:
+            return offset if np.abs(errors[best]).max() < NEARLY_RIGHT else None
+    return None

@@ -1,0 +1,101 @@
+"""A scenario's cell on the ROS 2 graph, executed, recorded and judged as any other run."""
+
+from __future__ import annotations
+
+import time
+from contextlib import closing
+from dataclasses import dataclass, replace
+
+from harness.core.errors import Problem, SpecError
+from harness.plugins.ros.domain import free_domain
+from harness.plugins.ros.graph import Graph
+from harness.plugins.ros.live import BridgeRequest, LiveControl, Say
+from harness.ports.simulation import LONGEST_RUN
+from harness.reporting.result import CaseResult
+from harness.session.prepare import Prepared
+from harness.session.progress import Notify
+from harness.session.run_case import run_case
+from harness.session.run_request import RunRequest
+from harness.session.timed_simulator import TimedSimulator
+
+NODE = "bridge"
+DISCOVERY = 0.5
+"""Wall time in which other robots of the domain are discovered [s]."""
+
+
+@dataclass(frozen=True)
+class BridgeResult:
+    """The judged run, the number of commands, and remarks on wall time, names and programs."""
+
+    case: CaseResult
+    commands: int = 0
+    remarks: tuple[str, ...] = ()
+
+
+def open_graph(
+    adapter: str, domain: int, *, node: str, is_local: bool = True, say: Say = lambda _: None
+) -> Graph:
+    """Join a domain.
+
+    Args:
+        adapter: `rtps`, or `rclpy` of a ROS 2 installation.
+        is_local: Whether the node talks to this machine alone.
+        say: Receives a note for each topic that cannot be published.
+
+    Raises:
+        SpecError: The adapter, or a message package that it needs, is not installed.
+        NetworkError: The domain cannot be joined.
+    """
+    if adapter == "rclpy":
+        from harness.plugins.ros.rclpy_graph import RclpyGraph
+
+        return RclpyGraph(domain, node=node, is_local=is_local, say=say)
+    from harness.plugins.ros.rtps.graph import RtpsGraph
+
+    return RtpsGraph(domain, node=node, is_local=is_local)
+
+
+def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> BridgeResult:
+    """Run a scenario whose step `external` is nodes' to carry out.
+
+    Raises:
+        SpecError: Another robot is in the domain.
+        NetworkError: The domain cannot be joined.
+    """
+    made: list[LiveControl] = []
+
+    def session(prepared: Prepared, simulator: TimedSimulator) -> LiveControl:
+        made.append(LiveControl(prepared, simulator, graph, request))
+        return made[0]
+
+    place = request.adapter, request.domain
+    graph = open_graph(*place, node=NODE, is_local=request.is_local, say=request.say)
+    with closing(graph):
+        _refuse_other_robot(graph, request.domain)
+        case = run_case(request.run, notify, session)
+    if not made:
+        return BridgeResult(case)
+    remarks = made[0].remarks(has_passed=case.outcome == "passed")
+    return BridgeResult(case, made[0].command_count, remarks)
+
+
+def _refuse_other_robot(graph: Graph, domain: int) -> None:
+    """Raise where a robot or another simulator is in the domain: both would obey a command."""
+    graph.spin(time.monotonic() + DISCOVERY)
+    if any(use.publishes and use.topic == "/joint_states" for use in graph.uses()[1]):
+        reason = "another robot or simulator publishes /joint_states; use another --domain"
+        raise SpecError([Problem(f"ROS domain {domain}", 0, 0, reason)])
+
+
+def run_with_nodes(request: RunRequest, notify: Notify) -> CaseResult:
+    """Run a case whose steps may start the request's nodes, in a domain of its own."""
+    remarks: list[str] = []
+    with free_domain() as domain:
+        result = run_bridge(BridgeRequest(request, domain, say=remarks.append), notify)
+    return replace(result.case, notes=(*result.case.notes, *remarks, *result.remarks))
+
+
+def handed_over(request: RunRequest, timeout: float = LONGEST_RUN) -> RunRequest:
+    """The request with all steps of its file replaced by one that hands the robot over."""
+    steps = f"[{{external: {{}}, timeout: {timeout:g} s}}]"
+    return replace(request, overrides={**request.overrides, "steps": steps})

@@ -1,0 +1,186 @@
+"""The simulated cell under its controllers: a function of the scenario and the command stream."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from harness.cell.controllers import ControllerNames
+from harness.core.types import FloatArray
+from harness.plugins.ros.control.controller import Controller, Outcome, Rows, Window
+from harness.plugins.ros.control.goals import Code, GoalRefused
+from harness.plugins.ros.control.gripper import GripperMotion
+from harness.plugins.ros.control.trajectory import follow_result, start_trajectory
+from harness.recording.commands import CommandKind, CommandRecord
+from harness.robot.description import TrackingTolerances
+
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
+
+TICK = 0.01
+"""Simulated time from one update of the controllers to the next [s]: 100 Hz, as in the course."""
+
+PREEMPTED = "a newer command replaced this goal"
+STOPPED = "the session ended while this goal was active"
+UNBOUNDED = TrackingTolerances(np.inf, np.inf)
+
+
+class ExternalCell:
+    """Controllers on the servos; time moves in `tick` alone, commands come between ticks.
+
+    Attributes:
+        commands: Everything that was received.
+        end: The end of the launched program or of the session, since `begin`.
+        on_outcome: Called with each goal that ended.
+        controllers: The controllers, by each of their names.
+    """
+
+    def __init__(self, servos: MujocoSimulator, names: ControllerNames) -> None:
+        self._servos = servos
+        self.description = description = servos.description
+        self.commands: list[CommandRecord] = []
+        self.on_outcome: Callable[[Outcome], None] = lambda _: None
+        self._rows = max(1, round(TICK / servos.timestep))
+        self.controllers: dict[str, Controller] = {}
+        if names.arm:
+            joints = description.groups[description.arm_group].joint_names
+            arm = self._controller(joints, description.tracking, ("trajectory",))
+            self.controllers.update(dict.fromkeys(names.arm, arm))
+        if description.gripper is not None:
+            finger = (description.gripper.joint,)
+            grip = self._controller(finger, UNBOUNDED, ("trajectory", "gripper"))
+            self.controllers[names.gripper] = grip
+        self._each = tuple(dict.fromkeys(self.controllers.values()))
+        self.begin()
+
+    def _controller(
+        self, names: Sequence[str], bounds: TrackingTolerances, kinds: tuple[CommandKind, ...]
+    ) -> Controller:
+        description = self.description
+        joints = [description.joint_by_name[name] for name in names]
+        places = np.array([description.joint_index[name] for name in names])
+        columns = np.searchsorted(self._servos.physics.actuated, places)
+        return Controller(joints, columns, places, bounds, kinds)
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self._servos.time
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no controller follows anything."""
+        return all(controller.motion is None for controller in self._each)
+
+    def begin(self) -> None:
+        """Start from the set points as a planned motion left them."""
+        self.end: CommandRecord | None = None
+        held = self._servos.commanded_positions()[self._servos.physics.actuated][None]
+        self._last: Rows = np.array([held, np.zeros_like(held), np.zeros_like(held)])
+
+    def receive(
+        self, kind: CommandKind, controller: str = "", goal: str = "", **content: Any
+    ) -> CommandRecord:
+        """Let a command take effect now, and record it with its result."""
+        sample = self._servos.sample_count - 1
+        record = CommandRecord(sample, self.time, kind, controller, goal, content, "accepted")
+        try:
+            if kind == "cancel":
+                self._cancel(goal)
+            elif kind == "end":
+                self.end = record
+            else:
+                self._begin(self.controllers[controller], record)
+        except GoalRefused as refused:
+            record = replace(record, answer=str(refused))
+            if kind == "trajectory" and goal:
+                result = follow_result(refused.code, record.answer)
+                self.on_outcome(Outcome(goal, False, result))
+        self.commands.append(record)
+        return record
+
+    def _begin(self, controller: Controller, command: CommandRecord) -> None:
+        """Let a controller follow a goal; what it followed before ends."""
+        start, gripper = self._last[:, :, controller.columns], self.description.gripper
+        if command.kind == "gripper":
+            motion = GripperMotion(self._servos, command, float(start[0, -1, 0]))
+        else:
+            motion = start_trajectory(controller.joints, controller.bounds, command, start)
+        self._interrupt(controller, Code.INVALID_GOAL, PREEMPTED)
+        controller.motion = motion
+        if gripper is not None and "gripper" in controller.kinds:
+            self._servos.limit_gripper(motion.effort or gripper.grip_effort)
+
+    def _interrupt(self, controller: Controller, code: Code, reason: str) -> None:
+        """End what a controller follows before it is reached."""
+        motion, controller.motion = controller.motion, None
+        if motion is not None and motion.goal:  # what came from a topic has no result
+            self.on_outcome(motion.interrupted(code, reason, self._now(controller)))
+
+    def _cancel(self, goal: str) -> None:
+        """Hold the joints of a goal where they are."""
+        for controller in self._each:
+            if controller.motion is not None and controller.motion.goal == goal:
+                self._hold(controller, self._servos.joint_positions()[controller.places])
+                self._interrupt(controller, Code.SUCCESSFUL, "canceled")
+                return
+        raise GoalRefused("no such goal is active")
+
+    def tick(self, end: float = np.inf) -> None:
+        """Move time by one tick, but not beyond `end` [s], and see which goals ended."""
+        servos, left = self._servos, (end - self.time) / self._servos.timestep
+        count = self._rows if left >= self._rows else max(1, round(left))
+        first = servos.sample_count
+        times: FloatArray = np.arange(first, first + count, dtype=np.float64) * servos.timestep
+        rows = self._set_points(times)
+        servos.stream(np.concatenate([self._last, rows], axis=1))
+        self._last = rows[:, -1:]
+        for controller in self._each:
+            motion = controller.motion
+            ended = motion.judge(self._window(controller, times, rows)) if motion else None
+            if ended is not None:
+                controller.motion = None
+                if ended.hold is not None:
+                    self._hold(controller, ended.hold)
+                self.on_outcome(ended)
+
+    def feedback(self) -> Iterator[tuple[str, Any]]:
+        """Every goal that is followed, and the feedback of its action at this moment."""
+        for each in self._each:
+            if each.motion is not None and each.motion.goal:
+                yield each.motion.goal, each.motion.feedback(self._now(each))
+
+    def finish(self) -> None:
+        """End what is still active; the arm holds its last set point."""
+        for controller in self._each:
+            self._interrupt(controller, Code.INVALID_GOAL, STOPPED)
+        self._servos.command(self._last[0, -1])
+
+    def _now(self, controller: Controller) -> Window:
+        """Desired and measured motion of a controller's joints at this moment."""
+        return self._window(controller, np.array([self.time]), self._last)
+
+    def _window(self, controller: Controller, times: FloatArray, rows: Rows) -> Window:
+        """Desired and measured motion of a controller's joints at the last samples."""
+        measured = np.array(self._servos.measured(self._servos.sample_count - len(times)))
+        columns, places = controller.columns, controller.places
+        efforts = self._servos.efforts()[columns]
+        return Window(times, rows[:, :, columns], measured[:, :, places], efforts)
+
+    def _hold(self, controller: Controller, positions: FloatArray) -> None:
+        """Command the joints of a controller to rest at some positions."""
+        self._last = self._last.copy()
+        self._last[:, -1, controller.columns] = 0.0
+        self._last[0, -1, controller.columns] = positions
+
+    def _set_points(self, times: FloatArray) -> Rows:
+        """Set points of all actuated joints at some times."""
+        whole = np.zeros((3, len(times), self._last.shape[2]))
+        whole[0] = self._last[0, -1]
+        for controller in self._each:
+            if controller.motion is not None:
+                whole[:, :, controller.columns] = controller.motion.at(times)
+        return whole

@@ -1,0 +1,165 @@
+"""The port to ROS 2 over RTPS: names and types as rmw_fastrtps writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from harness.plugins.ros.graph import (
+    DEFAULT,
+    LATCHED,
+    Client,
+    OnMessage,
+    Publisher,
+    Qos,
+    Reply,
+    Use,
+)
+from harness.plugins.ros.interfaces import decoded, encoded, prepare
+from harness.plugins.ros.rtps import wire
+from harness.plugins.ros.rtps.discovery import Endpoint
+from harness.plugins.ros.rtps.participant import Participant
+from harness.plugins.ros.rtps.reader import Reader
+from harness.plugins.ros.rtps.wire import Sample
+from harness.plugins.ros.rtps.writer import Writer
+from harness.reporting.rosbag.messages import message
+
+SERVICE = Qos(depth=100)
+DISCOVERY = "ros_discovery_info"
+INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+CYCLONE = b"\x01\x10"
+"""Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
+content, between the encapsulation header and the message of requests and responses."""
+CYCLONE_IDENTITY = 16
+GID = 16
+"""Bytes of a GUID in rmw_dds_common/msg/Gid since Jazzy."""
+
+
+def dds_type(kind: str) -> str:
+    """`std_msgs/msg/String` as `std_msgs::msg::dds_::String_`."""
+    package, folder, name = kind.split("/")
+    return f"{package}::{folder}::dds_::{name}_"
+
+
+class RtpsGraph:
+    """A node in a domain, with a participant of its own."""
+
+    def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
+        """Join a domain, as `open_graph` says."""
+        self.participant = Participant(domain, name=node, is_local=is_local)
+        self.spin, self.close = self.participant.spin, self.participant.close
+        self._node = node
+        self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED)
+        self._introduce()
+
+    def advertise(self, topic: str, kind: str, qos: Qos = DEFAULT) -> Publisher:
+        made = self._writer(f"rt{topic}", kind, qos)
+        return Publisher(kind, made.write, lambda: len(made.matched), qos.is_latched)
+
+    def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
+        self._reader(f"rt{topic}", kind, lambda content, _: on_message(content), qos)
+
+    def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
+        writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE)
+
+        def take(request: Any, identity: bytes) -> None:
+            def answer(response: Any) -> None:
+                writer.write(*_framed(encoded(response, f"{kind}_Response"), identity))
+
+            on_request(request, answer)
+
+        self._reader(f"rq{name}Request", f"{kind}_Request", take)
+
+    def client(self, name: str, kind: str) -> Client:
+        waiting: dict[bytes, OnMessage] = {}
+
+        def take(response: Any, identity: bytes) -> None:
+            waiting.pop(identity, lambda _: None)(response)
+
+        def call(request: Any, on_response: OnMessage) -> None:
+            number, guid = writer.last + 1, reader.endpoint.guid
+            identity = guid + wire.sequence_number(number)
+            if any(server.startswith(CYCLONE) for server in writer.matched):
+                identity = guid[8:] + number.to_bytes(8, "little")
+            waiting[identity] = on_response
+            writer.write(*_framed(encoded(request, f"{kind}_Request"), identity))
+
+        reader = self._reader(f"rr{name}Reply", f"{kind}_Response", take)
+        writer = self._writer(f"rq{name}Request", f"{kind}_Request", SERVICE)
+        return Client(lambda: bool(writer.matched and reader.matched), call)
+
+    def uses(self) -> tuple[list[Use], list[Use]]:
+        own, others = self.participant.own_endpoints(), self.participant.known_endpoints()
+        return [*_uses(own)], [*_uses(others)]
+
+    def _writer(self, topic: str, kind: str, qos: Qos) -> Writer:
+        prepare(kind)
+        made = self.participant.writer(topic, dds_type(kind), qos)
+        self._introduce()
+        return made
+
+    def _reader(
+        self, topic: str, kind: str, take: Callable[[Any, bytes], object], qos: Qos = SERVICE
+    ) -> Reader:
+        def deliver(sample: Sample) -> None:
+            payload, identity = _unframed(sample, topic)
+            content = decoded(payload, kind)
+            if content is not None:
+                take(content, identity)
+
+        prepare(kind)
+        made = self.participant.reader(topic, dds_type(kind), qos, deliver)
+        self._introduce()
+        return made
+
+    def _introduce(self) -> None:
+        """Say which endpoints belong to the node: `ros2 node info` reads it."""
+
+        def gid(guid: bytes) -> Any:
+            padded = np.frombuffer(guid.ljust(GID, b"\0"), np.uint8)
+            return message("rmw_dds_common/msg/Gid", data=padded)
+
+        own = [each for each in self.participant.own_endpoints() if each.topic != DISCOVERY]
+        node = message(
+            "rmw_dds_common/msg/NodeEntitiesInfo",
+            node_namespace="/",
+            node_name=self._node,
+            reader_gid_seq=[gid(each.guid) for each in own if not each.is_writer],
+            writer_gid_seq=[gid(each.guid) for each in own if each.is_writer],
+        )
+        info = message(INFO, gid=gid(self.participant.guid), node_entities_info_seq=[node])
+        self._discovery.write(encoded(info, INFO))
+
+
+def _uses(endpoints: Iterable[Endpoint]) -> Iterator[Use]:
+    """What endpoints are in ROS; services are left out."""
+    for each in endpoints:
+        if each.topic.startswith("rt/"):
+            kind = each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_")
+            yield Use(each.topic[2:], kind, each.is_writer, each.qos)
+
+
+def _framed(payload: bytes, identity: bytes) -> tuple[bytes, bytes]:
+    """The payload and the inline parameters of a request or a response.
+
+    What identifies a request is its reader and its number in 24 bytes, or 16 bytes of Cyclone DDS.
+    """
+    if len(identity) == CYCLONE_IDENTITY:
+        return payload[:4] + identity + payload[4:], b""
+    keys = wire.PID_RELATED, wire.PID_RELATED_OLD
+    return payload, wire.parameters(*((key, identity) for key in keys))
+
+
+def _unframed(sample: Sample, topic: str) -> tuple[bytes, bytes]:
+    """The serialised message, and the identity of the request that it is or answers."""
+    if topic.startswith("rt"):
+        return sample.payload, b""
+    if sample.writer.startswith(CYCLONE):
+        return sample.payload[:4] + sample.payload[20:], sample.payload[4:20]
+    named = (sample.inline.get(key, b"")[:24] for key in (wire.PID_RELATED, wire.PID_RELATED_OLD))
+    related = next((each for each in named if len(each) == 24 and any(each[:12])), b"")
+    if topic.startswith("rq"):
+        related = (related[:16] or sample.writer) + wire.sequence_number(sample.number)
+    return sample.payload, related

@@ -1,0 +1,1 @@
+"""The run mode of ROS 2."""

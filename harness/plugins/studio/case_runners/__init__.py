@@ -1,0 +1,1 @@
+"""The case runner of the studio."""

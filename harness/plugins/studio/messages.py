@@ -1,0 +1,146 @@
+"""Messages to the page, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+
+from harness.core.errors import Problem
+from harness.core.printable import printable
+from harness.plugins.studio.language_help import GRIPPER_TARGET, Names
+from harness.plugins.studio.live_cell import LiveCell
+from harness.plugins.studio.session import Message
+from harness.plugins.studio.texts import MOTIONS, ObjectForm, gripper_steps
+from harness.recording.step_record import StepRecord
+from harness.reporting.explanation import explanation_lines
+
+MOST_CONTACTS = 8
+"""Contacts that are listed, strongest first."""
+
+
+def robot_message(cell: LiveCell) -> Message:
+    """What does not change while the cell is the same."""
+    from harness.language.reading.load import bundled_worlds
+    from harness.planning.search.find_pipeline import planner_names
+
+    description = cell.description
+    gripper = description.gripper
+    actuated = set(cell.simulator.physics.actuated.tolist())
+    return {
+        "type": "robot",
+        "name": description.name,
+        "tcp": description.tcp_link,
+        "arm_joints": list(description.groups[description.arm_group].joint_names)
+        if description.arm_group
+        else [],
+        "joints": [
+            {
+                "name": joint.name,
+                "lower": max(joint.lower, -2 * np.pi),
+                "upper": min(joint.upper, 2 * np.pi),
+                "slides": joint.kind == "prismatic",
+            }
+            for index, joint in enumerate(description.movable_joints)
+            if index in actuated
+        ],
+        "states": list(description.states_of(description.arm_group)),
+        "gripper": None
+        if gripper is None
+        else {"steps": gripper_steps(description), "widest": float(gripper.widths[:, 1].max())},
+        "frames": list(
+            dict.fromkeys(
+                ["world", description.base_link, *cell.cell.presence, *description.link_names]
+            )
+        ),
+        "objects": [asdict(ObjectForm.of(spec)) for spec in cell.document.object_specs()],
+        "bodies": list(cell.cell.presence),
+        "overlaps": [
+            f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
+            for touch in cell.simulator.overlaps_at_start
+        ],
+        "worlds": bundled_worlds(),
+        "planners": list(planner_names()),
+        "verbs": list(MOTIONS),
+        "cameras": list(cell.prepared.program.cameras),
+    }
+
+
+def cell_message(cell: LiveCell) -> Message:
+    """The numbers of the cell as it is now."""
+    positions = cell.joint_positions()
+    contacts = sorted(cell.simulator.contact_forces().items(), key=lambda item: -item[1])
+    return {
+        "type": "state",
+        "time": round(cell.simulator.physics_time, 3),
+        "positions": [
+            round(float(positions[index]), 5) for index in cell.simulator.physics.actuated
+        ],
+        "contacts": [[*pair, round(force, 2)] for pair, force in contacts[:MOST_CONTACTS]],
+        "width": _width(cell),
+        "steps_done": cell.steps_done,
+        "step_count": cell.document.step_count,
+        "is_run": cell.is_run,
+    }
+
+
+def names_of(cell: LiveCell | None) -> Names:
+    """Names that exist in a cell, for completion; without one, the bundled robots and worlds."""
+    from harness.language.reading.load import bundled_worlds
+    from harness.robot.load import gripper_names, robot_names
+
+    robots = robot_names()
+    names = {"world": bundled_worlds(), "robot": robots, "model": robots}
+    names["gripper"] = gripper_names()
+    if cell is None:
+        return names
+    description, objects = cell.description, list(cell.cell.presence)
+    gripper = description.gripper
+    states = list(description.states_of(description.arm_group))
+    ends = [] if gripper is None else list(description.states_of(gripper.group))
+    links, joints = description.link_names, description.joint_names
+    bodies = [*objects, *links]
+    named: dict[str, Sequence[str]] = {
+        **{"named_target": states, "state": [*states, *ends], GRIPPER_TARGET: ends},
+        **dict.fromkeys(("joints", "positions"), joints),
+        **dict.fromkeys(("object", "objects"), objects),
+        **dict.fromkeys(("link", "tcp_link", "touch_links"), links),
+        **dict.fromkeys(("on", "support", "container"), bodies),
+        **{"between": ["robot", "gripper", "any", *bodies], "frame": ["world", *bodies]},
+        **{"group": list(description.groups), "camera": list(cell.prepared.program.cameras)},
+    }
+    return names | named
+
+
+def failure_message(record: StepRecord) -> Message:
+    """Why a step failed, with the explanation of a run."""
+    return {
+        "status": "failed",
+        "error": printable(f"{record.error_code}: {record.message}"),
+        "explanation": [
+            printable(line) for line in explanation_lines(record.explanation, record.message)
+        ],
+    }
+
+
+def problem_message(problem: Problem, file: str) -> Message:
+    """A mistake with its place in a file; of one in another file, the text has the place."""
+    is_here = problem.path == file
+    where = "" if is_here else f"{problem.path}:{problem.line}: "
+    return {
+        "line": problem.line if is_here else 0,
+        "column": problem.column,
+        "length": problem.length,
+        "text": printable(f"{where}{problem.message}"),
+        "hint": printable(problem.hint),
+    }
+
+
+def _width(cell: LiveCell) -> float | None:
+    gripper = cell.description.gripper
+    if gripper is None:
+        return None
+    value = cell.joint_positions()[cell.description.joint_index[gripper.joint]]
+    rows = gripper.widths[np.argsort(gripper.widths[:, 0])]
+    return round(float(np.interp(value, rows[:, 0], rows[:, 1])), 5)

@@ -1,0 +1,46 @@
+"""`harness run --live`: a page shows the cases while they run."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar
+
+from harness.cli.commands.view import open_browser
+from harness.cli.output import complain
+from harness.cli.run_mode import RunFiles, RunMode
+from harness.plugins.studio.commands.studio import refuse_missing_extra
+from harness.suite.discovery import UsageError
+
+LONGEST_WAIT_FOR_PAGE = 10.0
+"""Time after which a run with `--live` begins although its page is not open [s]."""
+
+
+class LiveMode(RunMode):
+    """Show the cases on a page of this machine while they run."""
+
+    name: ClassVar[str] = "live"
+
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add `--live`."""
+        text = "show the cases on a page of this machine while they run; needs the extra `studio`"
+        command.add_argument("--live", action="store_true", help=text)
+
+    def is_requested(self, arguments: argparse.Namespace) -> bool:
+        """Return whether `--live` is given."""
+        return arguments.live
+
+    def run(self, arguments: argparse.Namespace, files: Sequence[Path], run_files: RunFiles) -> int:
+        """Run scenarios while a page shows them."""
+        for option, is_given in {"--on": arguments.cluster, "--node": arguments.nodes}.items():
+            if is_given:
+                raise UsageError(f"--live and {option} exclude each other")
+        refuse_missing_extra()
+        from harness.plugins.studio.watch import Watch
+
+        with Watch() as watch:
+            complain(f"live: {watch.page}")
+            if open_browser(watch.page):
+                watch.wait_for_page(LONGEST_WAIT_FOR_PAGE)
+            return run_files(arguments, files, watch.address)

@@ -1,1 +1,0 @@
-"""ROS 2: nodes move the arm of a scenario, and scenarios move the arm of other programs."""

@@ -1,0 +1,276 @@
+"""Executes a program step by step, and records the result of each step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from harness.cell.cell import Belief, Cell, Presence, StepNotes
+from harness.cell.program import Program, ProgramStep
+from harness.core.details import Details
+from harness.core.errors import StepFailed
+from harness.ports.external import ExternalControl
+from harness.ports.planning import PlanningPorts
+from harness.ports.simulation import Simulator
+from harness.recording.execution_failures import TimeoutFailure
+from harness.recording.explanation import Explanation
+from harness.recording.run import AttachmentRecord, ObjectRecord
+from harness.recording.step_record import StepRecord, StepStatus
+from harness.recording.step_results import SceneChange
+from harness.session.advice import advice
+
+StepEvent = Literal["step_started", "step_finished"]
+OnStep = Callable[[StepEvent, ProgramStep, StepRecord | None], None]
+
+
+@dataclass(frozen=True)
+class Execution:
+    """What executing a program leaves, besides the simulator's signals.
+
+    Attributes:
+        beliefs: Where objects of the planning scene alone stood, in order of time.
+    """
+
+    steps: tuple[StepRecord, ...]
+    objects: tuple[ObjectRecord, ...]
+    attachments: tuple[AttachmentRecord, ...]
+    beliefs: Mapping[str, Sequence[Belief]]
+    ended_early: str
+
+
+class _RunEndedError(Exception):
+    """A step failed in a way that nothing expected; carries the failure up through nesting.
+
+    Attributes:
+        failure: The failure of the innermost step.
+        summary: The summary of that step.
+    """
+
+    def __init__(self, failure: StepFailed, summary: str) -> None:
+        self.failure, self.summary = failure, summary
+        super().__init__(str(failure))
+
+
+@dataclass
+class _Runner:
+    cell: Cell
+    on_step: OnStep
+    keep_going: bool
+    timestep: float
+    records: list[StepRecord] = field(default_factory=list[StepRecord])
+    depth: int = 0
+
+    def run(self, steps: Sequence[ProgramStep]) -> None:
+        """Carry out steps in order; the first unexpected failure ends it."""
+        for step in steps:
+            self._run_step(step)
+
+    def _run_step(self, step: ProgramStep) -> None:
+        cell = self.cell
+        self.on_step("step_started", step, None)
+        cell.step, cell.notes = step, StepNotes()
+        place = len(self.records)
+        self.records.append(_not_reached(step))
+        # the sample at the step's start belongs to it, so that no step is without samples
+        start_time, start_index = cell.simulator.time, max(0, cell.simulator.sample_count - 1)
+        inner = self._attempt(step)
+        failure = _own(inner) or _too_long(step, cell.simulator.time - start_time, self.timestep)
+        status, message = _judge_step(step, failure)
+        notes = cell.notes
+        self.records[place] = replace(
+            self.records[place],
+            status=status,
+            error_code=failure.code if failure else "",
+            message=message,
+            start_time=start_time,
+            end_time=cell.simulator.time,
+            start_index=start_index,
+            end_index=cell.simulator.sample_count,
+            trajectory=notes.trajectory,
+            planner=notes.planner,
+            explanation=notes.explanation + _details(failure, cell),
+            result=notes.result,
+        )
+        self.on_step("step_finished", step, self.records[place])
+        if status == "failed" and (self.depth or not self.keep_going):
+            if isinstance(inner, _RunEndedError):
+                raise inner
+            raise _RunEndedError(failure or StepFailed("FAILURE", message), step.summary)
+
+    def _attempt(self, step: ProgramStep) -> StepFailed | _RunEndedError | None:
+        self.depth += 1
+        try:
+            step.spec.execute(self.cell)
+        except (StepFailed, _RunEndedError) as failure:
+            return failure
+        finally:
+            self.depth -= 1
+        return None
+
+
+class ProgramExecution:
+    """A program on adapters that stand at its start state; steps are run one after the other.
+
+    Attributes:
+        program: What is executed; one that differs only in steps and expectations may replace it.
+        cell: What the steps work with.
+        records: The records of the steps so far, in the order of execution.
+        ended_early: The failure that ended the execution; empty while there is none.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        ports: PlanningPorts,
+        simulator: Simulator,
+        on_step: OnStep,
+        *,
+        keep_going: bool = False,
+        external: ExternalControl | None = None,
+    ) -> None:
+        """Put the world's objects into the scene.
+
+        Args:
+            program: The program that is executed.
+            ports: The planning scene is empty; the world's objects are added here.
+            simulator: The simulator at the start state, with every object of the program prepared
+                and the world's objects present.
+            on_step: Called before and after each step.
+            keep_going: Whether a failed step of the file does not prevent the next one; a
+                step made of others ends with the first of them that fails.
+            external: Programs to which a step may hand the robot over; None: such a step does
+                nothing.
+        """
+        self.program = program
+        self.ended_early = ""
+        self.cell = Cell(
+            description=program.description,
+            scene=ports.scene,
+            kinematics=ports.kinematics,
+            planner=ports.planner,
+            simulator=simulator,
+            later_objects=program.later_objects,
+            cameras=program.cameras,
+            external=external,
+        )
+        for obj in program.world.objects:
+            self.cell.presence[obj.name] = Presence(obj, obj.pose, [[0.0, float("inf")]])
+            self.cell.believe(obj.name, obj.pose)
+            if obj.in_planning:
+                ports.scene.add_object(obj, obj.pose)
+        self._runner = _Runner(self.cell, on_step, keep_going, program.world.timestep)
+        self.cell.run_steps = self._runner.run
+
+    @property
+    def records(self) -> list[StepRecord]:
+        return self._runner.records
+
+    def run(self, steps: Sequence[ProgramStep]) -> None:
+        """Carry out steps in order; the first unexpected failure ends it, as `ended_early` says."""
+        try:
+            self._runner.run(steps)
+        except _RunEndedError as ended:
+            self.ended_early = str(ended.failure)
+        if self.ended_early or [step.path for step in steps[-1:]] == [self.program.steps[-1].path]:
+            self._show_last_change()
+
+    def _show_last_change(self) -> None:
+        """Let the physics show what the last step did where it put, added or removed objects."""
+        simulator = self.cell.simulator
+        changes = (record for record in self.records if record.result.find(SceneChange))
+        if any(record.end_index == simulator.sample_count for record in changes):
+            simulator.hold(self.program.world.timestep)
+
+    def finish(self) -> Execution:
+        """What the steps so far leave; those that were not run are not reached."""
+        cell = self.cell
+        presences = cell.presence.values()
+        return Execution(
+            steps=_with_unreached(self.program, self.records, cell.simulator),
+            objects=tuple(object_record(presence, cell.simulator.time) for presence in presences),
+            attachments=tuple(cell.attachments),
+            beliefs=cell.beliefs,
+            ended_early=self.ended_early,
+        )
+
+
+def execute_program(
+    program: Program, ports: PlanningPorts, simulator: Simulator, on_step: OnStep
+) -> Execution:
+    """Run a whole program, whether or not steps fail; see `ProgramExecution` for the arguments."""
+    execution = ProgramExecution(program, ports, simulator, on_step, keep_going=True)
+    execution.run(program.steps)
+    return execution.finish()
+
+
+def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
+    """A step's failure; of a failed step inside it, only its name, since that step has its own."""
+    if isinstance(failure, _RunEndedError):
+        return StepFailed(failure.failure.code, f"its step `{failure.summary}` failed")
+    return failure
+
+
+def _details(failure: StepFailed | None, cell: Cell) -> Details:
+    """A failure's details, with what to do about it where that is known."""
+    if failure is None:
+        return Details()
+    text = advice(failure, cell)
+    return failure.details + Details.of(Explanation(advice=text) if text else None)
+
+
+def _too_long(step: ProgramStep, seconds: float, timestep: float) -> StepFailed | None:
+    """The failure of a step that ended, but a step of the physics or more after its timeout."""
+    timeout = step.spec.timeout
+    if timeout is None or seconds - timeout < (1 - 1e-6) * timestep:
+        return None
+    return StepFailed(
+        "TIMED_OUT",
+        f"the step took {seconds:.3f} s, its timeout is {timeout:g} s",
+        TimeoutFailure(seconds, timeout),
+    )
+
+
+def _not_reached(step: ProgramStep) -> StepRecord:
+    return StepRecord(
+        id=step.id,
+        path=step.path,
+        verb=step.spec.verb,
+        summary=step.summary,
+        line=step.line,
+        status="not reached",
+        expected_error=step.spec.expect_error or "",
+    )
+
+
+def _judge_step(step: ProgramStep, failure: StepFailed | None) -> tuple[StepStatus, str]:
+    """Whether a step did what the file says, and what to say when it did not."""
+    expected = step.spec.expect_error
+    if expected is None:
+        return ("failed", failure.message) if failure else ("passed", "")
+    if failure is None:
+        return "failed", f"expected to fail with {expected}, but it succeeded"
+    if failure.code != expected:
+        return "failed", f"expected {expected}, but it failed with {failure}"
+    return "expected error", failure.message
+
+
+def _with_unreached(
+    program: Program, records: list[StepRecord], simulator: Simulator
+) -> tuple[StepRecord, ...]:
+    """Records in execution order, then the steps of the file that were never reached."""
+    reached = {record.path for record in records}
+    end = {"start_time": simulator.time, "end_time": simulator.time}
+    index = {"start_index": simulator.sample_count, "end_index": simulator.sample_count}
+    unreached = [
+        replace(_not_reached(step), **end, **index)
+        for step in program.all_steps()
+        if step.path not in reached
+    ]
+    return (*records, *unreached)
+
+
+def object_record(presence: Presence, time: float) -> ObjectRecord:
+    """An object as verdicts and reports need it, with when it was there up to a time [s]."""
+    present = tuple((start, min(end, time)) for start, end in presence.intervals)
+    return ObjectRecord.of(presence.obj, present, presence.pose)

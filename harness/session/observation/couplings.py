@@ -1,0 +1,42 @@
+"""Mimic joints that left the joint they follow, in the physics."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.judging.text import amount
+from harness.recording.run import Finding, Run
+from harness.robot.description import RobotDescription
+
+APART = {"prismatic": 1e-3}
+"""Deviation of a prismatic mimic joint from which it is reported [m]."""
+
+TURNED_APART = 0.02
+"""The same of a revolute one [rad]."""
+
+
+def coupling_findings(run: Run, description: RobotDescription) -> tuple[Finding, ...]:
+    """The mimic joint that deviated most from its coupling, if that is more than a servo's lag."""
+    positions, worst = run.signals.joint_positions, (1.0, 0, "")
+    for column, joint in enumerate(description.movable_joints):
+        if joint.mimic is None or not len(positions):
+            continue
+        followed = positions[:, description.joint_index[joint.mimic.joint]]
+        expected = joint.mimic.multiplier * followed + joint.mimic.offset
+        deviation = np.nan_to_num(np.abs(positions[:, column] - expected))
+        share = deviation / APART.get(joint.kind, TURNED_APART)
+        row = int(share.argmax())
+        if share[row] > worst[0]:
+            worst = (float(share[row]), row, joint.name)
+    if not worst[2]:
+        return ()
+    joint = description.joint_by_name[worst[2]]
+    assert joint.mimic is not None
+    unit = joint.position_unit
+    error = worst[0] * APART.get(joint.kind, TURNED_APART)
+    message = (
+        f"{joint.name} was {amount(error, unit)} from where it follows {joint.mimic.joint}: the "
+        "coupling did not hold; check the masses and inertias of the links between them"
+    )
+    values = {"joint": joint.name, "error": error, "unit": unit}
+    return (Finding("coupling", message, float(run.signals.times[worst[1]]), values=values),)

@@ -1,0 +1,134 @@
+"""Distances and overlaps of links whose contact the SRDF excludes from planner and physics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from harness.core.types import FloatArray, IntArray, Pair
+from harness.planning.model.robot_model import RobotModel
+from harness.recording.run import Finding, Run
+from harness.recording.signals import Signals
+from harness.robot.description import RobotDescription
+from harness.robot.forward_kinematics import LinkPoses
+from harness.session.observation.body_tracks import (
+    MovingBody,
+    TrackedShape,
+    link_track,
+    links_with_shapes,
+)
+from harness.session.observation.nearest import ShapePair, pairs_between, smallest_distances
+from harness.session.observation.sampled_clearance import between, knots
+
+SELF = ("robot", "robot")
+LEAST_DEPTH = 0.001
+"""Convex hulls and a calibration are off by as much; less is no overlap [m]."""
+
+
+def with_excluded_links(signals: Signals, description: RobotDescription) -> Signals:
+    """The signals with the distances and the overlaps of links whose contact the SRDF excludes.
+
+    Pairs that touch with all joints at zero, or as near to it as their limits let them, do so by
+    design, as the two sides of a joint do. The others are excluded because somebody, or a sampling
+    of random states, found that they never meet. The links of a hand may meet. A pair counts as a
+    distance of the robot to itself where it is nearer than it is with all joints at zero.
+    """
+    count = len(signals.times)
+    if not count:
+        return signals
+    shapes = links_with_shapes({link.name: link.collisions for link in description.links})
+    apart = _pairs_apart_by_design(description, shapes)
+    samples = knots(signals.times, (), ())
+    moving = LinkPoses(description, signals.joint_positions[samples])
+    overlaps: dict[Pair, FloatArray] = {}
+    nearest = np.full(count, signals.clearance_cutoff)
+    links = np.full(count, -1)
+    for pair, at_zero in apart.items():
+        cutoff = min(signals.clearance_cutoff, at_zero - LEAST_DEPTH)
+        pairs = _shape_pairs(shapes, moving, *pair, cutoff=cutoff)
+        distances, _ = smallest_distances(pairs, cutoff, len(samples))
+        if float(distances.min()) >= cutoff:
+            continue
+        every = between(samples, distances, count)
+        counts = (every < cutoff) & (every < nearest)
+        nearest = np.where(counts, every, nearest)
+        links[counts] = description.link_names.index(pair[1])
+        if float(distances.min()) < -LEAST_DEPTH:
+            overlaps[pair] = np.maximum(-every, 0.0)
+    found = replace(signals, link_overlaps=overlaps)
+    return found if (links < 0).all() else _with_self_distances(found, nearest, links)
+
+
+def _with_self_distances(signals: Signals, nearest: FloatArray, links: IntArray) -> Signals:
+    """The signals with distances of the robot to itself, where they are the smallest.
+
+    Args:
+        signals: The signals with the distances of other links.
+        nearest: The distances [m], shape (N,).
+        links: The link that each is measured from, -1 where none is below the cutoff, shape (N,).
+    """
+    known = signals.clearances.get(SELF, np.full(len(nearest), signals.clearance_cutoff))
+    of_link = signals.clearance_links.get(SELF, np.full(len(nearest), -1))
+    is_nearer = nearest < known
+    return replace(
+        signals,
+        clearances={**signals.clearances, SELF: np.where(is_nearer, nearest, known)},
+        clearance_links={
+            **signals.clearance_links,
+            SELF: np.where(is_nearer, links, of_link),
+        },
+    )
+
+
+def _pairs_apart_by_design(
+    description: RobotDescription, shapes: Mapping[str, tuple[TrackedShape, ...]]
+) -> dict[Pair, float]:
+    """Excluded pairs of links that are apart with all joints at zero, and how far [m]."""
+    robot = RobotModel(description)
+    lower = np.array([joint.lower for joint in description.movable_joints])
+    upper = np.array([joint.upper for joint in description.movable_joints])
+    zero = description.with_mimics(np.clip(np.zeros(len(lower)), lower, upper))
+    still = LinkPoses(description, zero[None])
+    hand = description.gripper
+    moved_by_hand = set() if hand is None else {*hand.links, hand.palm_link}
+    found: dict[Pair, float] = {}
+    for first, second in sorted(description.allowed_collisions):
+        is_rigid = robot.parent_joint(first) == robot.parent_joint(second)
+        if {first, second} <= set(shapes) and not is_rigid and not {first, second} <= moved_by_hand:
+            pairs = _shape_pairs(shapes, still, first, second)
+            at_zero = min(pair.distance(0) for pair in pairs)
+            if at_zero > LEAST_DEPTH:
+                found[first, second] = at_zero
+    return found
+
+
+def _shape_pairs(
+    shapes: Mapping[str, tuple[TrackedShape, ...]],
+    poses: LinkPoses,
+    first: str,
+    second: str,
+    cutoff: float = np.inf,
+) -> list[ShapePair]:
+    one, other = (MovingBody(shapes[name], link_track(poses, name)) for name in (first, second))
+    return pairs_between([one], other, cutoff)
+
+
+def link_overlap_findings(run: Run) -> tuple[Finding, ...]:
+    """Links that were inside each other, and that the SRDF excludes from collision checking."""
+    found: list[Finding] = []
+    for (first, second), depth in run.signals.link_overlaps.items():
+        deepest = int(np.argmax(depth))
+        time = float(run.signals.times[deepest])
+        found.append(
+            Finding(
+                "link_overlap",
+                f"{first} and {second}, which the SRDF excludes from collision checking, were"
+                f" {1e3 * depth[deepest]:.1f} mm inside each other; with every joint at zero they"
+                " are apart: enable the pair, or expect `collision` with `count_allowed`",
+                time,
+                values={"pair": [first, second], "depth": float(depth[deepest])},
+            )
+        )
+    return tuple(found)

@@ -1,1 +1,0 @@
-"""The built-in world formats, one module for each."""

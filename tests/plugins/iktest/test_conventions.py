@@ -1,0 +1,127 @@
+"""Units, zeros and directions of joints are one mistake, by which the rest is judged."""
+
+from math import degrees, pi
+
+import numpy as np
+import pytest
+
+from harness.plugins.iktest import IkTest, run_ik_test
+from harness.robot_tools.robot_source import RobotSource
+from tests.plugins.iktest.arms import OM, correct
+from tests.plugins.iktest.test_joint_limits import spherical
+from tests.robot.arm_files import write_arm
+
+
+def answers(change):
+    """The right solver, its answers changed."""
+
+    def ik(x, y, z, pitch):
+        return [change(*answer) for answer in correct(x, y, z, pitch)]
+
+    return ik
+
+
+def targets(length=1.0, angle=1.0):
+    """The right solver of targets in other units."""
+
+    def ik(x, y, z, pitch):
+        return correct(x * length, y * length, z * length, pitch * angle)
+
+    return ik
+
+
+def in_degrees(*answer):
+    return [degrees(each) for each in answer]
+
+
+def centimetres_and_degrees(x, y, z, pitch):
+    return [in_degrees(*each) for each in targets(0.01, pi / 180)(x, y, z, pitch)]
+
+
+@pytest.mark.nightly(but=["ik-it is taken in degrees", "ik-`pitch` counts upwards"])
+@pytest.mark.parametrize(
+    ("ik", "words"),
+    [
+        (answers(in_degrees), "it is taken in degrees"),
+        (targets(0.001), "the target is given in millimetres"),
+        (targets(angle=-1), "`pitch` counts upwards"),
+        (
+            centimetres_and_degrees,
+            "it is taken in degrees and the target is given in centimetres and `pitch` is given in"
+            " degrees",
+        ),
+        (answers(lambda a, b, c, d: [a, b + 0.17, c, d]), "joint2 is 0.17 rad less"),
+        (answers(lambda a, b, c, d: [a, b, -c, d]), "joint3 counts in the other direction"),
+        (
+            answers(lambda a, b, c, d: [a, b, 1.2 - c, d]),
+            "joint3 is 1.2 rad minus the answer's",
+        ),
+        (
+            answers(lambda a, b, c, d: [a, b - pi / 2, c, d + pi / 2]),
+            "joint2 is 1.571 rad more and joint4 is 1.571 rad less",
+        ),
+        (
+            answers(lambda a, b, c, d: in_degrees(a, b, c, d + 0.3)),
+            "it is taken in degrees and joint4 is 0.3 rad less",
+        ),
+    ],
+)
+def test_a_convention_is_one_finding(ik, words):
+    report = run_ik_test(IkTest(ik, OM, examples=40))
+    [finding] = report.findings
+    assert finding.property == "reaches"
+    assert finding.kind == f"counts otherwise: every answer is right when {words}"
+    assert finding.shown == finding.tried
+    assert not report.has_passed
+
+
+@pytest.mark.nightly
+def test_what_is_wrong_besides_is_found_too():
+    ik = answers(in_degrees)
+
+    def shifted(x, y, z, pitch):
+        return ik(x, y, z - 0.017, pitch)
+
+    def refuses(x, y, z, pitch):
+        return ik(x, y, z, pitch) if y < 0.1 else None
+
+    kinds = [each.kind for each in run_ik_test(IkTest(shifted, OM, examples=40)).findings]
+    assert "but for an error that is the same at every target, when it is taken in deg" in kinds[0]
+    assert kinds[1] == "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target"
+    kinds = [each.kind for each in run_ik_test(IkTest(refuses, OM, examples=40)).findings]
+    assert kinds[0] == "counts otherwise: every answer is right when it is taken in degrees"
+    assert kinds[1] == "refuses a target within reach"
+
+
+@pytest.mark.nightly
+def test_lengths_of_a_slide_and_the_zero_of_a_joint_without_limits_are_recognised(tmp_path):
+    write_arm(tmp_path)
+    source = RobotSource(str(tmp_path / "arm.urdf"), srdf=str(tmp_path / "arm.srdf"))
+    right = spherical(0.0)
+
+    def millimetres(x, y, z):
+        return [[a, b, 1000 * c] for a, b, c in right(x, y, z) or []]
+
+    def turned(x, y, z):
+        return [[a + 0.4, b, c] for a, b, c in right(x, y, z) or []]
+
+    [finding] = run_ik_test(IkTest(millimetres, source, examples=40)).findings
+    assert finding.kind.endswith("right when its lengths are taken in millimetres")
+    [finding] = run_ik_test(IkTest(turned, source, examples=40)).findings
+    assert finding.kind.endswith("right when turn is 0.4 rad less")
+
+
+@pytest.mark.nightly(but=["ik1"])
+@pytest.mark.parametrize(
+    "ik",
+    [
+        lambda x, y, z, pitch: [0.1, 0.2, 0.3, 0.4],  # noqa: ARG005
+        lambda x, y, z, pitch: correct(1.1 * x, 1.1 * y, z, pitch),
+        answers(lambda a, b, c, d: [a, b + 0.1 * np.sin(a), c, d]),
+        answers(lambda a, b, c, d: [a, b, c * 0.9, d]),
+    ],
+)
+def test_what_is_wrong_by_no_convention_is_not_said_to_be_right_by_one(ik):
+    kinds = [each.kind for each in run_ik_test(IkTest(ik, OM, examples=40)).findings]
+    assert kinds
+    assert not any("counts otherwise" in kind for kind in kinds)

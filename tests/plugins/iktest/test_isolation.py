@@ -1,0 +1,94 @@
+"""A function that hangs, or takes its process with it, is stopped, reported and shrunk."""
+
+import contextlib
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from docs import ROOT
+from harness.plugins.iktest import IkTest, run_ik_test
+from harness.plugins.iktest.contract import UnusableSolver
+from tests.plugins.iktest.arms import EXAMPLES, OM
+
+HEAD = f"""
+import os, sys
+sys.path.insert(0, {str(EXAMPLES)!r})
+from corrected_ik import ik as correct
+def ik(x, y, z, pitch):
+"""
+
+
+def report_of(tmp_path, body, **options):
+    """A quick test of a function in a file of its own."""
+    file = tmp_path / "mine.py"
+    file.write_text(HEAD + body)
+    return run_ik_test(IkTest(f"{file}:ik", OM, examples=20, **options))
+
+
+def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
+    body = "    while y > 0.1: pass\n    return correct(x, y, z, pitch)\n"
+    report = report_of(tmp_path, body, patience=0.5)
+    [finding] = report.findings
+    assert finding.kind == "does not come back"
+    assert finding.detail == "no answer in 0.5 s"
+    assert finding.target.pose.translation[1] > 0.1
+    notes = [each.note for each in report.properties]
+    assert notes[0] == ""
+    assert notes[-1] == "not tried: it hangs"
+    assert not report.has_passed
+
+
+def test_a_function_that_kills_its_process_is_reported_and_shrunk(tmp_path):
+    body = "    if z < 0: os.kill(os.getpid(), 11)\n    return correct(x, y, z, pitch)\n"
+    report = report_of(tmp_path, body)
+    [finding] = report.findings
+    assert finding.property == "answers"
+    assert finding.kind == "ends the process"
+    assert finding.detail == "the process was killed by SIGSEGV at mine.py:6"
+    assert -0.02 < finding.target.pose.translation[2] < 0
+
+
+def test_what_it_prints_and_an_exit_do_no_harm(tmp_path, capfd):
+    body = (
+        "    print('x', flush=True)\n    if x < 0: os._exit(3)\n    return correct(x, y, z, pitch)"
+    )
+    report = report_of(tmp_path, body)
+    assert report.findings[0].detail == "the process ended with exit code 3"
+    assert capfd.readouterr().out == ""
+
+
+def test_a_file_that_ends_its_process_while_imported_is_refused(tmp_path):
+    (tmp_path / "mine.py").write_text("import os\nos._exit(4)\n")
+    with pytest.raises(UnusableSolver, match=r"ended while '.*mine\.py:ik' was imported.*code 4"):
+        run_ik_test(IkTest(f"{tmp_path / 'mine.py'}:ik", OM))
+
+
+def test_no_process_outlives_a_test_that_is_killed(tmp_path):
+    (tmp_path / "mine.py").write_text("import time\ndef ik(x, y, z): time.sleep(1000)\n")
+    arguments = ["ik-test", "mine.py:ik", "--robot", OM, "--call-limit", "500", "--no-report"]
+    command = f"from harness.cli.main import main; main({arguments})"
+    child = subprocess.Popen(
+        [sys.executable, "-c", command], cwd=tmp_path, env={"PYTHONPATH": str(ROOT)}
+    )
+    deadline = time.monotonic() + 60
+    while len(processes_in(tmp_path)) < 3 and time.monotonic() < deadline:
+        time.sleep(0.1)  # the command, the fork server, the function's
+    assert len(processes_in(tmp_path)) >= 3
+    child.kill()
+    child.wait()
+    while processes_in(tmp_path) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not processes_in(tmp_path)
+
+
+def processes_in(folder):
+    """Processes whose working folder this is."""
+    found = set()
+    for link in Path("/proc").glob("[0-9]*/cwd"):
+        with contextlib.suppress(OSError):  # another's, or gone
+            if link.readlink() == folder:
+                found.add(link.parent.name)
+    return found

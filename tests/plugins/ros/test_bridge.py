@@ -1,0 +1,177 @@
+"""The bridge and a node over RTPS, in one process, with the real physics."""
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.plugins.ros.actions import CancelCode, Status, uuid_of
+from harness.plugins.ros.control.goals import Code
+from harness.plugins.ros.handover import replay
+from harness.plugins.ros.interfaces import CANCEL, TRAJECTORY
+from harness.reporting.rosbag.messages import message
+from tests.plugins.ros.bridging import bridge, scenario
+from tests.plugins.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
+
+HOLD = "- external: {}"
+END = [0.2, 0, 0, 0]
+
+
+def test_a_node_moves_the_arm_and_the_recording_replays_to_the_same_digest(tmp_path):
+    with bridge(scenario(tmp_path), waits=True, run={"report_dir": tmp_path / "run"}) as (
+        node,
+        results,
+    ):
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.ready()
+        goal = node.send(follow(point(0.4, END)))
+        assert (goal.is_accepted, goal.status) == (True, Status.SUCCEEDED)
+        assert goal.result.error_code == Code.SUCCESSFUL
+        assert goal.feedback
+        assert list(goal.feedback[0].joint_names) == list(ARM)
+    [result] = results
+    assert result.case.outcome == "passed"
+    assert result.commands == 1
+    assert states[-1].name[:4] == list(ARM)
+    assert states[-1].position[0] == pytest.approx(0.2, abs=0.01)
+    again = replay(tmp_path / "run")
+    assert again.outcome == "passed"
+    assert again.digest == result.case.digest
+
+
+def test_invalid_goals_are_rejected_and_their_results_have_the_error_codes(tmp_path):
+    with bridge(scenario(tmp_path, HOLD)) as (node, results):
+        node.ready()
+        codes = {
+            "no such joint": follow(point(0.1, END), joints=("joint1", "joint2", "elbow", "wrist")),
+            "missing": follow(point(0.1, [0.1]), joints=("joint1",)),
+            "not rising": follow(point(0.2, END), point(0.2, END)),
+            "beyond the limits": follow(point(0.1, [9.0, 0, 0, 0])),
+            "not a number": follow(point(0.1, [np.nan, 0, 0, 0])),
+            "empty": follow(),
+            "ragged": follow(point(0.1, END), point(0.2, [0.0])),
+            "ends in motion": follow(point(0.1, END, [1.0, 0, 0, 0])),
+        }
+        ended = {name: node.send(goal) for name, goal in codes.items()}
+        node.sleep(0.3)
+        late = follow(point(0.1, END))
+        late.trajectory.header.stamp.nanosec = 1
+        ended["old"] = node.send(late)
+    assert {name: Code(goal.result.error_code).name for name, goal in ended.items()} == {
+        "no such joint": "INVALID_JOINTS",
+        "missing": "INVALID_JOINTS",
+        "not rising": "INVALID_GOAL",
+        "beyond the limits": "INVALID_GOAL",
+        "not a number": "INVALID_GOAL",
+        "empty": "INVALID_GOAL",
+        "ragged": "INVALID_GOAL",
+        "ends in motion": "INVALID_GOAL",
+        "old": "OLD_HEADER_TIMESTAMP",
+    }
+    assert all(goal.status is Status.UNKNOWN for goal in ended.values())
+    assert not any(goal.is_accepted for goal in ended.values())
+    assert "no joint 'elbow', 'wrist'" in ended["no such joint"].result.error_string
+    assert results[0].case.outcome == "passed"
+
+
+def test_tolerances_cancel_and_preemption(tmp_path):
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        node.ready()
+        tight = [tolerance("joint1", 1e-6)]
+        strayed = node.send(follow(point(0.2, [0.5, 0, 0, 0]), path_tolerance=tight))
+        assert strayed.result.error_code == Code.PATH_TOLERANCE_VIOLATED
+        assert "'joint1' is off by" in strayed.result.error_string
+        missed = node.send(
+            follow(
+                point(0.2, [0.0, 0, 0, 0]),
+                goal_tolerance=[tolerance("joint1", 1e-9)],
+                goal_time_tolerance=duration(0.05),
+            )
+        )
+        assert missed.result.error_code == Code.GOAL_TOLERANCE_VIOLATED
+        first = node.arm.send(follow(point(5.0, END)))
+        node.wait(lambda: first.is_accepted)
+        second = node.arm.send(follow(point(5.0, END)))
+        node.wait(lambda: first.is_over)
+        assert (first.status, first.result.error_code) == (Status.ABORTED, Code.INVALID_GOAL)
+        assert "newer command" in first.result.error_string
+        node.arm.cancel(second)
+        node.wait(lambda: second.is_over)
+        assert second.status is Status.CANCELED
+        cancel, codes = node.graph.client(f"{node.arm.name}/_action/cancel_goal", CANCEL), []
+        node.wait(cancel.is_ready)
+        for identifier in (second.identifier, "ab" * 16):
+            info = message("action_msgs/msg/GoalInfo", goal_id=uuid_of(identifier))
+            request = message(f"{CANCEL}_Request", goal_info=info)
+            cancel.call(request, lambda response: codes.append(response.return_code))
+        node.wait(lambda: len(codes) == 2)
+        assert codes == [CancelCode.TERMINATED, CancelCode.UNKNOWN_GOAL]
+
+
+def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tmp_path):
+    said = []
+    with bridge(scenario(tmp_path), waits=True, say=said.append) as (node, results):
+        publisher = node.graph.advertise("/arm_controller/joint_trajectory", TRAJECTORY)
+        node.ready()
+        node.wait(lambda: publisher.subscribers)
+        for _ in range(3):
+            publisher.publish(trajectory(point(0.3, END), joints=("knee",) * 4))
+        publisher.publish(trajectory(point(0.3, END)))
+    assert results[0].case.outcome == "passed"
+    assert results[0].commands == 4
+    [note] = said
+    assert "this controller has no joint 'knee'" in note
+
+
+def test_cameras_send_pictures_while_someone_watches(tmp_path):
+    with bridge(scenario(tmp_path)) as (node, _):
+        images = node.listen("/gripper_camera/image", "sensor_msgs/msg/Image")
+        small = node.listen("/gripper_camera/image/compressed", "sensor_msgs/msg/CompressedImage")
+        info = node.listen("/gripper_camera/image/camera_info", "sensor_msgs/msg/CameraInfo")
+        node.wait(lambda: images and small and info, 60)
+        node.send(follow(point(0.1, END)))
+    picture = images[0].data.reshape(480, 640, 3)
+    assert (images[0].encoding, images[0].step) == ("rgb8", 640 * 3)
+    assert images[0].header.frame_id == "gripper_camera_link_optical"
+    decoded = cv2.imdecode(small[0].data, cv2.IMREAD_COLOR_RGB)
+    assert np.abs(decoded.astype(int) - picture).mean() < 12
+    assert info[0].k[2] == 320
+
+
+def test_a_gripper_stalls_on_an_object(tmp_path):
+    steps = HOLD
+    box = """objects:
+  - name: block
+    box: {size: [0.02, 0.04, 0.04]}
+    mass: 10 g
+    static: true
+    pose: {frame: end_effector_link}
+"""
+    with bridge(scenario(tmp_path, steps, box)) as (node, _):
+        node.ready()
+        opened = node.send(grip(0.015), node.gripper)
+        assert (opened.result.reached_goal, opened.result.stalled) == (True, False)
+        assert 0 < max(each.position for each in opened.feedback) <= 0.016
+        closed = node.send(grip(-0.005), node.gripper)
+        assert (closed.result.reached_goal, closed.result.stalled) == (False, True)
+        refused = node.send(grip(0.5), node.gripper)
+        assert refused.is_accepted is False
+
+
+@pytest.mark.nightly
+def test_twenty_recorded_sessions_replay_to_their_digests(tmp_path):
+    """Each session has commands at other moments: the wall clock chose them."""
+    digests = {}
+    for number in range(20):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        run = {"report_dir": folder / "run"}
+        with bridge(scenario(folder), waits=True, run=run) as (node, results):
+            node.ready()
+            first = node.arm.send(follow(point(0.5, [0.1, 0.1, 0, 0])))
+            node.sleep(0.01 * number)
+            node.arm.cancel(first)
+            node.gripper.send(grip(0.001 * number))
+            node.send(follow(point(0.4, END)))
+        digests[number] = results[0].case.digest
+        assert replay(folder / "run").digest == digests[number]
+    assert len(set(digests.values())) > 10

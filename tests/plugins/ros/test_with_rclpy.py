@@ -1,0 +1,151 @@
+"""Nodes of the real rclpy, with Fast DDS, against the bridge.
+
+HARNESS_ROS_PYTHON names the Python of an environment that has rclpy and control_msgs; the latter is
+built by `python -m tests.plugins.ros.build_control_msgs PREFIX`. The test of `--adapter rclpy` runs
+the harness itself with that Python, which must have the version of this one.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from harness.cli.main import main
+from harness.plugins.ros.domain import free_domain
+from harness.plugins.ros.handover import replay
+from tests.plugins.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
+
+pytestmark = pytest.mark.needs_ros
+STUDENT = Path(__file__).parent / "student"
+
+
+@pytest.fixture(scope="module")
+def _control_msgs():
+    require_control_msgs()
+
+
+def run_node(folder, name):
+    """What a node prints as its last line while a bridge serves the OpenMANIPULATOR-X."""
+    with bridge(scenario(folder, "- external: {}")) as (node, _):
+        done = subprocess.run(
+            [PYTHON, STUDENT / name],
+            env={**os.environ, "ROS_DOMAIN_ID": str(node.graph.participant.domain)},
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert done.stdout, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_moveit_s_controller_manager_executes_stops_and_grips(tmp_path):
+    assert run_node(tmp_path, "controller_manager.py") == {
+        "executed": [4, 0],
+        "timed out": True,
+        "canceled": 1,
+        "executed again": [4, 0],
+        "rejected": True,
+        "gripper": [4, True],
+    }
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_action_clients_of_rclpy_get_feedback_results_and_cancellation(tmp_path):
+    said = run_node(tmp_path, "protocol.py")
+    assert said["feedback"][0] >= 15
+    assert said["feedback"][1] == ["joint1", "joint2", "joint3", "joint4"]
+    assert {name: said[name] for name in ("done", "beyond", "preempted", "canceled")} == {
+        "done": [4, 0], "beyond": [False, 0, -1], "preempted": [6, -1], "canceled": [5, 0],
+    }  # fmt: skip
+    assert said["cancel"] == [0, 1]
+    assert said["image"] == [640, 480, "rgb8", 640 * 480 * 3]
+    assert {"bridge", "student"} <= set(said["nodes"])
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_malformed_goals_garbage_and_clients_that_die_do_not_end_the_bridge(tmp_path):
+    said = run_node(tmp_path, "malformed.py")
+    answers = {name: said[name] for name in said if isinstance(said[name], list)}
+    rejected = {name: each[2] for name, each in answers.items() if each[:2] == [False, 0]}
+    joints = {"a joint twice", "five names", "empty", "tolerance of an unknown joint"}
+    assert {name for name, code in rejected.items() if code == -2} == joints
+    assert {name for name, code in rejected.items() if code == -1} == {
+        *("not a number", "infinite", "no positions", "before the start", "falling"),
+        *("velocities of three", "velocities at one point", "accelerations of five"),
+        *("velocities not a number", "huge velocities", "huge accelerations"),
+        "tolerance not a number",
+    }
+    assert {name for name, code in rejected.items() if code is False} == {
+        *("grip not a number", "grip infinite", "grip too wide"),
+        *("effort not a number", "effort below zero", "effort infinite"),
+    }
+    followed = {name: each[1:] for name, each in answers.items() if name not in rejected}
+    assert followed.pop("a good grip") == [4, True]
+    assert followed.pop("replaced") == [6, -1]
+    assert len(followed) == 8
+    assert all(each == [4, 0] for each in followed.values())
+    assert said["died"] == -signal.SIGKILL
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_a_student_s_node_lifts_the_red_box_and_replays(tmp_path, capsys):
+    command = f"{PYTHON} {STUDENT / 'lift_the_box.py'}"
+    box = "ros2/01_lift_the_red_box"
+    code = main(["grade", box, "--node", command, "--report-dir", str(tmp_path), "--json"])
+    grade = json.loads(capsys.readouterr().out)
+    assert (code, grade["earned"]) == (0, 10), grade["rows"]
+    [record] = tmp_path.rglob("run.json")
+    assert replay(record.parent).digest == json.loads(record.read_text())["digest"]
+
+
+@pytest.mark.usefixtures("_control_msgs")
+@pytest.mark.parametrize("strays", [False, True])
+def test_a_driver_on_rclpy_executes_a_plan_and_is_stopped_where_it_strays(tmp_path, capsys, strays):
+    steps = "- ptp: {joints: {joint1: 0.2}}\n- ptp: {joints: {joint1: 0.0}}"
+    file = scenario(tmp_path, steps, "expect: [{eventually: {joints: {positions: {joint1: 0.2}}}}]")
+    with free_domain() as domain:
+        driver = subprocess.Popen(
+            [PYTHON, STUDENT / "driver.py", *["--strays"] * strays],
+            env={**os.environ, "ROS_DOMAIN_ID": str(domain)},
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        options = ["--robot", "ros2", "--yes", "--no-report", "--domain", str(domain)]
+        code = main(["run", str(file), *options])
+        driver.terminate()
+        executed = driver.communicate(timeout=20)[0].split()
+    said = " ".join(capsys.readouterr().out.split())
+    assert (code, executed) == ((1, ["canceled"]) if strays else (0, ["executed"] * 2)), said
+    assert ("CONTROL_FAILED: joint1 is 0.5 rad off its trajectory" in said) is strays
+
+
+def test_joint_angles_that_are_sent_ten_times_a_second_arrive(tmp_path):
+    until = "{joints: {positions: {joint1: 0.3, joint2: 0.2}, tolerance: 1 deg}}"
+    file = scenario(tmp_path, f"- external: {{until: {until}}}\n  timeout: 30 s")
+    command = f"{PYTHON} {STUDENT / 'joint_angles.py'} 0.3 0.2 0.0 0.0"
+    assert main(["grade", str(file), "--node", command, "--no-report"]) == 0
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_the_bridge_itself_can_use_rclpy_and_reports_packages_that_are_missing(tmp_path):
+    box, student = "ros2/01_lift_the_red_box", f"{PYTHON} {STUDENT / 'lift_the_box.py'}"
+    grade = ["-m", "harness.cli", "grade", box, "--node", student, "--json"]
+    done = subprocess.run(
+        [PYTHON, *grade, "--adapter", "rclpy", "--report-dir", tmp_path],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        capture_output=True,
+        text=True,
+        timeout=200,
+        check=False,
+    )
+    assert json.loads(done.stdout)["earned"] == 10, done.stderr
+    search = [PYTHON, "-c", "import tf2_msgs"]
+    has_frames = not subprocess.run(search, capture_output=True, check=False).returncode
+    note = "note: --adapter rclpy: /tf is not published: the package `tf2_msgs` is not installed"
+    assert has_frames or note in done.stderr

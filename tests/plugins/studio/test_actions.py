@@ -1,0 +1,343 @@
+"""What a page's requests do: objects, handles, cameras, reach, undo."""
+
+import base64
+import time
+
+import cv2
+import numpy as np
+import pytest
+
+from harness.core.resources import data_folder
+from harness.core.spatial import SE3
+from harness.plugins.studio.document import new_text
+from harness.plugins.studio.files import StudioFiles
+from harness.plugins.studio.live_camera import PERIOD
+from harness.plugins.studio.session import guarded
+
+studio_module = pytest.importorskip("harness.plugins.studio.studio")
+ROBOT = "open_manipulator_x"
+ARM = {"model": ROBOT}
+BOX = {"name": "box", "kind": "box", "size": [0.03, 0.03, 0.08], "xyz": [0.2, 0, 0.04]}
+
+
+@pytest.fixture
+def studio(tmp_path):
+    return opened(tmp_path, new_text("by hand", ARM, "empty"))
+
+
+def opened(folder, text):
+    files = StudioFiles(folder, folder / "x.scenario.yaml")
+    studio = studio_module.Studio.opened(files, text, None, "")
+    studio.speed = 0.0
+    return studio
+
+
+def reply(studio, action, **keys):
+    return guarded(lambda: studio.do(action, keys))
+
+
+def goal(studio, xyz, pitch):
+    return reply(studio, "goal", xyz=xyz, rpy=[0, pitch, 0], unit="deg", frame="world")
+
+
+def test_objects_are_added_resized_and_deleted_in_the_text(studio):
+    reply(studio, "add_object", **BOX)
+    assert studio.cell.object_poses()["box"].translation[2] == pytest.approx(0.04)
+    reply(studio, "add_object", **{**BOX, "kind": "sphere", "size": [0.05]})
+    assert "sphere: {radius: 0.025}" in studio.text
+    assert "box: {size" not in studio.text
+    assert "belongs to the world" in reply(studio, "delete_object", name="ground_plane")["error"]
+    assert reply(studio, "delete_object", name="box") == {}
+    assert "objects" not in studio.text
+
+
+def test_an_object_is_moved_in_the_text_at_the_start_and_with_a_step_afterwards(studio):
+    reply(studio, "add_object", **BOX)
+    turned = SE3.from_xyz_rpy([0.25, 0.1, 0.04], [0, 0, np.pi / 2])
+    studio.put_object("box", turned)
+    assert "xyz: [0.25, 0.1, 0.04], quat_wxyz: [0.70711, 0, 0, 0.70711]" in studio.text
+    reply(studio, "execute", step="gripper: open")
+    studio.put_object("box", SE3.from_xyz_rpy([0.2, -0.1, 0.04], [0, 0, 0]))
+    assert "- move_object: {object: box, pose: {xyz: [0.2, -0.1, 0.04]}}\n" in studio.text
+    assert studio.cell.is_run
+    studio.session.at_once["recording"]({"on": False})
+    text = studio.text
+    studio.put_object("box", SE3.from_xyz_rpy([0.2, 0.1, 0.04], [0, 0, 0]))
+    assert studio.text == text
+    assert studio.cell.object_poses()["box"].translation[1] == pytest.approx(0.1, abs=1e-3)
+    assert not studio.cell.is_run
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "corner", "larger", "center"),
+    [
+        ("box", [0.04, 0.04, 0.04], [0.24, 0.02, 0.06], [0.06, 0.04, 0.06], [0.21, 0, 0.03]),
+        ("cylinder", [0.04, 0.04], [0.22, 0, 0.06], [0.04, 0.06], [0.2, 0, 0.03]),
+        ("sphere", [0.04], [0.2, 0, 0.05], [0.05], [0.2, 0, 0.025]),
+    ],
+)
+def test_a_dragged_corner_resizes_and_the_opposite_corner_stays(
+    studio, kind, size, corner, larger, center
+):
+    reply(studio, "add_object", name="a", kind=kind, size=size, xyz=[0.2, 0, 0.02])
+    studio.resize_object("a", np.array(corner))
+    [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert (form["size"], form["xyz"]) == (pytest.approx(larger), pytest.approx(center))
+    reply(studio, "execute", step="wait: 10 ms")
+    text = studio.text
+    studio.resize_object("a", np.array(corner) + 0.1)
+    assert studio.text == text, "after the first step an object keeps its size"
+
+
+def test_objects_that_overlap_are_shown_before_anything_moves(studio):
+    reply(studio, "add_object", **{**BOX, "xyz": [0.2, 0, 0.03]})
+    [overlap] = studio_module.robot_message(studio.cell)["overlaps"]
+    assert overlap == "box and ground_plane overlap by 10.0 mm"
+
+
+def test_a_refusal_names_the_limit_the_pair_or_the_distance(studio):
+    reply(studio, "add_object", **BOX)
+    assert "joint4 at" in goal(studio, [0.2, 0, 0.02], 0)["refusal"]
+    assert "mm deep" in goal(studio, [0.2, 0, 0.015], 60)["refusal"]
+    assert "m away" in goal(studio, [0.9, 0, 0.1], 0)["refusal"]
+    assert studio.reach.nearest is not None, "what is drawn in red where no way exists"
+    assert goal(studio, [0.2, 0, 0.15], 60) == {"refusal": "", "ways": 1}
+
+
+def test_a_goal_is_recorded_in_the_chosen_frame(studio):
+    reply(studio, "add_object", **BOX)
+    shown = []
+    studio.session.broadcast = lambda message, **_: shown.append(message)
+    given = {"xyz": [0, 0, 0.11], "rpy": [0, 60, 0], "unit": "deg", "frame": "box"}
+    assert reply(studio, "goal", **given)["ways"] == 1
+    [reach] = [each for each in shown if each["type"] == "reach"]
+    assert (reach["frame"], reach["pose"][:3]) == ("box", pytest.approx([0, 0, 0.11], abs=1e-6))
+    done = reply(studio, "execute", verb="move_to", frame="box")
+    assert done["step"] == ("move_to: {position: {frame: box, xyz: [0, 0, 0.11]}, pitch: 1.0472}")
+    assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
+
+
+def test_an_arc_passes_through_a_point_of_the_frame_of_its_goal(studio):
+    arc = {"verb": "circ", "frame": "link1", "interim": [0.2, 0, 0.16]}
+    assert reply(studio, "goal", here=True, frame="link1")["ways"] == 1
+    step = studio.motion_text(arc)
+    assert step.endswith("interim: {frame: link1, xyz: [0.2, 0, 0.16]}}")
+    for point in ([0], [0.2, 0, None]):
+        assert "write its x, y and z" in reply(studio, "plan", **{**arc, "interim": point})["error"]
+
+
+def test_the_handle_goes_to_the_tcp_exactly_where_no_rounded_pose_is_reached(tmp_path):
+    studio = opened(tmp_path, new_text("by hand", {"model": "ur3e"}, "empty"))
+    reached = reply(studio, "goal", here=True, frame="base_link")
+    assert (reached["refusal"], reached["ways"] > 0) == ("", True)
+
+
+def test_a_drag_goes_on_from_the_ghost_that_was_clicked(tmp_path):
+    studio = opened(tmp_path, new_text("by hand", {"model": "ur3e"}, "empty"))
+    down = {"rpy": [180, 0, 90], "unit": "deg"}
+    reply(studio, "goal", xyz=[0.3, 0.1, 0.3], **down)
+    names = [way.name for way in studio.reach.ways]
+    assert len(names) > 3
+    for name in names:
+        [number] = [i for i, way in enumerate(studio.reach.ways) if way.name == name]
+        clicked = studio.reach.ways[number].positions
+        studio._choose(number)  # noqa: SLF001 - what a click in the scene does
+        reply(studio, "goal", xyz=[0.3, 0.1, 0.302], **down)
+        assert studio.reach.best.name == name
+        assert studio.reach.best.positions == pytest.approx(clicked, abs=0.05)
+
+
+JUDGED = """\
+scenario: judged
+robot: open_manipulator_x
+steps:
+  - ptp: {joints: {joint1: 0.3}}
+    expect: [{joints: {positions: {joint1: 0.3}}}]
+  - wait: 60 s
+expect:
+  - never: collision
+"""
+
+
+def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
+    studio, verdicts = opened(tmp_path, JUDGED), []
+
+    def hear(message, **_):
+        if message["type"] == "verdicts":
+            verdicts.append((studio.busy, message))
+            studio.is_playing = True
+
+    def hold_second_step(event, step, record):
+        if (event, step.summary) == ("step_started", "wait 60 s") and not verdicts:
+            studio.is_playing = False  # the physics waits for the verdict
+        on_step(event, step, record)
+
+    on_step, studio.cell.on_step = studio.cell.on_step, hold_second_step
+
+    studio.session.broadcast = hear
+    reply(studio, "run", until="end")
+    busy, first = verdicts[0]
+    assert busy == "wait 60 s", "the second step is still being executed"
+    assert [(each["status"], each["open"]) for each in first["verdicts"]] == [
+        ("passed", False),
+        ("passed", True),
+    ]
+    assert (first["outcome"], first["digest"]) == ("", "")
+    last = studio.verdicts.taken(wait=True)
+    assert [each["open"] for each in last["verdicts"]] == [False, False]
+    assert last["verdicts"][0]["margin"] == first["verdicts"][0]["margin"]
+    assert (last["outcome"], len(last["digest"])) == ("passed", 64)
+
+
+def test_a_digest_is_shown_of_the_text_and_the_run_on_the_page_alone(tmp_path):
+    text = JUDGED.replace("wait: 60 s", "wait: 1 s")
+    studio, digests = opened(tmp_path, text), []
+
+    def hear(message, **_):
+        if message["type"] == "verdicts":
+            digests.append((studio.busy, studio.text, message["digest"]))
+
+    studio.session.broadcast = hear
+    reply(studio, "run", until="end")
+    while not studio.verdicts._work._work.has_message():  # noqa: SLF001 - judged, but not shown
+        time.sleep(0.01)
+    reply(studio, "run", until="end")
+    assert studio.verdicts.taken(wait=True)["digest"]
+    reply(studio, "run", until="end")
+    assert digests[-1][2] == "", "the old digest is taken away before the next run"
+    assert studio.verdicts.taken(wait=True)["digest"]
+    reply(studio, "edit", text=f"{text}# another text\n")
+    assert digests[-1][2] == ""
+    assert studio._greeting()[-1]["digest"] == ""  # noqa: SLF001 - what a page that comes back sees
+    assert not [each for each in digests if each[0] and each[2]], "none while a step is executed"
+
+
+MISTAKES = {
+    "empty": ("", "none"),
+    "not YAML": (f"scenario: x\nrobot: {ROBOT}\nsteps: [\n", "robot"),
+    "no robot": ("scenario: x\nsteps: [{wait: 1 s}]\n", "none"),
+    "an unknown robot": ("scenario: x\nrobot: open_manipulator_y\nsteps: []\n", "none"),
+    "a step": (f"scenario: x\nrobot: {ROBOT}\nsteps: [{{wait: long}}]\n", "robot"),
+    "a world": (f"robot:\n  model: {ROBOT}\nscenario: x\nworld: no\nsteps: []\n", "robot"),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_text_with_mistakes_opens_with_what_can_be_shown(tmp_path, name):
+    text, scene = MISTAKES[name]
+    studio = opened(tmp_path, text)
+    said = studio.document_message()
+    assert (said["text"], said["scene"]) == (text, scene)
+    assert said["problems"]
+    assert "mistakes" in reply(studio, "run", until="end")["error"]
+    if scene == "none":
+        assert "there is no robot yet" in reply(studio, "reset")["error"]
+    good = new_text("by hand", ARM, "empty")
+    said = reply(studio, "edit", text=good)["document"]
+    assert (said["scene"], said["problems"]) == ("whole", [])
+    assert "error" not in reply(studio, "execute", step="wait: 10 ms")
+
+
+def test_a_mistake_in_another_file_is_not_marked_in_the_text(tmp_path):
+    (tmp_path / "w.yaml").write_text("world: w\nobjects: [{name: a, bix: {}}]\n")
+    studio = opened(tmp_path, new_text("by hand", ARM, "w.yaml"))
+    [problem, *_] = studio.document_message()["problems"]
+    assert problem["line"] == 0
+    assert "w.yaml:2" in problem["text"]
+
+
+def test_a_goal_is_a_list_of_joint_positions_with_keys_of_the_planner(studio):
+    planner = "planner_id: RRTConnect, planning_attempts: 2"
+    goal_of = {"verb": "move_to", "joints": [20, 0, 0, 0], "unit": "deg", "planner": planner}
+    done = reply(studio, "execute", **goal_of)
+    assert done["step"].splitlines() == [
+        "move_to: {joints: {joint1: 0.349066, joint2: 0, joint3: 0, joint4: 0}}",
+        "planning: {planner_id: RRTConnect, planning_attempts: 2}",
+    ]
+    assert studio.cell.joint_positions()[0] == pytest.approx(0.349, abs=5e-3)
+    refused = reply(studio, "plan", **{**goal_of, "joints": [20]})["error"]
+    assert refused == "list 4 positions: joint1, joint2, joint3, joint4"
+    assert "did you mean" in reply(studio, "plan", **{**goal_of, "planner": "RRTConect"})["error"]
+
+
+def test_a_clicked_ghost_becomes_the_goal_of_the_page_that_controls(studio):
+    goal(studio, [0.2, 0, 0.15], 60)
+    studio._choose(0)  # noqa: SLF001 - what a click in the scene does
+    done = reply(studio, "execute", verb="ptp")
+    assert done["step"].startswith("ptp: {joints: {joint1: 0, joint2: ")
+    assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
+
+
+def test_a_world_is_loaded_and_its_mistakes_are_refused(studio):
+    assert reply(studio, "world", name="lesson_om") == {}
+    assert "world: lesson_om" in studio.text
+    before = studio.text
+    assert "lesson_om" in reply(studio, "world", name="lesson_on")["error"]
+    assert "outside" in reply(studio, "world", name="/etc/passwd")["error"]
+    assert studio.text == before
+
+
+def test_an_object_is_attached_and_detached_as_steps(studio):
+    reply(studio, "add_object", **BOX)
+    for step in ("attach_object: box", "detach_object: box"):
+        assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert studio.cell.document.step_count == 2
+
+
+def test_an_object_of_the_text_fills_the_fields(studio):
+    reply(studio, "add_object", **{**BOX, "kind": "cylinder", "size": [0.04, 0.1]})
+    [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert form == {"name": "box", "kind": "cylinder", "size": [0.04, 0.1], "xyz": [0.2, 0, 0.04]}
+
+
+def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
+    before, start = studio.text, studio.cell.joint_positions()
+    reply(studio, "execute", step="ptp: {joints: {joint1: 0.4}}")
+    assert studio.cell.document.step_count == 1
+    reply(studio, "undo")
+    assert studio.text == before
+    assert np.array_equal(studio.cell.joint_positions(), start)
+
+
+def test_what_is_seen_is_proposed_with_names_and_poses(studio):
+    def seen():
+        found = reply(studio, "expect_seen")["proposals"]
+        return [each["text"].partition(", pose")[0] for each in found]
+
+    reply(
+        studio, "add_object", name="box", kind="box", size=[0.03, 0.03, 0.03], xyz=[0.2, 0, 0.015]
+    )
+    reply(studio, "execute", step="move_to: home")
+    assert seen() == ["named_target: home"], "what has not moved is of no interest"
+    for step in ("gripper: open", "pick: box"):
+        assert reply(studio, "execute", step=step)["status"] == "passed"
+    assert "grasped: box" in seen()
+    place = "place: {object: box, pose: {xyz: [0.2, 0.05, 0.015]}}"
+    assert reply(studio, "execute", step=place)["status"] == "passed"
+    assert {"placed: {object: box, on: ground_plane", "upright: box"} <= set(seen())
+
+
+def test_a_camera_shows_the_cell_as_it_is(tmp_path):
+    file = data_folder("scenarios") / "cameras/01_gripper_camera.scenario.yaml"
+    studio = opened(tmp_path, file.read_text())
+    [name, *_] = studio.cell.prepared.program.cameras
+    assert reply(studio, "camera", name=name) == {}
+    studio.camera.draw(studio.cell)
+    encoded = base64.b64decode(studio.camera.taken(wait=True)["image"])
+    pixels = cv2.imdecode(np.frombuffer(encoded, np.uint8), cv2.IMREAD_COLOR)
+    assert pixels.shape == (180, 240, 3)
+    assert pixels.std() > 5
+    time.sleep(PERIOD)
+    studio.camera.draw(studio.cell)
+    assert studio.camera.taken(wait=True) is None, "nothing has moved"
+    assert "no camera 'other'" in reply(studio, "camera", name="other")["error"]
+
+
+def test_expectations_that_observe_more_keep_the_steps_before_them(studio):
+    reply(studio, "execute", verb="move_to", joints=[20, 0, 0, 0], unit="deg")
+    links, positions = studio.cell.prepared.observed_links, studio.cell.joint_positions()
+    assert reply(studio, "expect", texts=["tcp_pose: {link: link3, pose: {}}"]) == {}
+    assert studio.cell.prepared.observed_links != links
+    assert studio.busy == ""
+    assert studio.cell.steps_done == 1
+    assert studio.cell.joint_positions() == pytest.approx(positions, abs=1e-9)

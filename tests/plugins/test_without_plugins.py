@@ -1,0 +1,77 @@
+"""The core without the folder `harness/plugins`."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from harness.core.registry import registry
+
+ROOT = Path(__file__).parents[2]
+ABSENT = ("studio", "bridge", "grade", "ik-test", "search", "import", "results")
+
+
+@pytest.fixture(scope="module")
+def core(tmp_path_factory):
+    """A tree without plug-ins, as a function that runs `harness` in it."""
+    tree = tmp_path_factory.mktemp("core")
+    ignored = shutil.ignore_patterns("plugins", "__pycache__")
+    for name in ("harness", "robots", "worlds", "scenarios"):
+        shutil.copytree(ROOT / name, tree / name, ignore=ignored)
+
+    def harness(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "harness.cli", *map(str, words)],
+            cwd=tree,
+            env={**os.environ, "PYTHONPATH": str(tree)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    return harness
+
+
+def test_the_help_of_the_core_has_fewer_commands(core):
+    done = core("--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    shown = [line.split()[0] for line in done.stdout.splitlines() if line.startswith("    ")]
+    assert {"run", "check", "judge"} <= {*shown}
+    assert {*shown} == {*registry("command")} - {
+        name for name in registry("command") if "plugins" in registry("command").module_of(name)
+    }
+    for name in ABSENT:
+        refused = core(name)
+        assert refused.returncode == 2
+        assert f"'{name}' is not valid" in refused.stderr
+        assert "Traceback" not in refused.stderr
+
+
+def test_the_core_lists_no_packages_of_plug_ins(core):
+    done = core("list", "plugins")
+    assert (done.returncode, done.stdout.strip()) == (0, "")
+    assert "Traceback" not in done.stderr
+
+
+def test_the_core_checks_all_lessons_and_runs_one(core):
+    done = core("check", "scenarios/lessons")
+    assert done.returncode == 0, done.stdout + done.stderr
+    done = core("run", "scenarios/lessons/04_gripper_alone.scenario.yaml", "--no-report")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
+    file = tmp_path / "formula.scenario.yaml"
+    file.write_text(
+        "robot: {model: ur3e}\nsteps: [{move_to: home}]\n"
+        "expect: [{formula: 'always speed(tcp) < 2 m/s'}]\n"
+    )
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    nodes = core("run", "lessons/04_gripper_alone", "--node", "python student.py", "--no-report")
+    assert nodes.returncode == 2
+    assert "there is no case runner 'nodes'" in nodes.stdout + nodes.stderr
