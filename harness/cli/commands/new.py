@@ -12,7 +12,7 @@ from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.suite.discovery import SUFFIX, UsageError
 
-TEMPLATE = Path(__file__).parent / "templates" / "new.scenario.yaml"
+TEMPLATE = Path(__file__).parents[1] / "templates" / "new.scenario.yaml"
 
 
 class NewCommand(Command):

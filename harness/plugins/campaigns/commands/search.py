@@ -15,7 +15,6 @@ from harness.cli.arguments import batch_size, whole_number
 from harness.cli.command import Command
 from harness.cli.files import one_scenario
 from harness.cli.output import complain, output, say, say_json
-from harness.cli.progress import remaining
 from harness.cli.shared_options import (
     add_hard_cap,
     add_json,
@@ -144,6 +143,8 @@ class _Progress:
         output().status(self._text, is_frequent=True)
 
     def _text(self) -> str:
+        from harness.cli.progress import remaining
+
         left = remaining(self._begin, self._last, time.monotonic(), self._done, self._runs)
         return f"  {self._stage}: {self._done} runs, {self._failed} failed{left}"
 
