@@ -5,8 +5,7 @@ A test states what matters in a verdict on a hand-made run, or in a problem of a
 warning its numbers and its quoted names, as they were last approved. Words are free to change.
 After a change of a fact,
 
-    APPROVE=1 python -m pytest tests/assertions tests/expectations tests/observation \\
-        tests/engine tests/steps
+    APPROVE=1 python -m pytest tests/judging tests/session tests/steps
 
 writes the file again, in one process (without `-n`). Read the difference: it shows what changed.
 """

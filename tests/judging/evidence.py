@@ -76,14 +76,14 @@ class Evidence:
 @cache
 def collected() -> tuple[Evidence, ...]:
     """The evidence of each test module that states some."""
-    tests = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     files = [
         file
-        for folder in ("expectations", "assertions")
-        for file in sorted((tests / folder).glob("test_*.py"))
+        for folder in ("tests/judging/expectations", "tests/judging")
+        for file in sorted((root / folder).glob("test_*.py"))
         if re.search(r"^EVIDENCE = ", file.read_text(encoding="utf-8"), re.MULTILINE)
     ]
-    names = [f"tests.{file.parent.name}.{file.stem}" for file in files]
+    names = [".".join(file.relative_to(root).with_suffix("").parts) for file in files]
     return tuple(import_module(name).EVIDENCE for name in names)
 
 

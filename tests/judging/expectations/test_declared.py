@@ -20,7 +20,7 @@ from tests.approved import SAID
 from tests.code_mutation.mutants import modules
 from tests.judging.evidence_runs import LINE
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 RULES = (
     "subject", "synonyms", "opposite", "judged", "short", "is_upper_bound", "is_proposed",
     "is_opposed", "is_change",

@@ -61,7 +61,7 @@ def scenario(tmp_path):
 
 def python(*arguments, site=None, cwd=None):
     """A Python process, with a folder more on its path."""
-    paths = [str(Path(__file__).parents[2]), *([str(site)] if site else [])]
+    paths = [str(Path(__file__).parents[3]), *([str(site)] if site else [])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
     done = subprocess.run(
         [sys.executable, *map(str, arguments)],

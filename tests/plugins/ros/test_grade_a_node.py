@@ -23,7 +23,7 @@ LIFT = f"{sys.executable} {HERE / 'lift_the_box.py'}"
 
 @pytest.fixture(autouse=True)
 def _importable(monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", str(HERE.parents[1]))
+    monkeypatch.setenv("PYTHONPATH", str(HERE.parents[2]))
 
 
 def json_of(capsys, *arguments):

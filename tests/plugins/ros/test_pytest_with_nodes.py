@@ -6,7 +6,7 @@ from pathlib import Path
 from tests.plugins.ros.bridging import scenario
 
 pytest_plugins = ["pytester"]
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 NODE = """
 import os
 from tests.plugins.ros.nodes import Node, follow, point

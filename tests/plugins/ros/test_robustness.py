@@ -97,7 +97,7 @@ def test_ten_thousand_points_are_followed(tmp_path):
 
 
 def test_a_goal_goes_on_when_its_client_dies(tmp_path):
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
     with bridge(scenario(tmp_path, HOLD)) as (node, _):
         states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
         environment["ROS_DOMAIN_ID"] = str(node.graph.participant.domain)

@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from harness.plugins.studio import command as studio
+from harness.plugins.studio.commands import studio
 from harness.plugins.studio.document import Document
 from harness.plugins.studio.files import StudioFiles
 from harness.plugins.studio.live_cell import LiveCell
@@ -14,7 +14,7 @@ from harness.suite.discovery import UsageError
 def begun(*words):
     """The text of the scenario that the command line begins with."""
     parser = argparse.ArgumentParser()
-    studio.add_options(parser)
+    studio.StudioCommand().add_options(parser)
     return studio.start_of(parser.parse_args(words))[1]
 
 
