@@ -27,8 +27,8 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
     Args:
         plugin: A class that states its kind and name, such as a step, or anything else.
         kind: One of `step`, `expectation`, `planner`, `ik_solver`, `controller`, `robot`,
-            `world_format`, `reporter`, `command`, `run_mode`, `case_runner`; needed where the plug-in
-            does not state it.
+            `world_format`, `reporter`, `command`, `run_mode`, `case_runner`; needed where the
+            plug-in does not state it.
         name: Needed where the plug-in does not state it.
 
     Returns:

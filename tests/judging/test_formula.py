@@ -6,18 +6,25 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from harness.plugins.formulas.verdict import TINY, Evaluation, formula_verdict
 from harness.judging.temporal import TooShort, always, eventually, never, until
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.plugins.formulas.expectations.formula import Formula
-from harness.plugins.formulas.language.formula import Comparison, Const, Interval, Logic, Signal, Temporal
+from harness.plugins.formulas.language.formula import (
+    Comparison,
+    Const,
+    Interval,
+    Logic,
+    Signal,
+    Temporal,
+)
 from harness.plugins.formulas.language.parser import parse_formula
 from harness.plugins.formulas.language.text import FormulaError
+from harness.plugins.formulas.verdict import TINY, Evaluation, formula_verdict
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import AT_ONCE, Evidence, Free
 from tests.judging.synthetic_run import at, force, heights, lift_run, make_run, verdict
-from tests.session.front_door import problems
 from tests.lanes import property_test
+from tests.session.front_door import problems
 
 EPS = 1e-9
 
