@@ -17,6 +17,7 @@ STUDENT = "scenarios/ik_test/student_ik.py:ik"
 PAGE = ROOT / "docs/guides/ik_test.md"
 
 
+@pytest.mark.nightly
 def test_both_mistakes_are_found_each_with_its_smallest_example(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(ROOT)
     assert main(["ik-test", STUDENT, *ARM, "--report-dir", str(tmp_path)]) == 1

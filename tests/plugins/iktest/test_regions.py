@@ -35,6 +35,7 @@ def misses(ik, seed=0):
     return [each for each in report.findings if each.kind.startswith(("misses", "is off"))]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("ik", "words", "shows"),
     [
