@@ -2,7 +2,7 @@
 
 `@pytest.mark.nightly(but=["a"])` leaves the parameters `a` of a test in the default run, where they
 represent the others; `@pytest.mark.nightly(only=["b"])` leaves all but `b` there. A number is the
-position in the test's list of parameters, from 0 on, for those with long names.
+position in the test's only list of parameters, from 0 on, for those with long names.
 """
 
 from collections import defaultdict
@@ -24,7 +24,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             continue
         [(word, parameters)] = mark.kwargs.items()
         name, _, identifier = item.nodeid.removesuffix("]").partition("[")
-        own = {identifier, *item.callspec.indices.values()}
+        places = set(item.callspec.indices.values())
+        own = {identifier} | (places if len(places) == 1 else set())
         named[name].update(parameters)
         found[name] |= own
         if bool(own & set(parameters)) == (word == "but"):

@@ -72,7 +72,7 @@ def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
     assert red < 1.2 * max(green, blue)  # it was removed
 
 
-@pytest.mark.nightly(but=["rays"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
 def test_an_object_of_the_planner_alone_is_translucent(ur3e, backend):
     run = a_run(ur3e)

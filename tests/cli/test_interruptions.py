@@ -174,6 +174,7 @@ def dead_process():
     return process.pid
 
 
+@pytest.mark.nightly
 def test_every_run_cleans_the_whole_report_folder(folder):
     reports = folder / "reports"
     dead = dead_process()

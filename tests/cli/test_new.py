@@ -69,7 +69,7 @@ def test_a_motion_says_why_it_is_no_pick_and_that_it_passed(capsys):
     assert "it was run once and passed" in said
 
 
-@pytest.mark.nightly(but=["jaw"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "urdf",
     [SIX, SIX_WITH_JAW, SIX_WITH_TURNING_JAW, FIVE_WITH_TURNING_JAW],
@@ -152,7 +152,7 @@ def test_goals_stay_inside_limits_that_rounding_would_exceed(capsys, folder, sta
     assert code == 0, said
 
 
-@pytest.mark.nightly(but=["3.1"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("bend", ["3.1", "2.9"])
 def test_a_robot_that_starts_in_collision_gets_a_start_that_is_free(capsys, folder, bend):
     """All joints at zero, or the only named state, is in collision."""

@@ -249,6 +249,7 @@ def test_pairs_of_a_universal_robot_are_those_that_moveit_has(folder):
     assert set(ours.values()) == {"Adjacent", "Never"}
 
 
+@pytest.mark.nightly
 def test_a_picture_is_drawn_on_request(folder, capsys):
     """The two states of an arm with looks differ by more than lines of the floor."""
     assert main(["robot", "show", "ur3e", "--state", "mogi_home"]) == 0

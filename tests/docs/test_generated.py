@@ -24,6 +24,7 @@ MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)\n")
 DECIMALS = re.compile(r"\d+\.\d+")
 
 
+@pytest.mark.nightly(only=["README.md"])
 @pytest.mark.parametrize("name", GENERATED)
 def test_a_generated_file_is_current(name):
     written, made = (ROOT / name).read_text(encoding="utf-8"), GENERATED[name]()

@@ -239,6 +239,7 @@ def test_a_motion_that_only_just_touches_on_its_way_is_not_free(model, stages):
         assert not checker.path_free(np.array([start, blocked, back]), 1 / 512)
 
 
+@pytest.mark.nightly
 def test_states_at_20_micrometres_from_their_margin_are_judged_by_the_distance(stages, tmp_path):
     """The padding is set next to the distance that Coal measures, for solids of every kind."""
     stages("always")

@@ -83,6 +83,7 @@ def test_the_lists_name_the_package(site, tmp_path, kind):
     assert "example-arm-plugins" in row[1:3]
 
 
+@pytest.mark.nightly
 def test_without_the_package_every_name_is_a_located_error(tmp_path):
     (tmp_path / "all.scenario.yaml").write_text(SCENARIO, encoding="utf-8")
     out = harness(tmp_path, "check", "all.scenario.yaml", code=2)

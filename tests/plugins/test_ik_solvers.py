@@ -70,6 +70,7 @@ def test_wrong_answers_are_refused_by_forward_kinematics_and_the_solver_is_named
     assert refused["residual"]["position"] == explanation["position_error"] > 1e-3
 
 
+@pytest.mark.nightly
 def test_a_solver_that_goes_wrong_fails_the_step_and_is_named(scenario):
     (scenario / "mine.py").write_text(WRONG, encoding="utf-8")
     motion = "  - move_to: {pose: {xyz: [%s, 0.1, 0.3], rpy: [180 deg, 0, 0]}}\n"
@@ -115,7 +116,7 @@ def test_ik_test_tests_a_registered_solver_by_its_name(tmp_path):
     assert "no solver has that name; solvers: own, numeric, open_manipulator_x, ur" in out
 
 
-@pytest.mark.nightly(but=[0])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("returned", "reported"),
     [
@@ -143,6 +144,7 @@ def test_ik_test_blames_the_solvers_own_line_and_passes_nothing_that_was_not_obs
     assert out.count("NOT OBSERVED, 10 tried") == 4
 
 
+@pytest.mark.nightly
 def test_the_example_of_the_documentation_is_a_solver(tmp_path):
     page = (ROOT / "docs/guides/python.md").read_text(encoding="utf-8")
     [example] = [

@@ -218,7 +218,7 @@ def test_a_scenario_cannot_name_a_module(tmp_path):
         assert f"unknown key `{key.partition(':')[0]}`" in said
 
 
-@pytest.mark.nightly(but=["ini"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("given", ["option", "ini"])
 def test_pytest_collects_and_runs_a_scenario_with_a_plug_in(tmp_path, given):
     (tmp_path / "remarks.scenario.yaml").write_text(SCENARIO, encoding="utf-8")

@@ -334,7 +334,7 @@ def test_a_warning_of_a_verdict_fails_a_strict_session(pytester, write):
     result.stdout.re_match_lines([".*warning: already true at the start.*"])
 
 
-@pytest.mark.nightly(but=["workers0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("workers", [(), ("-n", "2")])
 def test_last_failed_runs_exactly_what_failed(pytester, write, workers):
     case = "parametrize: {params.t: ['0.1 s', '1.5 s']}\nparams: {t: 0.1 s}\n"

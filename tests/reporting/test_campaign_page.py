@@ -316,6 +316,7 @@ def test_the_map_says_which_runs_have_no_place_on_its_axes(tmp_path, visit):
     assert "NO_IK_SOLUTION in move_to" in legend.inner_text()
 
 
+@pytest.mark.nightly
 def test_a_page_of_many_samples_stays_small(tmp_path):
     page = write_suite_page(tmp_path, SuiteRecord("failed", campaign(20_000)))
     text = page.read_text()

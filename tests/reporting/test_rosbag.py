@@ -280,6 +280,7 @@ def test_events_report_steps_and_verdicts_in_the_order_in_which_they_came(messag
     assert any(level == 40 and "too_far: failed: NO_IK_SOLUTION" in said for level, said in logged)
 
 
+@pytest.mark.nightly
 def test_equal_runs_leave_equal_bytes(folder, tmp_path):
     again = everything(tmp_path, bag=True)
     for name in ("bag.mcap", "metadata.yaml", "robot.urdf", "view.rviz", "foxglove.json"):

@@ -59,6 +59,7 @@ def test_a_mesh_that_collides_as_its_hull_is_not_cut(tmp_path, cut):
     assert cut(), "by default it is"
 
 
+@pytest.mark.nightly
 def test_only_the_links_that_collide_as_hulls_are_spared(tmp_path, cut):
     write_arm(tmp_path, HOLLOW)
     arm = load_arm(tmp_path, collision={"upper": "hull"})

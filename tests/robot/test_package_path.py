@@ -166,6 +166,7 @@ def test_a_folder_is_given_with_set_on_the_command_line(tmp_path, capsys):
     assert main(["check", str(scenario), "--set", given]) == 0, capsys.readouterr().out
 
 
+@pytest.mark.nightly(only=["run"])
 @pytest.mark.parametrize("command", ["check", "explain", "run"])
 def test_a_folder_is_given_as_an_option_of_commands_on_scenarios(
     tmp_path, monkeypatch, capsys, command

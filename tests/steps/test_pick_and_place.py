@@ -9,6 +9,7 @@ from tests.session.front_door import UR, check, failures, run
 OM = "{model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}"
 
 
+@pytest.mark.nightly
 def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
     result, record = run(
         tmp_path,
@@ -45,7 +46,7 @@ def test_a_can_with_its_origin_at_the_foot_is_picked_and_placed(tmp_path):
     )
 
 
-@pytest.mark.nightly(but=["[0, 90 deg, 40 deg]"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("turn", ["[90 deg, 0, 0]", "[0, 90 deg, 40 deg]"])
 def test_a_lying_bar_is_taken_across_its_narrow_level_side(tmp_path, turn):
     result, _ = run(
@@ -69,7 +70,7 @@ def test_a_lying_bar_is_taken_across_its_narrow_level_side(tmp_path, turn):
     assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
 
 
-@pytest.mark.nightly(but=["shapes"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", ["mesh", "shapes"])
 def test_what_is_no_simple_shape_is_taken_by_the_box_around_it(tmp_path, kind):
     """A square cup that stands on its foot, and two blocks on each other."""
@@ -263,7 +264,7 @@ def test_a_weld_holds_until_a_step_releases_it(tmp_path, lets_go, hits):
 PLATES = "[0.06, 0.01, 0.13]", "0.25, 0.02", "0.25, -0.12"
 
 
-@pytest.mark.nightly(but=["box: {size: [12 cm, 4 cm, 12 cm]}-2-0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("shape", "grasps", "taken"),
     [

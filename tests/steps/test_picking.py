@@ -159,7 +159,7 @@ def test_a_place_out_of_reach_gives_the_nearest_pose_and_that_one_is_reached(tmp
     assert not [step for step in record.steps if step.path.startswith("steps[1].")]
 
 
-@pytest.mark.nightly(but=["30 mm"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("padding", ["25 mm", "30 mm"])
 def test_padding_does_not_apply_to_what_is_about_to_be_grasped(tmp_path, padding):
     result, _ = run(
@@ -233,7 +233,7 @@ def test_an_object_that_is_too_thin_is_compared_with_the_closed_gripper(
     assert words in advice(record)
 
 
-@pytest.mark.nightly(but=["30 deg"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("turn", ["0", "30 deg", "90 deg"])
 def test_a_plate_too_thin_to_hold_across_is_taken_across_its_wide_side(tmp_path, turn):
     pose = f"{{xyz: [0.5, 0.1, 0.05], rpy: [0, 0, {turn}]}}"
@@ -297,6 +297,7 @@ def test_nothing_is_put_down_where_the_gripper_cannot_open(tmp_path):
     assert "farther from 'bin'" in advice(record, "steps[1]")
 
 
+@pytest.mark.nightly
 def test_the_advice_does_not_move_an_object_with_which_the_grasp_moves(tmp_path):
     """Following it had the same collision again: the palm stood as deep inside the post."""
     post = (
@@ -310,6 +311,7 @@ def test_the_advice_does_not_move_an_object_with_which_the_grasp_moves(tmp_path)
     assert "state another one with `grasp_pose`" in said
 
 
+@pytest.mark.nightly
 def test_the_first_length_of_an_approach_that_the_arm_can_follow_is_taken(tmp_path):
     """A shelf above leaves 6 cm."""
     result, _ = run(
@@ -397,7 +399,7 @@ def part(shape, height):
     )
 
 
-@pytest.mark.nightly(but=[2])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("shape", "height"),
     [
@@ -416,7 +418,7 @@ def test_fingertips_that_swing_down_stay_above_what_a_small_part_stands_on(tmp_p
     assert result.outcome == "passed", (failures(result), [s.message for s in result.steps])
 
 
-@pytest.mark.nightly(but=["3"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("size", [2, 3])
 def test_fingers_that_press_the_floor_are_named_and_the_advice_to_grasp_higher_helps(
     tmp_path, size

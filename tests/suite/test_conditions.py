@@ -152,6 +152,7 @@ def test_what_is_no_file_of_conditions_is_refused(capsys, content, options, mess
     assert not Path("no").exists()
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("project")
 def test_a_file_without_conditions_is_named(capsys):
     run("ball.scenario.yaml", "--report-dir", "first", "--samples", "2")

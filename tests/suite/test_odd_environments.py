@@ -64,6 +64,7 @@ def test_a_name_in_a_file_that_is_too_long_is_a_mistake_at_its_place(keys, line,
     assert f"a.scenario.yaml:{line}:" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_reports_of_long_names_have_shorter_folders():
     names = ("b" * 240, "b" * 239 + "c")
     for name in names:

@@ -151,6 +151,7 @@ def test_parts_of_different_suites_are_refused(parts, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.nightly
 def test_a_part_that_leaves_nothing_to_merge_says_so(tmp_path):
     (tmp_path / "grid.scenario.yaml").write_text(GRID)
     words = ("run", ".", "--shard", "1/9", "--no-report")

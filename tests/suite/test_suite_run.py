@@ -100,6 +100,7 @@ def test_only_failed_samples_leave_reports_unless_all_are_kept(sampled):
     assert {report.name for report in (folder / "all/varied").iterdir()} == {"sample0", "sample1"}
 
 
+@pytest.mark.nightly
 def test_the_sequential_test_ends_the_sampling_at_the_same_sample_however_many_work(varied):
     text = VARIED.replace("samples: 12", "samples: 60\nexpect_rate: {at_least: 0.2}")
     path = varied(text)
@@ -115,6 +116,7 @@ def test_the_sequential_test_ends_the_sampling_at_the_same_sample_however_many_w
     assert len(totals[0]) < 60
 
 
+@pytest.mark.nightly
 def test_a_rate_that_cannot_be_shown_fails_and_says_what_to_do(varied):
     path = varied(VARIED.replace("samples: 12", "samples: 4\nexpect_rate: {at_least: 0.6}"))
     done = harness("run", path, "--no-report", cwd=path.parent)
@@ -144,7 +146,7 @@ def test_a_grid_that_varies_nothing_is_reported(tmp_path):
     assert "varied.scenario.yaml: its" not in said
 
 
-@pytest.mark.nightly(but=["parametrize: {seed: []}"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("line", ["parametrize: {seed: []}", "parametrize: {time: [], seed: [1]}"])
 def test_a_grid_without_values_is_an_error_of_its_file_in_a_suite(line, varied):
     path = varied()
@@ -220,6 +222,7 @@ def test_what_is_known_is_not_computed_again_and_what_changed_is(varied):
     assert "known from before" not in done.stdout
 
 
+@pytest.mark.nightly
 def test_a_case_that_is_not_there_is_named_with_those_that_are(varied):
     path = varied(GRID)
     done = harness("run", path, "--case", "0.3_s", cwd=path.parent)
@@ -255,6 +258,7 @@ samples: 12
 """
 
 
+@pytest.mark.nightly
 def test_samples_that_cannot_be_run_do_not_count_in_the_rate(varied):
     path = varied(SOMETIMES_INVALID)
     done = harness("run", path, "--no-page", cwd=path.parent)

@@ -22,6 +22,12 @@ NAMES = {
     "a log": "\n::warning::FORGED\nFORGED ##[error]y ##vso[task.complete]\r::error::F%0A::error::F",
     "a reader": "x\r\nFORGED\x85FORGED\u2028FORGED [[ATTACHMENT|/etc/passwd]]\n\nFORGED\u2029",
 }
+RUNS = {
+    " ".join([f"{name}-run a.scenario.yaml --no-report --in-process", *words])
+    for name in ("a terminal", "a reader")
+    for words in (["--format", "short"], ["--repeat", "2"], ["--json"])
+}
+"""Of the runs in the default run, the name that tries to act on a log is enough."""
 DIRECTIONS = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 
 
@@ -83,7 +89,7 @@ def hostile(request, tmp_path_factory):
     return folder
 
 
-@pytest.mark.nightly(only=[0, 1, 2, 26, 27, 28])
+@pytest.mark.nightly(only=RUNS)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -148,7 +154,7 @@ def test_the_files_of_a_suite_hold_nothing_that_acts(hostile, tmp_path, monkeypa
     assert said.count("[[ATTACHMENT|") == 2, "only the program's own"
 
 
-@pytest.mark.nightly(but=["a log"])
+@pytest.mark.nightly
 def test_pytest_prints_nothing_that_acts(hostile):
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-v", "-rA", "-p", "no:cacheprovider", "a.scenario.yaml",

@@ -317,6 +317,7 @@ def test_a_saved_run_is_judged_again_by_its_own_and_by_other_expectations(here, 
     assert "1 of 2 expectations hold" in other.stdout
 
 
+@pytest.mark.nightly
 def test_a_new_scenario_passes(here, run_here):
     assert here("new", "first.scenario.yaml").returncode == 0
     assert here("check", "first.scenario.yaml").returncode == 0

@@ -169,6 +169,7 @@ def test_pytest_collects_it(site, scenario):
     assert "1 passed" in python("-m", "pytest", *options, site=site, cwd=scenario.parent)
 
 
+@pytest.mark.nightly
 def test_a_file_that_uses_it_without_the_package_is_refused_at_its_lines(scenario):
     commands = [(command, scenario) for command in ("check", "run", "explain")]
     for code, said in harness(*commands, cwd=scenario.parent):

@@ -29,6 +29,7 @@ from tests.plugins.grading.test_recorded_frames import at
 from tests.running import run_case
 
 
+@pytest.mark.nightly(but=["mcap"])
 @pytest.mark.parametrize("kind", ["mcap", "sqlite3"])
 def test_a_bag_of_the_harness_gets_the_verdicts_of_its_run_wherever_they_can_be_seen(
     stored, tmp_path, kind

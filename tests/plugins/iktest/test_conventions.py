@@ -111,7 +111,7 @@ def test_lengths_of_a_slide_and_the_zero_of_a_joint_without_limits_are_recognise
     assert finding.kind.endswith("right when turn is 0.4 rad less")
 
 
-@pytest.mark.nightly(but=["ik1"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "ik",
     [

@@ -65,6 +65,7 @@ def test_an_answer_beyond_a_limit_is_found_with_its_joint():
     assert moved(finding.target) <= 1
 
 
+@pytest.mark.nightly
 def test_a_refusal_within_reach_is_found_at_its_threshold():
     def ik(x, y, z, pitch):
         return None if y > 0.1 else correct(x, y, z, pitch)
@@ -165,6 +166,7 @@ def test_the_assertion_of_a_test_reports_findings_in_numbers():
     assert "reached by  home" in text
 
 
+@pytest.mark.nightly
 def test_pictures_and_numbers_go_into_the_report_folder(tmp_path):
     def ik(x, y, z, pitch):
         return [0.0, 0.0, 0.0, 0.0]
@@ -194,6 +196,7 @@ def test_a_property_of_answers_is_not_kept_where_nothing_is_answered(function, u
     assert not kept & unobserved
 
 
+@pytest.mark.nightly
 def test_what_is_refused_half_of_the_time_is_reported_as_observed_in_the_other_half():
     report = run_ik_test(
         IkTest(lambda x, y, z, pitch: correct(x, y, z, pitch) if y > 0 else None, OM, examples=40)

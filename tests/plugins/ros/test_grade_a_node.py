@@ -129,7 +129,7 @@ def test_an_end_that_is_measured_after_the_run_is_refused(tmp_path):
     assert "measured after the run" in message
 
 
-@pytest.mark.nightly(but=["wait: 10 ms"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("step", ["wait: 10 ms", "move_to: {joints: {joint1: 0.1}}"])
 def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
     file = scenario(tmp_path, f"- {step}")
@@ -143,7 +143,7 @@ def test_a_run_without_nodes_has_nothing_to_replay(tmp_path, capsys, step):
     assert main(["replay", str(folder)]) == 2
 
 
-@pytest.mark.nightly(but=["20 ms"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("timeout", ["20 ms", "300"])
 def test_a_step_of_nodes_that_no_node_took_has_nothing_to_replay(tmp_path, capsys, timeout):
     """Five minutes of simulated time would pass before that shows."""
@@ -171,6 +171,7 @@ def test_ctrl_c_ends_a_served_session_which_is_then_judged(tmp_path, capsys):
     assert "1 of 1 expectation holds" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_nodes_that_commanded_nothing_are_replayed(tmp_path, capsys):
     file = scenario(tmp_path, "- external: {}\n  timeout: 20 ms")
     main(["grade", str(file), "--node", "true", "--report-dir", str(tmp_path / "r")])

@@ -92,6 +92,7 @@ def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_pat
     assert causes[("y",)]["y"] == pytest.approx(-0.4, abs=0.005)
 
 
+@pytest.mark.nightly
 def test_without_a_failure_the_bound_is_stated_and_the_workers_do_not_matter(tmp_path, capsys):
     (tmp_path / "two").mkdir()
     code, found = search(tmp_path, SAFE, "--runs", "12", "--start", "8")

@@ -80,6 +80,7 @@ def reports(tmp_path, capsys, monkeypatch):
     return run
 
 
+@pytest.mark.nightly
 def test_samples_that_the_sequential_test_did_not_need_are_no_results(tmp_path, reports, capsys):
     """They are in the journal, as they were under way when the test decided."""
     early = ball(30, rest="expect_rate: 30 %\n", farthest="0 cm")

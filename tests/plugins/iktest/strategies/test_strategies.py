@@ -166,6 +166,7 @@ def test_what_fails_everywhere_shrinks_to_home(chain):
     assert pose.distance_to(chain.link_pose(chain.home)) == (0.0, 0.0)
 
 
+@pytest.mark.nightly
 def test_what_needs_one_joint_shrinks_to_that_joint_at_its_threshold():
     chain = load_chain("open_manipulator_x")
     found = find(joint_positions(chain), lambda q: q[0] < -1.2345, settings=ENOUGH)
