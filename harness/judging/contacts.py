@@ -222,14 +222,17 @@ def _skipped_contacts(run: Run, pairs: Collection[tuple[str, str]]) -> tuple[Ver
         if poses is None or not width:
             continue
         balls = balls_of(object_record(run, name))
-        moved = np.nan_to_num(balls.moved(poses[:-1], poses[1:]))
-        moved[put_samples(run, name) - 1] = 0.0
         others = [first if second == name else second for first, second in pairs
                   if name in (first, second)]  # fmt: skip
         thinnest = min((_least_known_width(run, other) for other in others), default=0.0)
+        is_far = balls.moved_at_most(poses[:-1], poses[1:]) > width + thinnest
+        put = put_samples(run, name)
+        is_far[put[put > 0] - 1] = False
+        samples = np.flatnonzero(is_far)
+        moved = balls.moved(poses[samples], poses[samples + 1])
         if len(moved) and moved.max() > width + thinnest:
             most = float(moved.max())
-            time = float(run.signals.times[int(moved.argmax()) + 1])
+            time = float(run.signals.times[int(samples[moved.argmax()]) + 1])
             found.append(
                 VerdictWarning(
                     "contact may be missed",
