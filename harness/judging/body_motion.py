@@ -66,7 +66,6 @@ class Balls:
         ways = times_each(turned, self.centers.T) + shift[:, :, None]
         return (np.linalg.norm(ways, axis=1) + chord[:, None] * self.radii).max(axis=1)
 
-
     def moved_at_most(self, before: FloatArray, after: FloatArray) -> FloatArray:
         """An upper bound of `moved` [m], shape (N,), for a tenth of its time."""
         outermost = float((np.linalg.norm(self.centers, axis=1) + self.radii).max())
