@@ -4,6 +4,8 @@ import subprocess
 import sys
 from dataclasses import replace
 
+import pytest
+
 from harness.cli.output import Output
 from harness.cli.progress import ProgressLines, remaining
 from harness.reporting.result import CaseResult, ProgressEvent
@@ -76,6 +78,7 @@ def test_piped_a_case_is_one_line():
     assert lines[0].startswith("a  passed  Pick")
 
 
+@pytest.mark.nightly
 def test_a_terminal_sees_steps_and_both_see_failures_last(tmp_path, monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
     (tmp_path / "short.scenario.yaml").write_text(SCENARIO)
@@ -140,6 +143,7 @@ def test_no_terminal_is_silent_for_two_seconds_and_no_line_wraps(tmp_path):
     assert "drawing a picture of each step" in said
 
 
+@pytest.mark.nightly
 def test_a_suite_on_a_terminal_says_how_many_runs_are_done(tmp_path):
     for name in ("first", "second", "third"):
         (tmp_path / f"{name}.scenario.yaml").write_text(SCENARIO)
@@ -151,6 +155,7 @@ def test_a_suite_on_a_terminal_says_how_many_runs_are_done(tmp_path):
     assert not [line for line in session.lines if "runs done" in line], "it is rewritten"
 
 
+@pytest.mark.nightly
 def test_a_terminal_without_control_sequences_gets_none(tmp_path):
     (tmp_path / "short.scenario.yaml").write_text(SCENARIO)
     session = run_in_terminal(["run", "short.scenario.yaml", "--no-page"], tmp_path, TERM="dumb")

@@ -51,6 +51,7 @@ def test_a_controller_follows_with_noise_and_its_run_repeats(scenario):
     assert digest(scenario, "--set", "robot.joint_controller=position_servo") != first
 
 
+@pytest.mark.nightly
 def test_an_arm_that_leaves_its_tolerances_fails_and_the_plug_in_is_named(scenario):
     out = harness(
         scenario, "run", "move.scenario.yaml", *CONTROLLERS,

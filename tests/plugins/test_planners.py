@@ -72,6 +72,7 @@ def test_a_planner_that_goes_through_an_obstacle_is_caught_with_the_pair_and_its
     assert "what to do: correct the plug-in `straight_through`" in out
 
 
+@pytest.mark.nightly
 def test_a_step_s_own_pipeline_does_not_inherit_the_scenario_s_planner(wall):
     ours, own = "planning: {pipeline: via_point}", "    planning: {pipeline: via_point%s}\nexpect:"
     text = WALL.replace(ours, "planning: {planner_id: RRT, parameters: {goal_bias: 0.1}}")
@@ -87,6 +88,7 @@ def test_a_step_s_own_pipeline_does_not_inherit_the_scenario_s_planner(wall):
         assert problem in harness(wall, "check", file.name, *PLANNERS, code=code)
 
 
+@pytest.mark.nightly
 def test_without_the_plug_in_the_pipeline_is_a_located_error(wall):
     out = harness(wall, "run", "post.scenario.yaml", code=2)
     assert "post.scenario.yaml:5:22: there is no planning pipeline `via_point`" in out

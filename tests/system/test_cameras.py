@@ -39,6 +39,7 @@ def case(request, tmp_path_factory):
     return result, folder, read_run(folder).run
 
 
+@pytest.mark.nightly(but=["markers"])
 def test_it_passes_and_its_record_is_judged_alike_where_nothing_can_draw(case):
     result, folder, _ = case
     assert result.outcome == "passed", (result.message, result.verdicts)
@@ -107,6 +108,7 @@ def test_a_video_has_a_time_for_every_frame_within_the_run(case):
         assert frames[0].shape == (camera.height, camera.width, 3)
 
 
+@pytest.mark.nightly
 def test_a_run_of_a_camera_is_the_same_twice_to_the_byte(tmp_path):
     text = GRIPPER.read_text().split("  - lin:")[0].replace("rate: 5 Hz", "rate: 2 Hz")
     path = tmp_path / "short.scenario.yaml"

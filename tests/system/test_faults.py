@@ -20,6 +20,7 @@ def receipts(saved):
     }
 
 
+@pytest.mark.nightly(but=["weak_grip"])
 @pytest.mark.parametrize("name", ["weak_grip", "stalled_joint", "bumped_box"])
 def test_a_bundled_fault_lands_and_its_scenario_passes(name, tmp_path):
     path = ROOT / f"scenarios/faults/{name}.scenario.yaml"
@@ -61,6 +62,7 @@ def test_faults_that_change_nothing_are_findings_with_their_reason(tmp_path):
     assert len(reported) == 6
 
 
+@pytest.mark.nightly
 def test_a_fault_that_is_set_back_in_time_had_no_effect(tmp_path):
     """What happens after it was set back is none of its doing."""
     _, saved = run(
@@ -104,6 +106,7 @@ def test_pushes_of_one_step_are_at_the_same_time(tmp_path):
     assert {receipt for receipt, _ in receipts(saved).values()} == {"landed"}
 
 
+@pytest.mark.nightly
 def test_large_encoder_noise_stops_the_arm_and_small_noise_repeats_to_the_bit(tmp_path):
     lift = "- move_relative: {direction: {xyz: [0, 0, 1]}, distance: 0.05}"
     steps = HOME + "- inject: {sensor_noise: %s}\n" + lift

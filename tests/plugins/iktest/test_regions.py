@@ -79,6 +79,7 @@ def test_one_mistake_is_one_finding(ik):
     assert kinds in (["misses the position"], ["misses the position", "misses the pitch"])
 
 
+@pytest.mark.nightly
 def test_an_error_of_many_targets_is_not_said_to_be_at_every_one():
     def low(x, y, z, pitch):
         return correct(x, y, z + 0.017 if z < 0.12 else z, pitch)
