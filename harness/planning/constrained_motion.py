@@ -8,11 +8,12 @@ import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
-from harness.core.trajectory import JointTrajectory
+from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.planning.cartesian.curve_timing import RatedCurve, time_curve
 from harness.planning.search.balanced_connect import search_connect
 from harness.planning.search.planner_names import FAST_PLANNER
+from harness.planning.search.shortening import find_shortcut, path_knots, without_repetitions
 from harness.planning.task import PlanningTask
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
@@ -30,7 +31,7 @@ from harness.recording.plan_statistics import SearchStatistics
 
 PLANNER_ID = f"{FAST_PLANNER}, projected"
 
-LONGEST_STEP = 0.1
+LONGEST_STEP = 0.2
 """Largest distance between adjacent states of a tree [rad]; smaller for narrow tolerances."""
 
 RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, VERIFIED_RESOLUTION)
@@ -40,11 +41,11 @@ CHECKS_PER_VALUE = 20
 """State checks that take as long as evaluating the constraints at one state does."""
 
 _LEAST_STEP = 0.01
-_SHORTCUTS = 20
+_SHORTCUTS = 10
 _SMOOTHINGS = 4
 
-WORTH = 0.05
-"""Share of a part of the path that a shortcut must be able to save."""
+WORTH = 0.01
+"""Share of the path that a shortcut must be able to save."""
 
 
 def find_constrained_motion(
@@ -74,7 +75,9 @@ def find_constrained_motion(
     goals = task.can_stand(goals)
     for end in goals:
         ends = np.array([task.start, end])
-        if held.hold_between(task.start, end, FINAL_RESOLUTION) and task.overload(ends) is None:
+        is_free = task.checker.edge_free(task.start, end, FINAL_RESOLUTION)
+        is_free = is_free and held.hold_between(task.start, end, 4 * FINAL_RESOLUTION)
+        if is_free and task.overload(ends) is None:
             trajectory = time_straight(names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
                 statistics = task.statistics("straight line", trajectory, [task.start, end])
@@ -88,7 +91,7 @@ def find_constrained_motion(
             found = search.connect(goals)
             if found.waypoints is None:
                 break
-            short = search.smooth(search.shorten(list(found.waypoints)))
+            short = search.smooth(search.shorten(found.waypoints))
             timed = _timed(task, short, with_stops=resolution == RESOLUTIONS[-1])
             if isinstance(timed, JointTrajectory):
                 statistics = task.statistics(PLANNER_ID, timed, short, found.waypoints)
@@ -180,9 +183,15 @@ class _Search:
         return search_connect(request, self.extend)
 
     def extend(self, here: FloatArray, target: FloatArray, longest: float) -> list[FloatArray]:
-        """Free states that satisfy the constraints, one step apart, towards a target."""
+        """Free states that satisfy the constraints, towards a target.
+
+        There is one where the straight line satisfies them, or else one every step.
+        """
         space, found, travelled = self.task.space, list[FloatArray](), 0.0
         left = space.distance(here, target)
+        there = target if left <= longest else here + longest / left * (target - here)
+        if self.held.are_inside(here, there, 0.5 * self.step):
+            return [there] if self._passable(here, there) else []
         while left > 1e-9 and travelled < longest and self.checks < self.budget_end:
             new: FloatArray | None = target
             if left > self.step:
@@ -202,23 +211,24 @@ class _Search:
     def _passable(self, first: FloatArray, second: FloatArray) -> bool:
         return self.task.checker.edge_free(first, second, self.resolution)
 
-    def shorten(self, path: list[FloatArray]) -> list[FloatArray]:
+    def shorten(self, path: FloatArray) -> FloatArray:
         """Replace parts of a path by shorter ways between their ends."""
-        space, metric = self.task.space, self.task.space.metric
-        for _ in range(_SHORTCUTS):
-            low, high = np.sort(self.rng.choice(len(path), 2)).tolist()
-            length = _length(metric, path[low : high + 1])
-            if space.distance(path[low], path[high]) > (1 - WORTH) * length:
+        for places in np.sort(self.rng.random((_SHORTCUTS, 2))).tolist():
+            knots = path_knots(path)
+            shortcut = find_shortcut(path, knots, places, WORTH)
+            if shortcut is None:
                 continue
-            way = [path[low], *self.extend(path[low], path[high], length)]
-            is_there = space.distance(way[-1], path[high]) < 1e-9
-            if is_there and _length(metric, way) < length:
-                path = [*path[:low], *way, *path[high + 1 :]]
+            before, here, there, after = shortcut
+            length = (places[1] - places[0]) * knots[-1]
+            way = np.array([here, *self.extend(here, there, length)])
+            is_there = self.task.space.distance(way[-1], there) < 1e-9
+            if is_there and path_length(way) < length:
+                path = without_repetitions(np.vstack([path[:before], way, path[after:]]))
         return path
 
-    def smooth(self, path: list[FloatArray]) -> FloatArray:
+    def smooth(self, path: FloatArray) -> FloatArray:
         """Round the corners of a path state by state, where the way through it stays free."""
-        points = list(_resampled(np.array(path), self.step))
+        points = list(_resampled(path, self.step))
         for _ in range(_SMOOTHINGS):
             for index in range(1, len(points) - 1):
                 before, here, after = points[index - 1 : index + 2]
@@ -233,8 +243,3 @@ def _resampled(path: FloatArray, step: float) -> FloatArray:
     count = max(4, int(np.ceil(lengths[-1] / step)))
     places = np.linspace(0.0, lengths[-1], count + 1)
     return np.column_stack([np.interp(places, lengths, column) for column in path.T])
-
-
-def _length(metric: FloatArray, path: Sequence[FloatArray]) -> float:
-    steps = np.diff(np.array(path), axis=0) * metric
-    return float(np.linalg.norm(steps, axis=1).sum())

@@ -195,6 +195,9 @@ def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defec
         departure = find_departure(trajectory, waypoints, blend)
         if departure is None and task.defect(trajectory, end) is None:
             return trajectory
+    blocked = path_collision(waypoints, task.checker, VERIFIED_RESOLUTION)
+    if blocked is not None:
+        return blocked
     trajectory = time_stopping(names, waypoints, task.limits)
     departure = find_departure(trajectory, waypoints, 0.0)
     return departure or task.defect(trajectory, end) or trajectory

@@ -186,3 +186,12 @@ def test_what_is_neither_a_link_nor_attached_is_refused(scene, held):
     scene.add_object(thing("cup", at(0, 0, 0), Shape(Box((0.1, 0.1, 0.1)))), at(0.1, 0.0, 0.4))
     with pytest.raises(PlanningFailed, match="'cup' is neither a link nor an attached object"):
         held(orientation=OrientationBand("cup", np.eye(3), (0.1, 0.1, 3.15)))
+
+
+def test_a_line_near_a_bound_holds_but_is_not_inside(held):
+    """Projected states keep 10 % of the width from a bound, or 5 % with rounding by steps."""
+    band, first = held(**BAND), np.zeros(4)
+    for end, is_inside in ((0.27, True), (0.29, False)):
+        second = np.array([0.0, end, 0.0, 0.0])
+        assert band.hold_between(first, second, 0.1)
+        assert band.are_inside(first, second, 0.1) == is_inside

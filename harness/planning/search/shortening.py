@@ -36,15 +36,15 @@ def shorten(
         Waypoints, shape (M, dof), M <= N mostly; the ends are the same.
     """
     path = _without_redundant_waypoints(waypoints, checker, resolution)
-    knots = _knots(path)
+    knots = path_knots(path)
     for places in np.sort(np.random.default_rng(seed).random((TRIES, 2))).tolist():
-        shortcut = _shortcut(path, knots, places)
+        shortcut = find_shortcut(path, knots, places, WORTH)
         if shortcut is None:
             continue
         before, a, b, after = shortcut
         if checker.edge_free(a, b, resolution):
-            path = _without_repetitions(np.vstack([path[:before], a, b, path[after:]]))
-            knots = _knots(path)
+            path = without_repetitions(np.vstack([path[:before], a, b, path[after:]]))
+            knots = path_knots(path)
     return _without_redundant_waypoints(path, checker, resolution)
 
 
@@ -62,8 +62,8 @@ def _without_redundant_waypoints(
     return path[kept]
 
 
-def _shortcut(
-    path: FloatArray, knots: Sequence[float], places: Sequence[float]
+def find_shortcut(
+    path: FloatArray, knots: Sequence[float], places: Sequence[float], worth: float
 ) -> tuple[int, FloatArray, FloatArray, int] | None:
     """A straight line between two points on the path that is worth checking.
 
@@ -71,6 +71,7 @@ def _shortcut(
         path: The waypoints, shape (N, dof).
         knots: The length of the path up to each waypoint.
         places: The two points, as shares of the whole length.
+        worth: The share of the path that the line must save.
 
     Returns:
         The number of waypoints before the first point, both points, and the first waypoint after
@@ -81,12 +82,12 @@ def _shortcut(
     if before == after:
         return None
     a, b = (_point(path, knots, *each) for each in ((first, before), (second, after)))
-    if second - first - math.dist(a, b) < WORTH * knots[-1]:
+    if second - first - math.dist(a, b) < worth * knots[-1]:
         return None
     return before, a, b, after
 
 
-def _knots(path: FloatArray) -> list[float]:
+def path_knots(path: FloatArray) -> list[float]:
     """The length of a path up to each waypoint."""
     return [0.0, *np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1)).tolist()]
 
@@ -98,7 +99,7 @@ def _point(path: FloatArray, knots: Sequence[float], length: float, after: int) 
     return path[before] + (path[after] - path[before]) * share
 
 
-def _without_repetitions(path: FloatArray) -> FloatArray:
+def without_repetitions(path: FloatArray) -> FloatArray:
     """The waypoints that are apart from the one before."""
     apart = np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-9
     return path[np.append(True, apart)]

@@ -141,6 +141,17 @@ class HeldConstraints:
         excess = self._excess(self.values(first + (second - first) * shares))
         return bool(excess.max() <= _ROUNDING)
 
+    def are_inside(self, first: FloatArray, second: FloatArray, spacing: float) -> bool:
+        """Whether states on a straight line are as far inside the bounds as projected ones.
+
+        Its first end is taken as checked.
+        """
+        count = max(1, math.ceil(self.space.distance(first, second) / spacing))
+        shares = np.arange(1, count + 1)[:, None] / count
+        values = self.values(first + (second - first) * shares)
+        off = values - np.clip(values, self._inner_lower, self._inner_upper)
+        return bool(np.all(np.abs(off) <= self._slack))
+
     def first_violation(self, states: FloatArray) -> tuple[int, Violation] | None:
         """The first of states (N, dof) that breaks one, and the one that it breaks most."""
         values = self.values(states)

@@ -98,14 +98,17 @@ def find_departure(
     )
 
 
-def path_collision(waypoints: FloatArray, checker: MotionChecker) -> Defect | None:
+def path_collision(
+    waypoints: FloatArray, checker: MotionChecker, resolution: float = FINAL_RESOLUTION
+) -> Defect | None:
     """Where a path without times is blocked first, or None.
 
     Args:
         waypoints: Group positions, shape (N, dof); the first one is free.
-        checker: The checker of the path, at `FINAL_RESOLUTION`.
+        checker: The checker of the path.
+        resolution: The joint-space distance between checked states [rad].
     """
-    blocked = checker.first_block(waypoints, FINAL_RESOLUTION)
+    blocked = checker.first_block(waypoints, resolution)
     if blocked is None:
         return None
     row, state, touches = blocked
