@@ -19,11 +19,7 @@ from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
-from harness.planning.verification.verify import (
-    FINAL_RESOLUTION,
-    VERIFIED_RESOLUTION,
-    Defect,
-)
+from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION, Defect
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.path_planning import PathRequest, PathResult
 from harness.recording.motion_failures import SearchFailure

@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-
-# pyright: reportAttributeAccessIssue=false, reportIndexIssue=false
 from dataclasses import dataclass
 
 import numpy as np

@@ -88,8 +88,8 @@ def joint_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limi
     _, first, second = states
     with np.errstate(divide="ignore"):
         rate = np.min(limits.velocity / np.abs(first), axis=1).astype(np.float32)
-    none = np.zeros_like(first)
-    return Bounds(first, second, none, limits.acceleration, (rate**2).astype(float))
+    squared = (rate**2).astype(float)
+    return Bounds(first, second, np.zeros_like(first), limits.acceleration, squared)
 
 
 def _effort_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:

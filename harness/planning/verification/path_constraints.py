@@ -136,21 +136,18 @@ class HeldConstraints:
 
     def hold_between(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
         """Whether all hold on a straight line, its first end taken as checked."""
-        count = max(1, int(np.ceil(self.space.distance(first, second) / resolution)))
-        shares = np.arange(1, count + 1)[:, None] / count
-        excess = self._excess(self.values(first + (second - first) * shares))
-        return bool(excess.max() <= _ROUNDING)
+        return bool(self._excess(self._between(first, second, resolution)).max() <= _ROUNDING)
 
-    def are_inside(self, first: FloatArray, second: FloatArray, spacing: float) -> bool:
-        """Whether states on a straight line are as far inside the bounds as projected ones.
-
-        Its first end is taken as checked.
-        """
-        count = max(1, math.ceil(self.space.distance(first, second) / spacing))
-        shares = np.arange(1, count + 1)[:, None] / count
-        values = self.values(first + (second - first) * shares)
+    def are_inside(self, first: FloatArray, second: FloatArray, resolution: float) -> bool:
+        """The same for states that are as far inside the bounds as projected ones."""
+        values = self._between(first, second, resolution)
         off = values - np.clip(values, self._inner_lower, self._inner_upper)
         return bool(np.all(np.abs(off) <= self._slack))
+
+    def _between(self, first: FloatArray, second: FloatArray, resolution: float) -> FloatArray:
+        count = max(1, math.ceil(self.space.distance(first, second) / resolution))
+        shares = np.arange(1, count + 1)[:, None] / count
+        return self.values(first + (second - first) * shares)
 
     def first_violation(self, states: FloatArray) -> tuple[int, Violation] | None:
         """The first of states (N, dof) that breaks one, and the one that it breaks most."""
