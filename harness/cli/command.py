@@ -6,7 +6,13 @@ import argparse
 from abc import ABC, abstractmethod
 from typing import ClassVar
 
+from harness.cli.files import run_folder
+from harness.cli.output import complain, say
 from harness.core.registry import Plugin
+from harness.suite.discovery import UsageError
+
+__all__ = ["Command", "UsageError", "complain", "run_folder", "say"]
+"""What a package needs to add a command of its own."""
 
 
 class Command(Plugin, ABC):

@@ -307,6 +307,20 @@ def import_built_in(kinds: Collection[str], words: Collection[str]) -> None:
             found[name]
 
 
+def built_in_class(kind: str, name: str) -> Any:
+    """The class of a built-in plug-in by its name in Python: `MoveTo` of the step `move_to`.
+
+    Raises:
+        AttributeError: There is none.
+    """
+    found = _registries[kind]
+    for word in found.built_in_names if name[:1].isupper() else ():
+        starts = name.lower().startswith(word.replace("_", ""))
+        if starts and found[word].__name__ == name:
+            return found[word]
+    raise AttributeError(f"there is no built-in {noun(kind)} of the class {name}")
+
+
 def register_module(module: ModuleType) -> None:
     """Register every plug-in class that a module defines."""
     for value in list(vars(module).values()):

@@ -13,6 +13,9 @@ from harness.core.errors import HarnessError
 from harness.core.registry import Plugin, described, raised, registry
 from harness.recording.stored_run import StoredRun
 
+__all__ = ["Reporter", "StoredRun"]
+"""What a package needs to add a reporter of its own."""
+
 
 class Reporter(Plugin, ABC):
     """A reporter, selected by `harness run --reporter NAME`.

@@ -9,6 +9,9 @@ from typing import ClassVar
 from harness.core.registry import Plugin, PluginError, registry
 from harness.robot.robot_yaml import RobotYaml, read_robot_yaml
 
+__all__ = ["RobotCollection"]
+"""What a package needs to add robots of its own."""
+
 
 class RobotCollection(Plugin):
     """A folder with a folder for each robot or gripper, as robots/ of this program.

@@ -9,7 +9,11 @@ from typing import Any, ClassVar
 
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.registry import OWN_PACKAGE, Plugin, described, raised, registry
+from harness.language.world import WorldSpec
 from harness.world.imported import ImportedWorld
+
+__all__ = ["ImportedWorld", "WorldFormat", "WorldSpec"]
+"""What a package needs to add a world format of its own."""
 
 
 class WorldFormat(Plugin, ABC):

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from harness.core.types import FloatArray
-from harness.plugins.iktest.strategies import load_chain
-from harness.robot.chain import Chain
+from harness.plugins.iktest.strategies import Chain, load_chain
+
+FloatArray = NDArray[np.float64]
 
 
 @lru_cache(maxsize=1)

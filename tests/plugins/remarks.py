@@ -5,13 +5,17 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from harness.cell.cell import Cell
-from harness.cell.goals import group_of
-from harness.cell.scope import At
-from harness.core.details import Detail
-from harness.language.base import Angle, Name, PositiveDuration
-from harness.language.step import Step
-from harness.ports import JointMotion
+from harness.steps import (
+    Angle,
+    At,
+    Cell,
+    Detail,
+    JointMotion,
+    Name,
+    PositiveDuration,
+    Step,
+    group_of,
+)
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,10 @@ from harness.plugins.iktest.strategies.positions import (
     near_singular_positions,
 )
 from harness.plugins.iktest.strategies.scenarios import scenarios
+from harness.robot.chain import Chain
 
 __all__ = [
+    "Chain",
     "StraightLine",
     "Target",
     "joint_paths",

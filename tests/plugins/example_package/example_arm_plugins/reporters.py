@@ -3,8 +3,7 @@
 import csv
 from pathlib import Path
 
-from harness.recording.stored_run import StoredRun
-from harness.reporting.reporter import Reporter
+from harness.reporting.reporter import Reporter, StoredRun
 
 
 class VerdictTable(Reporter):

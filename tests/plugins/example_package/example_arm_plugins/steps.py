@@ -4,11 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from harness.cell.cell import Cell
-from harness.cell.goals import group_of
-from harness.language.base import Angle
-from harness.language.step import Step
-from harness.ports import JointMotion
+from harness.steps import Angle, Cell, JointMotion, Step, group_of
 
 
 class Wave(Step):

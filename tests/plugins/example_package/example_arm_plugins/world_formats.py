@@ -4,9 +4,7 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from harness.language.world import WorldSpec
-from harness.world.imported import ImportedWorld
-from harness.world.world_format import WorldFormat
+from harness.world.world_format import ImportedWorld, WorldFormat, WorldSpec
 
 
 class Boxes(WorldFormat):
