@@ -160,7 +160,7 @@ how much the grip explains; it now counts the one and has no opinion of the othe
 | `collision` of hand and thing, hand and wall, held thing and wall | 77 | 1,624 |
 | `clearance` | 897 | 100 |
 
-Eight runs are part of each test run; `pytest -m nightly` compares a thousand.
+Three runs are part of each test run; `pytest -m nightly` compares a thousand.
 
 The package's own tests notice errors in this code (`tests/code_mutation`): cosmic-ray changes one
 operator, number or name of expectations, observation, verification, digest or engine at random, and

@@ -125,6 +125,7 @@ def test_a_hand_that_does_not_close_is_named(capsys, folder):
     assert "no pick: 'gripper' is not used as a gripper: the gap" in capsys.readouterr().out
 
 
+@pytest.mark.nightly(but=["0-none of 1 picks"])
 @pytest.mark.parametrize(("seconds", "tried"), [(0, "none of 1 picks"), (600, "none of 19 picks")])
 def test_no_pick_is_tried_after_its_time(tmp_path, capsys, monkeypatch, seconds, tried):
     def trouble(text, candidate):

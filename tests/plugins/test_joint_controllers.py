@@ -63,6 +63,7 @@ def test_an_arm_that_leaves_its_tolerances_fails_and_the_plug_in_is_named(scenar
     assert json.loads(file.read_text())["verdicts"][0]["status"] == "failed"
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("answer", "reason"),
     [
@@ -82,6 +83,7 @@ def test_a_controller_that_breaks_fails_the_step(scenario, answer, reason):
     assert reason in out
 
 
+@pytest.mark.nightly(but=["check"])
 @pytest.mark.parametrize("command", ["run", "check"])
 def test_a_controller_that_fails_at_the_start_is_a_mistake_of_the_file(scenario, command):
     source = WRONG.replace("    period = 0.01\n", "").format(answer="1 / 0")

@@ -181,6 +181,7 @@ def test_a_package_that_cannot_be_loaded_is_named_at_its_verb(tmp_path):
     ) in words
 
 
+@pytest.mark.nightly(but=[2, 1])
 @pytest.mark.parametrize(
     ("module", "text", "reason"),
     [

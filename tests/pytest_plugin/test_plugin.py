@@ -294,6 +294,7 @@ def test_margins_are_in_junit_and_reported_when_they_get_small(pytester, write):
     assert ("worst_margin", "duration, at most 0.1 s") in found
 
 
+@pytest.mark.nightly(but=["-Hold still-imported0"])
 @pytest.mark.parametrize(
     ("keys", "item", "imported"),
     [

@@ -183,7 +183,7 @@ def named(seed, count, cause):
     return {effect.path for effect in found.effects if effect.is_shown}
 
 
-@pytest.mark.nightly(but=["often_red-60-color", "<lambda>-40-x"])
+@pytest.mark.nightly(but=["<lambda>-40-x"])
 @pytest.mark.parametrize(
     ("cause", "count", "true"),
     [

@@ -46,6 +46,7 @@ def test_pairs_that_touch_at_the_start_are_those_of_the_shapes_in_use(
     assert any(note in each for each in arm.notes) == is_allowed
 
 
+@pytest.mark.nightly(but=["parts"])
 @pytest.mark.parametrize("mode", ["hull", "parts"])
 def test_the_arm_moves_away_from_its_start(tmp_path, mode):
     write_cup_and_ball(tmp_path)

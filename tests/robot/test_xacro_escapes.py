@@ -207,6 +207,7 @@ def test_a_format_reaches_no_attribute(tmp_path, template):
     refused(tmp_path, "${template.format(1, [2], name=3)}", content)
 
 
+@pytest.mark.nightly(only=[18])
 @pytest.mark.parametrize("expression", EXHAUSTING)
 def test_what_would_exhaust_the_machine_is_refused(tmp_path, expression):
     refused(tmp_path, f"${{{expression}}}")

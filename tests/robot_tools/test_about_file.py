@@ -41,6 +41,7 @@ def test_a_scenario_that_expects_nothing_passes_and_everything_says_so(tmp_path,
     assert "none is stated" in page
 
 
+@pytest.mark.nightly(but=["expect of a step"])
 @pytest.mark.parametrize("text", SILENT.values(), ids=SILENT)
 def test_a_scenario_that_expects_something_has_no_such_note(tmp_path, text):
     path = written(tmp_path, text)

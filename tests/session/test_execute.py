@@ -173,6 +173,7 @@ def test_a_step_that_waits_ends_with_its_timeout(tmp_path, step, timeout):
     assert result.steps[0].sim_time == pytest.approx(timeout, abs=1e-9)
 
 
+@pytest.mark.nightly(but=["0.2004-0.2"])
 @pytest.mark.parametrize(("seconds", "timeout"), [(0.2, 0.2), (0.2004, 0.2), (0.3, 0.2996)])
 def test_the_rounding_of_a_step_to_samples_is_no_timeout(tmp_path, seconds, timeout):
     result, _ = run(tmp_path, f"\n- wait: {seconds} s\n  timeout: {timeout} s\n")

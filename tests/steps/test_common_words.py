@@ -8,6 +8,7 @@ OM = "open_manipulator_x"
 UR3E = "{model: ur3e, gripper: rh_p12_rn_a}"
 
 
+@pytest.mark.nightly(but=["open_manipulator_x-words0"])
 @pytest.mark.parametrize(
     ("robot", "words"), [(OM, ("closed", "opened")), (UR3E, ("close", "opened"))]
 )
@@ -114,6 +115,7 @@ def test_the_gripper_is_a_body_that_may_touch(tmp_path):
     assert "gripper" in message
 
 
+@pytest.mark.nightly(but=["- pick: part-False"])
 @pytest.mark.parametrize(
     ("steps", "is_noted"),
     [

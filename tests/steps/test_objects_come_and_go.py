@@ -51,6 +51,7 @@ GHOST = "{name: ghost, box: {size: [0.02, 0.02, 0.02]}, in: planning, pose: {xyz
 ATTACHED = "'ghost' is attached: detach it first"
 
 
+@pytest.mark.nightly(but=[0, 3, 4])
 @pytest.mark.parametrize(
     ("steps", "message"),
     [

@@ -67,6 +67,7 @@ def suite(tmp_path, monkeypatch):
     return {result["case"]: result for result in results}
 
 
+@pytest.mark.nightly(but=["True"])
 @pytest.mark.parametrize("is_absolute", [False, True])
 def test_a_node_without_the_files_computes_the_same(suite, tmp_path, is_absolute):
     file = Path("wait.scenario.yaml")
@@ -109,6 +110,7 @@ def test_problems_of_a_file_are_reported_with_the_path_of_the_sender(tmp_path, m
     assert {problem.path for problem in case.problems} == {str(file)}
 
 
+@pytest.mark.nightly(but=["changed0-version"])
 @pytest.mark.parametrize(
     ("changed", "says"),
     [

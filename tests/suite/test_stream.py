@@ -143,9 +143,7 @@ def test_a_result_of_the_same_files_is_kept(project):
     assert "2 of them were known from before" in ran(project, "--resume")
 
 
-@pytest.mark.nightly(
-    but=["a.scenario.yaml-# edited\\n", "part.obj-# edited\\n", "nod.py-# edited\\n"]
-)
+@pytest.mark.nightly(but=["part.obj-# edited\\n"])
 @pytest.mark.parametrize(
     ("name", "text"),
     [

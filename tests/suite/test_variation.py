@@ -239,6 +239,7 @@ def test_an_empty_randomize_draws_nothing(tmp_path, lines):
         load_scenario(file)
 
 
+@pytest.mark.nightly(but=["lines1"])
 @pytest.mark.parametrize(
     "lines",
     [

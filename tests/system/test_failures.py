@@ -117,7 +117,7 @@ def unexpected(file: Path, folder: Path, step_id: str) -> Path:
     return changed
 
 
-@pytest.mark.nightly(but=["goal_in_collision", "timed_out"])
+@pytest.mark.nightly(but=["goal_in_collision"])
 def test_every_failure_is_reported_in_the_words_that_a_person_needs(failed):
     file, run, _ = failed
     steps = [step for step in run.steps if step.status == "expected error"]
@@ -129,7 +129,7 @@ def test_every_failure_is_reported_in_the_words_that_a_person_needs(failed):
             assert any(re.search(pattern, line) for line in said), (file.name, pattern, text)
 
 
-@pytest.mark.nightly(but=["goal_in_collision", "timed_out"])
+@pytest.mark.nightly(but=["goal_in_collision"])
 def test_stages_come_in_order_and_the_first_that_failed_has_the_code(failed):
     _, run, _ = failed
     for step in run.steps:
@@ -142,7 +142,7 @@ def test_stages_come_in_order_and_the_first_that_failed_has_the_code(failed):
         assert step.error_code in codes
 
 
-@pytest.mark.nightly(but=["goal_in_collision", "timed_out"])
+@pytest.mark.nightly(but=["goal_in_collision"])
 def test_a_motion_that_is_refused_never_moves_the_arm(failed):
     """Refused by planning, verification included: no time passes and no command changes."""
     _, run, _ = failed
@@ -155,7 +155,7 @@ def test_a_motion_that_is_refused_never_moves_the_arm(failed):
         assert len(commands) <= 1  # the one that stood already
 
 
-@pytest.mark.nightly(but=["goal_in_collision", "timed_out"])
+@pytest.mark.nightly(but=["goal_in_collision"])
 def test_a_picture_shows_every_state_that_is_spoken_of(failed):
     _, run, folder = failed
     for step in run.steps:

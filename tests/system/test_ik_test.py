@@ -71,6 +71,7 @@ def test_only_the_two_mistakes_part_the_two_files():
     ]  # fmt: skip
 
 
+@pytest.mark.nightly(but=[3, 6])
 @pytest.mark.parametrize(
     ("arguments", "reported"),
     [

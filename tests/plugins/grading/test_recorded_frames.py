@@ -106,6 +106,7 @@ def test_an_object_with_two_senders_costs_what_names_it(recording, tmp_path):
     assert 0 < grade.earned < grade.points
 
 
+@pytest.mark.nightly(but=["0.02-False"])
 @pytest.mark.parametrize(("late", "is_doubted"), [(0.5, True), (0.02, False)])
 def test_frames_that_contradict_the_joint_states_are_noticed(
     recording, stored, tmp_path, late, is_doubted

@@ -78,6 +78,7 @@ def test_the_same_joint_with_limits_is_judged_by_them(tmp_path):
     assert finding.detail.endswith(" rad, limits -3.1 to 3.1")
 
 
+@pytest.mark.nightly(but=["-True"])
 @pytest.mark.parametrize(("limits", "is_kept"), [("", True), (' range="-2 2"', False)])
 def test_a_hinge_of_a_mjcf_without_a_range_has_no_limits(tmp_path, limits, is_kept):
     (tmp_path / "scara.xml").write_text(SCARA.format(limits=limits), encoding="utf-8")
