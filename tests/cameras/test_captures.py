@@ -92,6 +92,7 @@ def test_what_is_nearer_than_the_near_plane_is_looked_through():
         np.testing.assert_allclose(depth_of(run), 0.75, atol=1e-6)
 
 
+@pytest.mark.nightly
 def test_the_share_of_an_outline_follows_what_hides_it():
     camera = eye(width=320, height=240)
     thing = an_object("thing", (0.02, 0.2, 0.2), (1.0, 0.0, 1.0), (0.9, 0, 0, 1))

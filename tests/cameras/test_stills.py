@@ -85,6 +85,7 @@ def test_an_object_of_the_planner_alone_is_translucent(ur3e, backend):
     assert abs(floor[2] - floor[0]) < 15
 
 
+@pytest.mark.nightly
 def test_rays_and_graphics_library_draw_the_same_picture(ur3e):
     run = a_run(ur3e)
     first, second = (draw(ur3e, run, 0, name).astype(float) for name in ("egl", "rays"))

@@ -113,6 +113,7 @@ def test_videos_of_equal_runs_are_equal_bytes():
     assert recorded(run, objects)[1] == recorded(run, objects)[1]
 
 
+@pytest.mark.nightly
 def test_nothing_of_the_video_library_reaches_the_terminal():
     code = (
         "from tests.cameras.test_videos import crossing, recorded\n"

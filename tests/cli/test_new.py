@@ -47,6 +47,7 @@ def test_an_arm_with_a_gripper_gets_a_pick_that_passes(capsys):
     assert code == 0, said
 
 
+@pytest.mark.nightly
 def test_an_arm_of_four_joints_gets_one_too(capsys):
     assert new("open_manipulator_x").steps[0].verb == "pick"
     code, said = runs(capsys)

@@ -150,6 +150,7 @@ def passing_by(n=201):
     return run_with([eye()], [BALL], n=n, poses={"ball": rows})
 
 
+@pytest.mark.nightly
 def test_temporal_words_watch_at_the_cameras_rate_up_to_five_hertz():
     run, objects = passing_by()
     sees = Sees(camera="eye", object="ball")

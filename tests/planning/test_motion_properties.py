@@ -367,6 +367,7 @@ def tilted(rotation):
     return np.zeros(3) if size < 1e-12 else np.arctan2(size, z) / size * np.array([-y, x, 0.0])
 
 
+@pytest.mark.nightly(only=[8, 9, 0])
 @pytest.mark.parametrize("name", PROPERTIES)
 def test_on_a_few_problems(name):
     holds(name, FEW)

@@ -47,6 +47,7 @@ def test_sources_that_do_not_compile_leave_no_half_written_library(copy):
     assert [*copy.glob("*.so")] == [first]
 
 
+@pytest.mark.nightly
 def test_every_file_of_the_sources_belongs_to_the_name(copy):
     names = {compiled(copy).name}
     for file in sorted([*copy.glob("*.h"), *copy.glob("*.c")]):

@@ -45,6 +45,7 @@ def steps(folder):
     return json.loads(file.read_text(encoding="utf-8"))["steps"]
 
 
+@pytest.mark.nightly
 def test_a_solver_is_used_where_it_fits_and_explained_by_its_name(scenario):
     harness(scenario, "run", "pose.scenario.yaml", *SOLVERS)
     pose, position = steps(scenario)

@@ -120,6 +120,7 @@ WRONG = [
 ]  # fmt: skip
 
 
+@pytest.mark.nightly
 def test_a_planner_that_goes_wrong_fails_the_step_and_is_named(wall):
     classes = [MINE.format(number, body) for number, (body, _, _) in enumerate(WRONG)]
     (wall / "mine.py").write_text(HEAD + "".join(classes), encoding="utf-8")
@@ -150,6 +151,7 @@ def test_a_planner_without_a_method_or_a_docstring_is_refused_when_it_is_loaded(
         assert f"the planning pipeline `mine` {problem}" in out
 
 
+@pytest.mark.nightly
 def test_bench_compares_a_planner_with_the_built_in_ones(wall):
     names = ("BalancedConnect", "via_point", "straight_through")
     out = harness(
@@ -165,6 +167,7 @@ def test_bench_compares_a_planner_with_the_built_in_ones(wall):
     assert set(rows["via_point"][0]) == set(rows["BalancedConnect"][0])
 
 
+@pytest.mark.nightly
 def test_bench_says_why_a_planner_fails(wall):
     out = harness(
         wall, "bench", "post.scenario.yaml", "--seeds", "2", "--no-report",
@@ -174,6 +177,7 @@ def test_bench_says_why_a_planner_fails(wall):
     assert "BalancedConnect: " not in out
 
 
+@pytest.mark.nightly
 def test_the_lists_have_the_planner_and_its_package(tmp_path):
     rows = harness(tmp_path, "list", "pipelines", *PLANNERS).splitlines()
     assert [row.split(maxsplit=2)[:2] for row in rows] == [

@@ -141,6 +141,7 @@ def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
     assert "remark the arm stands where it starts" in page
 
 
+@pytest.mark.nightly
 def test_the_reference_page_has_the_steps_of_a_plug_in(tmp_path):
     (tmp_path / "remarks.py").write_text(SOURCE, encoding="utf-8")
     install(tmp_path)

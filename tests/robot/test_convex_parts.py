@@ -107,6 +107,7 @@ def test_a_convex_mesh_is_one_part_without_error():
     assert (len(found.parts), found.excess, found.hull_excess) == (1, 0.0, 0.0)
 
 
+@pytest.mark.nightly
 def test_corners_that_hardly_stand_out_of_a_fine_mesh_are_left_out():
     ball = trimesh.creation.icosphere(subdivisions=5, radius=0.01)
     [part] = decompose(np.asarray(ball.triangles)).parts

@@ -47,6 +47,7 @@ def test_what_needs_no_shapes_is_checked_before_a_mesh_is_read(
     assert not cut("hulls")
 
 
+@pytest.mark.nightly
 def test_a_mesh_that_collides_as_its_hull_is_not_cut(tmp_path, cut):
     write_arm(tmp_path, HOLLOW)
     arm = load_arm(tmp_path, collision="hull")

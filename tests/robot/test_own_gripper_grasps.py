@@ -92,6 +92,7 @@ def test_a_palm_near_the_pads_does_not_touch_what_is_grasped(tmp_path):
     assert result.outcome == "passed", [step.message for step in result.steps]
 
 
+@pytest.mark.nightly
 def test_an_arm_of_five_joints_puts_down_what_its_jaw_took(tmp_path):
     """Its TCP's z axis points out of the hand, so that a pitch of the x axis says nothing."""
     write_arm(tmp_path, FIVE_WITH_TURNING_JAW)

@@ -114,6 +114,7 @@ def test_a_step_without_duration_is_judged_at_its_one_sample(tmp_path):
     )
 
 
+@pytest.mark.nightly
 def test_a_run_that_would_take_too_long_ends_with_the_limit(tmp_path):
     """At a time step of 20 ms: the limit is of time, not of samples. The ball falls slowly."""
     (tmp_path / "coarse.yaml").write_text(

@@ -246,6 +246,7 @@ def test_a_plate_too_thin_to_hold_across_is_taken_across_its_wide_side(tmp_path,
     assert result.outcome == "passed", failures(result)
 
 
+@pytest.mark.nightly
 def test_a_load_too_heavy_to_hold_still_is_reported_with_torques(tmp_path):
     result, record = run(
         tmp_path,

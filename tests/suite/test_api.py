@@ -58,6 +58,7 @@ def run_with_plugins(folder):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.nightly
 def test_the_step_and_the_expectations_of_the_page_run(tmp_path):
     (step,) = (each for each in blocks_of_the_page("python") if "class Remark(Step):" in each)
     (expectations,) = (each for each in blocks_of_the_page("python") if "(Predicate):" in each)

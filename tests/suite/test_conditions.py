@@ -50,6 +50,7 @@ def cases(folder):
     return {each["case"]: (each["seed"], each["values"], each["digest"]) for each in found}
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("campaign")
 def test_stored_conditions_are_the_same_runs_whatever_the_file_draws():
     text = SCENARIO.replace("[-20 cm, 60 cm]", "[-1 m, 1 m]").replace("seed: 4", "seed: 9")

@@ -57,6 +57,7 @@ def test_samples_that_overlap_are_drawn_again_and_counted(file, tmp_path):
     ]
 
 
+@pytest.mark.nightly
 def test_a_sample_alone_is_the_one_that_it_is_among_all(file, tmp_path):
     path = file(REDRAWN)
     among = {case["case"]: case for case in results(path, "--no-report", cwd=tmp_path)["cases"]}
@@ -65,6 +66,7 @@ def test_a_sample_alone_is_the_one_that_it_is_among_all(file, tmp_path):
         assert alone[key] == among["sample1"][key]
 
 
+@pytest.mark.nightly
 def test_samples_that_do_not_overlap_are_those_without_the_option(file, tmp_path):
     apart = POST.replace("[0.42, 0.58]", "[0.6, 0.7]")
     plain = results(file(apart), "--no-report", cwd=tmp_path)
@@ -73,6 +75,7 @@ def test_samples_that_do_not_overlap_are_those_without_the_option(file, tmp_path
     assert all(case["redraws"] == 0 for case in again["cases"])
 
 
+@pytest.mark.nightly
 def test_where_every_draw_overlaps_the_sample_is_invalid_and_names_the_pair(file, tmp_path):
     text = REDRAWN.replace("[0.42, 0.58]", "[0.49, 0.51]").replace("samples: 4", "samples: 1")
     done = harness("run", file(text), "--no-report", cwd=tmp_path)

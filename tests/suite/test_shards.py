@@ -141,6 +141,7 @@ def test_links_of_merged_results_lead_to_where_the_parts_are_now(parts, tmp_path
     assert all((tmp_path / folder / "run.json").is_file() for folder in written)
 
 
+@pytest.mark.nightly
 def test_parts_of_different_suites_are_refused(parts, tmp_path):
     grid = tmp_path / "grid.scenario.yaml"
     grid.write_text(GRID)

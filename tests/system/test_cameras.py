@@ -83,6 +83,7 @@ def test_every_capture_is_a_sample_of_its_step_and_stands_where_the_robot_was(ca
         assert abs(np.dot(shot.pose[3:], expected[3:])) == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.nightly
 def test_pictures_change_no_sample_of_the_physics(tmp_path):
     text = MARKERS.read_text().split("  - ptp:")[0]
     signals = []

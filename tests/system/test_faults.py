@@ -119,6 +119,7 @@ def test_large_encoder_noise_stops_the_arm_and_small_noise_repeats_to_the_bit(tm
     assert receipts(saved)[("sensor_noise", "")][0] == "landed"
 
 
+@pytest.mark.nightly
 def test_late_commands_make_the_arm_lag_by_the_latency(tmp_path):
     steps = "{}- ptp: {{joints: {{shoulder_pan_joint: 1.0}}}}"
     lags = {}

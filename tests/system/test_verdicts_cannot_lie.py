@@ -50,6 +50,7 @@ def test_a_real_pick_passes_both(tmp_path):
     assert [verdict.status for verdict in result.verdicts] == ["passed", "passed"], result
 
 
+@pytest.mark.nightly(but=["friction 0.01-changes1"])
 @pytest.mark.parametrize(
     ("what", "changes"),
     [

@@ -174,6 +174,7 @@ def test_a_mistake_is_reported_at_its_line(tmp_path, text, line, message):
     assert problem.line == line
 
 
+@pytest.mark.nightly
 def test_a_large_scene_is_read_in_seconds_and_a_larger_one_refused(tmp_path):
     rng = np.random.default_rng(1)
     corners = "\n".join(f"{x:.4f} {y:.4f} {z:.4f}" for x, y, z in rng.random((60_000, 3)))

@@ -28,6 +28,7 @@ def test_chunks_may_be_compressed_in_any_way(recording, tmp_path, compression):
     assert reader.read_bag(path, GAZEBO).topics[POSES][1] == len(recording.of(POSES))
 
 
+@pytest.mark.nightly
 def test_qos_in_any_dialect_is_no_reason_to_refuse(recording, tmp_path):
     """Version 9 with words, as Kilted writes it, and then an unreadable version."""
     with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:

@@ -91,6 +91,7 @@ def test_a_graded_recording_has_the_page_of_a_run(recording, tmp_path, capsys):
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.nightly
 def test_what_is_worth_nothing_does_not_lower_a_full_grade(recording, tmp_path, capsys):
     bag = recording.write(tmp_path / "student.mcap")
     assert main(["grade", str(SCENARIO), str(bag), "--objects", POSES]) == 0
@@ -126,6 +127,7 @@ def test_without_poses_of_objects_only_the_robot_is_judged(recording, tmp_path, 
     assert said.splitlines()[-1] == "4 of 14 points; 10 of them cannot be seen in this recording"
 
 
+@pytest.mark.nightly
 def test_a_student_can_record_when_steps_began(recording, tmp_path):
     for time, step in ((4.0, "pick"), (10.1, "hold")):
         content = {"data": json.dumps({"event": "step_started", "step": step})}

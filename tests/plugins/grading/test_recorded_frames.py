@@ -95,6 +95,7 @@ def test_two_programs_that_publish_the_same_joints_are_noticed(recording, stored
     assert grade_bag(SCENARIO, bag, GAZEBO, allowed=["publishers"]).withheld == 0
 
 
+@pytest.mark.nightly
 def test_an_object_with_two_senders_costs_what_names_it(recording, tmp_path):
     still = transform("", "green_cylinder", [0.3, 0.3, 1.2, 1, 0, 0, 0])
     for time in np.arange(4.01, 8, 0.02):
@@ -131,6 +132,7 @@ def test_frames_that_contradict_the_joint_states_are_noticed(
     assert (grade.earned == grade.points) != is_doubted
 
 
+@pytest.mark.nightly
 def test_a_frame_without_a_parent_costs_what_is_in_it(recording, tmp_path):
     for message in recording.of(POSES):
         for each in message.content["transforms"]:

@@ -17,6 +17,7 @@ from tests.plugins.grading.recordings import (
 )
 
 
+@pytest.mark.nightly
 def test_messages_in_disorder_and_twice_change_nothing(recording, tmp_path):
     straight = grade_bag(SCENARIO, recording.write(tmp_path / "straight.mcap"), GAZEBO)
     shuffled = list(recording.messages)
@@ -50,6 +51,7 @@ def test_joint_states_without_stamps_are_where_the_recorder_got_them(recording, 
     assert any("have no stamps" in note for note in grade.notes)
 
 
+@pytest.mark.nightly
 def test_after_a_simulation_was_restarted_only_the_last_attempt_counts(recording, tmp_path):
     """Both attempts have the same stamps: sorting them together would make a third."""
     first = [replace(message) for message in recording.messages]

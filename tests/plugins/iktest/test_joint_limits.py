@@ -56,7 +56,7 @@ def result(report, name):
     return next(each for each in report.properties if each.name == name)
 
 
-@pytest.mark.nightly(but=["4.0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("start", [0.0, -pi, 4.0])
 def test_a_continuous_joint_may_be_answered_at_any_turn(tmp_path, start):
     write_arm(tmp_path)
@@ -66,6 +66,7 @@ def test_a_continuous_joint_may_be_answered_at_any_turn(tmp_path, start):
     assert report.has_passed
 
 
+@pytest.mark.nightly
 def test_the_same_joint_with_limits_is_judged_by_them(tmp_path):
     limited = URDF.replace(
         '"continuous"', '"revolute"').replace('<limit velocity="2" effort="30"/>',
@@ -89,7 +90,7 @@ def test_a_hinge_of_a_mjcf_without_a_range_has_no_limits(tmp_path, limits, is_ke
     assert all("bend at" in each.detail for each in report.findings if each.property == "limits")
 
 
-@pytest.mark.nightly(but=["0.001-1.501"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(("excess", "text"), [(2e-7, "1.5000002"), (1e-3, "1.501")])
 def test_an_excess_is_written_with_the_digits_that_show_it(excess, text):
     def ik(x, y, z, pitch):

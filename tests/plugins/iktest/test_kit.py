@@ -153,6 +153,7 @@ def test_the_same_seed_finds_the_same_and_another_draws_others():
     assert first[0] != other
 
 
+@pytest.mark.nightly
 def test_the_assertion_of_a_test_reports_findings_in_numbers():
     def ik(x, y, z, pitch):
         return correct(x, y, z - 0.017, pitch)

@@ -59,7 +59,7 @@ def test_each_of_two_mistakes_has_its_smallest_example(ik, words, shows):
     assert example[other][0] >= 0.012
 
 
-@pytest.mark.nightly(but=["arctangent"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "ik",
     [

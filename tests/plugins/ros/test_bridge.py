@@ -122,6 +122,7 @@ def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tm
     assert "this controller has no joint 'knee'" in note
 
 
+@pytest.mark.nightly
 def test_cameras_send_pictures_while_someone_watches(tmp_path):
     with bridge(scenario(tmp_path)) as (node, _):
         images = node.listen("/gripper_camera/image", "sensor_msgs/msg/Image")

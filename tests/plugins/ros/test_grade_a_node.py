@@ -55,6 +55,7 @@ def grade_at_ease(capsys, *arguments):
     return code, said
 
 
+@pytest.mark.nightly
 def test_a_node_that_crashes_ends_the_step_and_shows_what_it_printed(capsys):
     code, said = grade_at_ease(capsys, BOX, "--node", f"{LIFT} --crash", "--no-report")
     assert code == 1, said.out

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pytest
 import rosless
 
 from harness.plugins.ros.actions import Status
@@ -88,6 +89,7 @@ def test_bytes_after_a_message_do_not_count():
     assert encoded(again, kind) == encoded(goal, kind)
 
 
+@pytest.mark.nightly
 def test_ten_thousand_points_are_followed(tmp_path):
     times = np.linspace(1e-4, 0.5, 10_000)
     points = [point(t, [0.4 * t, 0, 0, 0], [0.4 * (t < 0.5), 0, 0, 0]) for t in times]
@@ -106,6 +108,7 @@ def test_a_goal_goes_on_when_its_client_dies(tmp_path):
         node.wait(lambda: states and abs(states[-1].position[0] - 0.2) < 0.01)
 
 
+@pytest.mark.nightly
 def test_two_bridges_side_by_side_do_not_hear_each_other(tmp_path):
     (tmp_path / "b").mkdir()
     with (

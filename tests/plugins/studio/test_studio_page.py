@@ -282,6 +282,7 @@ def test_one_step_back_and_to_the_cursor(picked):
     assert served.studio.cell.is_run
 
 
+@pytest.mark.nightly
 def test_a_breakpoint_stops_before_its_step(picked):
     opened, _ = picked
     opened.page.click("#reset")

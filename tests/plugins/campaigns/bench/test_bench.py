@@ -48,6 +48,7 @@ def motions(file):
     return collect(file, PLANNERS, [1, 2, 3], lambda _: None)
 
 
+@pytest.mark.nightly
 def test_every_planner_tries_every_searched_motion_from_every_seed(motions):
     assert [motion.is_searched for motion in motions] == [False, True]
     searched = [motion for motion in motions if motion.is_searched]
@@ -72,6 +73,7 @@ def test_the_numbers_are_the_same_every_time_but_for_the_times(file, motions):
     assert json.dumps(again) == json.dumps(once)
 
 
+@pytest.mark.nightly
 def test_a_trial_is_the_plan_of_a_run_with_the_same_seed(file, motions, tmp_path):
     result = run_case(
         file,
