@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.core.registry import Plugin
+from harness.suite.hooks import SuiteHooks
 
-RunFiles = Callable[[argparse.Namespace, Sequence[Path], str], int]
-"""Runs scenario files as `harness run` does without a mode; the last argument is the Unix socket
-to which cases send their poses, or empty."""
+RunFiles = Callable[[argparse.Namespace, Sequence[Path], SuiteHooks], int]
+"""Runs scenario files with what plug-ins change, and returns the exit code."""
 
 
 class RunMode(Plugin, ABC):
@@ -25,13 +25,24 @@ class RunMode(Plugin, ABC):
         """Add the options of the mode to those of `harness run`."""
 
     @abstractmethod
-    def is_requested(self, arguments: argparse.Namespace) -> bool:
-        """Return whether the options request the mode.
+    def run(
+        self,
+        run_files: RunFiles,
+        arguments: argparse.Namespace,
+        files: Sequence[Path],
+        hooks: SuiteHooks,
+    ) -> int:
+        """Run scenarios in the way of this mode, or as without it where no option requests it.
+
+        Args:
+            run_files: Runs the files as `harness run` does without this mode.
+            arguments: The options of `harness run`.
+            files: The scenario files that the command found.
+            hooks: What other modes change; a mode adds its own changes to them.
+
+        Returns:
+            The exit code of the command.
 
         Raises:
-            UsageError: Options of the mode contradict each other.
+            UsageError: Options of the mode contradict each other, or exclude other ones.
         """
-
-    @abstractmethod
-    def run(self, arguments: argparse.Namespace, files: Sequence[Path], run_files: RunFiles) -> int:
-        """Run the scenarios and return the exit code."""

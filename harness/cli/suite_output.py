@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, output, say, say_text
+from harness.suite.hooks import NO_HOOKS, SuiteHooks
 
 if TYPE_CHECKING:
     from harness.reporting.result import CaseResult
@@ -22,7 +23,7 @@ MOST_FAILURES = 20
 
 
 def write_suite_files(
-    arguments: argparse.Namespace, suite: SuiteRun
+    arguments: argparse.Namespace, suite: SuiteRun, hooks: SuiteHooks = NO_HOOKS
 ) -> tuple[Path | None, Columns | None]:
     """Write the files of a suite, and GitHub's summary of the job where there is one.
 
@@ -35,10 +36,13 @@ def write_suite_files(
     if not has_page(arguments, suite):
         return None, None
     from harness.reporting.suite.history import history_of
-    from harness.suite.conditions import write_results
+    from harness.reporting.suite.write import write_suite
 
     history = history_of(Path(arguments.history)) if arguments.history else {}
-    return write_results(suite, Path(arguments.report_dir), history)
+    folder = Path(arguments.report_dir)
+    if hooks.write is not None:
+        return hooks.write(suite, folder, history)
+    return write_suite(folder, suite.record, suite.exit_code, history)
 
 
 def has_page(arguments: argparse.Namespace, suite: SuiteRun) -> bool:
@@ -109,11 +113,6 @@ def show_results(
         say(f"report: {one}" if len(written) == 1 else f"reports: {arguments.report_dir}")
     for line in annotations_for_action(suite.failures()):
         output().command(line)
-    if len(suite.processors) > 1:
-        say(
-            f"the cases ran on {len(suite.processors)} processor families"
-            f" ({'; '.join(sorted(suite.processors))}): compare their verdicts, not their digests"
-        )
     show_interruption(arguments, suite, seconds)
 
 

@@ -10,19 +10,16 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn, Protocol
 
 from harness.core.lazy import LazySequence
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import folder_name, report_folders
 from harness.suite.header import ScenarioHeader, read_header
+from harness.suite.hooks import NO_HOOKS, SuiteHooks
 from harness.suite.selection import selects
-from harness.suite.shards import PlannedFile, Shard, ShardRecord
-from harness.suite.variation import Case, Cases
-
-if TYPE_CHECKING:
-    from harness.suite.conditions import Conditions, FileConditions
+from harness.suite.variation import Case
 
 
 @dataclass(frozen=True)
@@ -40,12 +37,10 @@ class SuiteRequest:
             samples, the failed ones.
         page: Whether to write the page of a report.
         bag: Whether to write a rosbag2.
-        shard: The part of the suite to run; None runs the whole suite.
         strict: Whether a warning of a verdict fails a case.
         reporters: Names of other reporters that write into the reports.
         nodes: Commands by name that steps may start as ROS 2 nodes.
-        conditions: Samples to run instead of those that the files draw; all of them count.
-        live: The Unix socket to which the cases send their poses; empty sends none.
+        hooks: What plug-ins change of the suite.
     """
 
     expression: str = ""
@@ -57,12 +52,30 @@ class SuiteRequest:
     keep: str = ""
     page: bool = True
     bag: bool = False
-    shard: Shard | None = None
     strict: bool = False
     reporters: Sequence[str] = ()
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
-    conditions: Conditions | None = None
-    live: str = ""
+    hooks: SuiteHooks = NO_HOOKS
+
+
+class FileCaseSequence(Protocol):
+    """The cases of one file, each made when it is read."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, index: int, /) -> Case: ...
+
+    def name(self, index: int) -> str:
+        """The name of a case."""
+        ...
+
+    def index_of(self, name: str) -> int | None:
+        """The index of the case of a name; None where there is none."""
+        ...
+
+    def group(self, index: int) -> str | None:
+        """The name of the parametrised case that a case is a sample of; None where it is none."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -80,7 +93,7 @@ class FileCases:
     file: Path
     header: ScenarioHeader
     folder: Path | None
-    cases: Cases | FileConditions
+    cases: FileCaseSequence
     request: SuiteRequest
 
 
@@ -171,9 +184,9 @@ class Plan(LazySequence[PlannedCase]):
         chosen = (n for n, each in zip(self._numbers, self, strict=True) if is_selected(each))
         return Plan(self.files, array("Q", chosen))
 
-    def part(self, shard: Shard) -> Plan:
-        """The cases of one of several parts."""
-        return Plan(self.files, array("Q", self._numbers[shard.indices]))
+    def slice(self, indices: slice) -> Plan:
+        """The cases at some indices."""
+        return Plan(self.files, array("Q", self._numbers[indices]))
 
 
 def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
@@ -183,8 +196,6 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
         UsageError: Nothing is selected, `-k` cannot be read, or there is nothing to sample.
         SpecError: There is nothing to sample in a file with mistakes.
     """
-    if request.conditions is not None:
-        request.conditions.check(files)
     found = cases_of([(file, read_header(file, request.overrides)) for file in files], request)
     if not found:
         option = f"-k '{request.expression}'" if request.expression else "--case"
@@ -193,8 +204,7 @@ def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
         raise UsageError(f"{option} selects none of {len(files)} scenarios{_names(files, request)}")
     if request.samples is not None and all(each.rate_key is None for each in found):
         _refuse_samples(files, request)
-    shard = request.shard
-    return found if shard is None else found.part(shard)
+    return found if request.hooks.part is None else request.hooks.part(found)
 
 
 def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteRequest) -> Plan:
@@ -207,29 +217,13 @@ def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteReque
     files = [file for file, _ in headers]
     folders = [None] * len(files) if root is None else report_folders(files, root)
     found: list[FileCases] = []
-    for (file, written), folder in zip(headers, folders, strict=True):
-        header = _header(written, request)
-        cases = _cases(file, header, request, is_alone=len(files) == 1)
+    for (file, header), folder in zip(headers, folders, strict=True):
+        cases = header.variation.cases(request.seed, request.samples)
         found.append(FileCases(file, header, folder, cases, request))
-    plan = Plan(found)
+    plan = Plan(found if request.hooks.cases is None else request.hooks.cases(found))
     if not request.cases and not request.expression:
         return plan
     return plan.where(lambda each: _is_selected(each, request))
-
-
-def _header(header: ScenarioHeader, request: SuiteRequest) -> ScenarioHeader:
-    """A file's header; given conditions are all run, so that two campaigns have the same."""
-    if request.conditions is None:
-        return header
-    return replace(header, variation=replace(header.variation, stop_early=False))
-
-
-def _cases(
-    file: Path, header: ScenarioHeader, request: SuiteRequest, *, is_alone: bool
-) -> Cases | FileConditions:
-    if request.conditions is not None:
-        return request.conditions.cases(file, is_alone=is_alone)
-    return header.variation.cases(request.seed, request.samples)
 
 
 def _refuse_samples(files: Sequence[Path], request: SuiteRequest) -> NoReturn:
@@ -281,44 +275,5 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         redraw=fixed.redraw,
         strict=request.strict,
         nodes=request.nodes,
-        live=request.live,
-    )
-
-
-def record_of(
-    files: Sequence[Path], request: SuiteRequest, shard: Shard, root: Path
-) -> ShardRecord:
-    """What a part of a suite has to know of the whole suite.
-
-    Args:
-        files: Every scenario file of the suite.
-        request: The selection of the cases of the whole suite.
-        shard: The part of the suite that this machine runs.
-        root: The part's report folder.
-    """
-    planned: list[PlannedFile] = []
-    for file in files:
-        header = read_header(file, request.overrides)
-        planned.append(
-            PlannedFile(
-                str(file),
-                header.title,
-                header.tags,
-                header.verifies,
-                header.varied,
-            )
-        )
-    return ShardRecord(
-        shard,
-        str(root),
-        tuple(planned),
-        request.expression,
-        tuple(request.cases),
-        request.overrides,
-        request.seed,
-        request.samples,
-        request.strict,
-        tuple(request.reporters),
-        dict(request.nodes),
-        request.conditions.digest if request.conditions is not None else "",
+        live=request.hooks.live,
     )

@@ -14,6 +14,7 @@ from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated
+from harness.suite.hooks import NO_HOOKS, SuiteHooks
 from harness.suite.installation import installation
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import Plan
@@ -37,8 +38,7 @@ class SuiteOptions:
         hard_cap: Wall seconds a case may take; None: the program's own.
         stream: Folder that results are written to as they come; None: nowhere.
         resume: Whether results that are there are taken instead of computed.
-        is_part: Whether the plan is one part of a suite, whose rates are decided after a merge.
-        cluster: The cluster that runs the cases; empty for this machine.
+        hooks: What plug-ins change of the suite.
     """
 
     workers: int = 1
@@ -47,8 +47,7 @@ class SuiteOptions:
     hard_cap: float | None = None
     stream: Path | None = None
     resume: bool = False
-    is_part: bool = False
-    cluster: str = ""
+    hooks: SuiteHooks = NO_HOOKS
 
 
 class SuiteRun:
@@ -62,7 +61,6 @@ class SuiteRun:
         resumed: How many results are from an earlier run.
         is_interrupted: Whether Ctrl-C or SIGTERM ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
-        processors: Processor families of the cluster's nodes; digests are comparable within one.
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
@@ -81,11 +79,10 @@ class SuiteRun:
         self.resumed = 0
         self.is_interrupted = False
         self.missing_parts: tuple[str, ...] = ()
-        self.processors: set[str] = set()
         self.unfinished: dict[int, ProgressEvent] = {}
         self._how = how
         self._stream: Stream | None = None
-        self._sampling = Sampling(plan, is_part=how.is_part)
+        self._sampling = Sampling(plan, is_part=self.is_part)
 
     def collect(
         self,
@@ -144,7 +141,7 @@ class SuiteRun:
     @property
     def is_part(self) -> bool:
         """Whether the plan is one part of a suite."""
-        return self._how.is_part
+        return self._how.hooks.part is not None
 
     @property
     def _is_sampled(self) -> bool:
@@ -155,12 +152,9 @@ class SuiteRun:
         how = self._how
         if how.in_process:
             return run_here(self.jobs, watch=watch, is_needless=self.is_needless)
-        if how.cluster:
-            from harness.suite.ray_cluster import RayCluster  # the extra `cluster`
-
-            cluster = RayCluster(self.jobs, hard_cap=how.hard_cap, is_needless=self.is_needless)
-            self.processors = cluster.processors
-            return cluster.run(how.cluster, how.workers, [each.file for each in self.plan.files])
+        if how.hooks.execute is not None:
+            files = [each.file for each in self.plan.files]
+            return how.hooks.execute(self.jobs, files, self.is_needless)
         return run_isolated(
             self.jobs,
             server,

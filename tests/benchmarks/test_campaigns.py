@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 
 from harness.core.lazy import LazySequence
+from harness.plugins.campaigns.cluster.batch import BatchResult
+from harness.plugins.campaigns.shards import Shard
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
-from harness.suite.batch import BatchResult
 from harness.suite.header import read_header
+from harness.suite.hooks import SuiteHooks
 from harness.suite.plan import SuiteRequest, planned_cases
-from harness.suite.shards import Shard
 from harness.suite.stream import Stream, StreamEntry, entry_of
 from harness.suite.suite_run import SuiteOptions, SuiteRun
 from harness.suite.warm import WarmServer
@@ -89,7 +90,7 @@ def trivial(batch, _files):
 
 @pytest.mark.needs_cluster
 def test_the_memory_of_a_driver_does_not_grow_with_the_number_of_cases(tmp_path, print_row):
-    from harness.suite.ray_cluster import RayCluster
+    from harness.plugins.campaigns.cluster.ray_cluster import RayCluster
 
     count, heading = 100_000, "memory of the driver of a Ray cluster"
     print_row(heading, "cases done", "resident memory")
@@ -108,6 +109,13 @@ def test_the_memory_of_a_driver_does_not_grow_with_the_number_of_cases(tmp_path,
             print_row(heading, str(number), f"{memory:.0f} MB")
 
 
+def on_ray(jobs, files, is_needless):
+    """Run cases on two processes of Ray."""
+    from harness.plugins.campaigns.cluster.ray_cluster import RayCluster
+
+    return RayCluster(jobs, is_needless=is_needless).run("ray", 2, files)
+
+
 @pytest.mark.needs_cluster
 def test_what_ray_costs_a_case(tmp_path, print_row):
     """In turns, so that a busy machine slows both alike; the cluster's start does not count."""
@@ -117,8 +125,9 @@ def test_what_ray_costs_a_case(tmp_path, print_row):
     seconds = {"": [], "ray": []}
     for _ in range(2):
         for cluster, rows in seconds.items():
+            hooks = SuiteHooks(execute=on_ray if cluster else None)
             suite = SuiteRun(
-                planned_cases([file], SuiteRequest()), SuiteOptions(workers=2, cluster=cluster)
+                planned_cases([file], SuiteRequest()), SuiteOptions(workers=2, hooks=hooks)
             )
             ends = []
             with WarmServer() as server:

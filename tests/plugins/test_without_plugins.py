@@ -72,6 +72,9 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     done = core("check", file)
     assert done.returncode == 2
     assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
+    assert part.returncode == 2
+    assert "--shard" in part.stderr
     nodes = core("run", "lessons/04_gripper_alone", "--node", "python student.py", "--no-report")
     assert nodes.returncode == 2
     assert "there is no case runner 'nodes'" in nodes.stdout + nodes.stderr

@@ -6,13 +6,14 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import whole_number
 from harness.cli.command import Command
-from harness.cli.output import complain, only_json_on_stdout, output
-from harness.cli.run_mode import RunMode
+from harness.cli.output import only_json_on_stdout, output
+from harness.cli.run_mode import RunFiles, RunMode
 from harness.cli.shared_options import (
     STRICT,
     add_format,
@@ -35,11 +36,11 @@ from harness.core.lazy import LazySequence
 from harness.core.registry import registry
 from harness.suite.case_runner import case_runner
 from harness.suite.discovery import UsageError, discover
+from harness.suite.hooks import NO_HOOKS, SuiteHooks
 from harness.suite.leftovers import clean_report_folder
 
 if TYPE_CHECKING:
     from harness.reporting.result import CaseResult
-    from harness.suite.conditions import Conditions
     from harness.suite.suite_run import SuiteRun
 
 BRIEF_FROM = 20
@@ -80,21 +81,6 @@ class RunCommand(Command):
         add("--resume", action="store_true", help=text)
         add("--strict", action="store_true", help=STRICT)
         add_report_dir(command)
-        text = (
-            "run part N of COUNT of the suite, or with 'auto' the part that SLURM, Kubernetes or"
-            " GitLab names; `harness merge` joins the parts"
-        )
-        add("--shard", metavar="N/COUNT", default="", help=text)
-        text = (
-            "run the samples of an earlier run, by its conditions.jsonl or its report folder,"
-            " instead of drawing new ones: the same conditions for another version or robot"
-        )
-        add("--conditions", metavar="FILE", default="", help=text)
-        text = (
-            "run the cases on Ray: 'ray' for processes of this machine (-j) or the cluster of"
-            " RAY_ADDRESS, 'ray://HOST:PORT' for another cluster; needs the extra `cluster`"
-        )
-        add("--on", metavar="CLUSTER", dest="cluster", default="", help=text)
         add("--no-report", action="store_true", help="write no report")
         add("--no-page", action="store_true", help="write the report without its page")
         add("--bag", action="store_true", help="write a rosbag2 into the report too")
@@ -112,31 +98,30 @@ class RunCommand(Command):
     def run(self, arguments: argparse.Namespace) -> int:
         """Run scenarios; print steps and outcomes as they come, and failures last."""
         files = discover(arguments.paths)
-        modes = [mode for mode in self._modes if mode.is_requested(arguments)]
-        if len(modes) > 1:
-            first, second = (mode.name for mode in modes[:2])
-            raise UsageError(f"the run modes `{first}` and `{second}` exclude each other")
-        return modes[0].run(arguments, files, _run_files) if modes else _run_files(arguments, files)
+        run_files: RunFiles = _run_files
+        for mode in self._modes:
+            run_files = partial(mode.run, run_files)
+        return run_files(arguments, files, NO_HOOKS)
 
 
-def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str = "") -> int:
+def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> int:
     start = time.monotonic()
     from harness.suite.warm import WarmServer
 
     with WarmServer() as server:
-        if not arguments.in_process and not arguments.cluster:
+        if not arguments.in_process and hooks.execute is None:
             server.open()  # it imports for as long as this process takes to get ready
-        suite = _suite(arguments, files, live)
+        suite = _suite(arguments, files, hooks)
         update_page = _page_updates(arguments, suite)
         if arguments.format == "json":
             with only_json_on_stdout():
                 suite.collect(server, on_result=update_page)
-                write_suite_files(arguments, suite)
+                write_suite_files(arguments, suite, hooks)
                 show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite)
         if arguments.format != "full":
             suite.collect(server, on_result=update_page)
-            write_suite_files(arguments, suite)
+            write_suite_files(arguments, suite, hooks)
             show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
         from harness.cli.progress import ProgressLines
@@ -157,16 +142,15 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], live: str =
 
         suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
-    page, columns = write_suite_files(arguments, suite)
+    page, columns = write_suite_files(arguments, suite, hooks)
     output().status(None)
     show_results(arguments, suite, time.monotonic() - start, page, columns)
     return suite.exit_code
 
 
-def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> SuiteRun:
+def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> SuiteRun:
     from harness.session.run_request import named_commands
-    from harness.suite.plan import SuiteRequest, planned_cases, record_of
-    from harness.suite.shards import shard_of, write_shard_record
+    from harness.suite.plan import SuiteRequest, planned_cases
     from harness.suite.suite_run import SuiteOptions, SuiteRun
 
     if arguments.nodes:
@@ -178,17 +162,9 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
             registry("reporter").find(name)
         except LookupError as error:
             raise UsageError(f"--reporter: {error.args[0]}") from None
-    if arguments.cluster:
-        from harness.suite.ray_cluster import check_cluster
-
-        check_cluster(arguments.cluster)
-        if arguments.in_process:
-            raise UsageError("--on and --in-process exclude each other")
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
-    shard = shard_of(arguments.shard) if arguments.shard else None
-    conditions = _conditions(arguments)
     request = SuiteRequest(
         expression=arguments.expression,
         cases=arguments.cases,
@@ -199,21 +175,15 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
         keep=arguments.keep,
         page=not arguments.no_page,
         bag=arguments.bag,
-        shard=shard,
         strict=arguments.strict,
         reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
-        conditions=conditions,
-        live=live,
+        hooks=hooks,
     )
     plan = planned_cases(files, request)
-    if shard is not None and root is None:
-        complain("note: with --no-report a part leaves nothing to merge; use --no-page instead")
-    if shard is not None and root is not None:
-        write_shard_record(record_of(files, request, shard, root))
-        if conditions is not None:
-            conditions.copy(root)  # a merge has neither the scenario files nor the conditions
-    is_whole = arguments.repeat == 1 and (len(plan) > 1 or shard is not None)
+    if hooks.planned is not None:
+        hooks.planned(files, request)
+    is_whole = arguments.repeat == 1 and (len(plan) > 1 or hooks.part is not None)
     how = SuiteOptions(
         workers=arguments.workers,
         repeat=arguments.repeat,
@@ -221,23 +191,9 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], live: str) -> S
         hard_cap=arguments.hard_cap,
         stream=root if arguments.resume or is_whole else None,
         resume=arguments.resume,
-        is_part=shard is not None,
-        cluster=arguments.cluster,
+        hooks=hooks,
     )
     return SuiteRun(plan, how, files)
-
-
-def _conditions(arguments: argparse.Namespace) -> Conditions | None:
-    """The samples of `--conditions`."""
-    if not arguments.conditions:
-        return None
-    from harness.suite.conditions import read_conditions
-
-    given = {"--seed": arguments.seed, "--samples": arguments.samples}
-    for option, value in given.items():
-        if value is not None:
-            raise UsageError(f"--conditions and {option} exclude each other")
-    return read_conditions(Path(arguments.conditions))
 
 
 def _page_updates(

@@ -11,6 +11,7 @@ from harness.cli.command import Command
 from harness.cli.output import complain
 from harness.cli.shared_options import add_format, add_history, add_report_dir
 from harness.cli.suite_output import show_json, show_lines, show_results, write_suite_files
+from harness.suite.hooks import SuiteHooks
 
 
 class MergeCommand(Command):
@@ -29,7 +30,8 @@ class MergeCommand(Command):
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Merge the parts of a suite into one page, JUnit file and results."""
-        from harness.suite.merge import merge_parts
+        from harness.plugins.campaigns.conditions import write_results
+        from harness.plugins.campaigns.merge import merge_parts
 
         start = time.monotonic()
         suite, record = merge_parts(
@@ -49,7 +51,7 @@ class MergeCommand(Command):
             seed=record.seed,
             samples=record.samples,
         )
-        page, columns = write_suite_files(options, suite)
+        page, columns = write_suite_files(options, suite, SuiteHooks(write=write_results))
         if arguments.format == "json":
             show_json(suite)
         elif arguments.format == "full":

@@ -16,6 +16,7 @@ from harness.cli.run_mode import RunFiles, RunMode
 from harness.cli.suite_output import show_case
 from harness.plugins.ros.options import add_domain
 from harness.suite.discovery import UsageError
+from harness.suite.hooks import SuiteHooks
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -43,20 +44,26 @@ class RemoteMode(RunMode):
         add("--velocity-scaling", metavar="SHARE", type=share_of_one, default=1.0, help=text)
         add_domain(command)
 
-    def is_requested(self, arguments: argparse.Namespace) -> bool:
-        """Return whether `--robot ros2` is given."""
-        is_remote = arguments.robot == "ros2"
-        if not is_remote and (arguments.yes or arguments.velocity_scaling != 1.0):
+    def run(
+        self,
+        run_files: RunFiles,
+        arguments: argparse.Namespace,
+        files: Sequence[Path],
+        hooks: SuiteHooks,
+    ) -> int:
+        """Run scenarios, with `--robot ros2` one of them on the robot."""
+        if arguments.robot == "ros2":
+            simulated = {"--live": "live", "--shard": "shard", "--on": "cluster"}
+            for option, name in {**simulated, "--conditions": "conditions"}.items():
+                if vars(arguments).get(name):
+                    raise UsageError(f"--robot ros2 and {option} exclude each other")
+            return run_on_ros2(arguments, files)
+        if arguments.yes or arguments.velocity_scaling != 1.0:
             raise UsageError(
                 "--yes and --velocity-scaling need --robot ros2; in a file the speed is"
                 " `planning: {max_velocity_scaling_factor: 0.5}`"
             )
-        return is_remote
-
-    def run(self, arguments: argparse.Namespace, files: Sequence[Path], run_files: RunFiles) -> int:
-        """Run one scenario on the robot."""
-        del run_files  # nothing is simulated
-        return run_on_ros2(arguments, files)
+        return run_files(arguments, files, hooks)
 
 
 def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:

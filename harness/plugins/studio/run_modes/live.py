@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -12,6 +13,7 @@ from harness.cli.output import complain
 from harness.cli.run_mode import RunFiles, RunMode
 from harness.plugins.studio.commands.studio import refuse_missing_extra
 from harness.suite.discovery import UsageError
+from harness.suite.hooks import SuiteHooks
 
 LONGEST_WAIT_FOR_PAGE = 10.0
 """Time after which a run with `--live` begins although its page is not open [s]."""
@@ -27,14 +29,18 @@ class LiveMode(RunMode):
         text = "show the cases on a page of this machine while they run; needs the extra `studio`"
         command.add_argument("--live", action="store_true", help=text)
 
-    def is_requested(self, arguments: argparse.Namespace) -> bool:
-        """Return whether `--live` is given."""
-        return arguments.live
-
-    def run(self, arguments: argparse.Namespace, files: Sequence[Path], run_files: RunFiles) -> int:
-        """Run scenarios while a page shows them."""
-        for option, is_given in {"--on": arguments.cluster, "--node": arguments.nodes}.items():
-            if is_given:
+    def run(
+        self,
+        run_files: RunFiles,
+        arguments: argparse.Namespace,
+        files: Sequence[Path],
+        hooks: SuiteHooks,
+    ) -> int:
+        """Run scenarios, with `--live` while a page shows them."""
+        if not arguments.live:
+            return run_files(arguments, files, hooks)
+        for option, name in {"--on": "cluster", "--node": "nodes"}.items():
+            if vars(arguments).get(name):
                 raise UsageError(f"--live and {option} exclude each other")
         refuse_missing_extra()
         from harness.plugins.studio.watch import Watch
@@ -43,4 +49,4 @@ class LiveMode(RunMode):
             complain(f"live: {watch.page}")
             if open_browser(watch.page):
                 watch.wait_for_page(LONGEST_WAIT_FOR_PAGE)
-            return run_files(arguments, files, watch.address)
+            return run_files(arguments, files, replace(hooks, live=watch.address))

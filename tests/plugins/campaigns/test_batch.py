@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from harness.plugins.campaigns.cluster.batch import Batch, Files, unpack_report
+from harness.plugins.campaigns.cluster.named_files import named_files
 from harness.session.run_request import RunRequest
-from harness.suite.batch import Batch, Files, unpack_report
 from harness.suite.installation import Installation, installation
-from harness.suite.named_files import named_files
 
 WORLD = """\
 world: table
@@ -35,7 +35,7 @@ parametrize:
 """
 RUN = """
 import pickle, sys
-from harness.suite.batch import run_batch
+from harness.plugins.campaigns.cluster.batch import run_batch
 batch, files = pickle.load(sys.stdin.buffer)
 result = run_batch(batch, files)
 sys.stdout.buffer.write(pickle.dumps(result))

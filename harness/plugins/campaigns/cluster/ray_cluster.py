@@ -13,13 +13,19 @@ from typing import Any
 from harness.core.errors import HarnessError
 from harness.core.extras import install_command
 from harness.core.registry import VARIABLE as PLUGINS
+from harness.plugins.campaigns.cluster.batch import (
+    Batch,
+    BatchResult,
+    Files,
+    run_batch,
+    unpack_report,
+)
+from harness.plugins.campaigns.cluster.named_files import named_files
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
-from harness.suite.batch import Batch, BatchResult, Files, run_batch, unpack_report
 from harness.suite.cases import Chooser, error_result, never_needless
 from harness.suite.discovery import UsageError
 from harness.suite.installation import installation, search_environment
-from harness.suite.named_files import named_files
 
 LOCAL = "ray"
 CLIENT = "ray://"

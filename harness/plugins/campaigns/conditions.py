@@ -9,7 +9,7 @@ import shutil
 import weakref
 from array import array
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
@@ -21,7 +21,7 @@ from harness.reporting.suite.record import SuiteCase
 from harness.reporting.suite.write import History, write_suite
 from harness.suite.discovery import UsageError
 from harness.suite.folders import place_of
-from harness.suite.plan import PlannedCase
+from harness.suite.plan import FileCases, PlannedCase
 from harness.suite.stream import lines_of, validator
 from harness.suite.variation import Case, as_yaml
 
@@ -145,6 +145,20 @@ class Conditions:
                 raise UsageError(
                     f"--conditions '{self.path}' has none for '{file}'; it has some for: {known}"
                 )
+
+    def replace(self, files: Sequence[FileCases]) -> list[FileCases]:
+        """These samples in place of those that the files draw; all of them count."""
+        is_alone = len(files) == 1
+        return [
+            replace(
+                each,
+                header=replace(
+                    each.header, variation=replace(each.header.variation, stop_early=False)
+                ),
+                cases=self.cases(each.file, is_alone=is_alone),
+            )
+            for each in files
+        ]
 
     def cases(self, file: Path, *, is_alone: bool) -> FileConditions:
         """The cases of a scenario file.

@@ -9,12 +9,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.plugins.campaigns.conditions import read_conditions
+from harness.plugins.campaigns.shards import ShardRecord, read_shard_records
 from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
-from harness.suite.conditions import read_conditions
 from harness.suite.discovery import UsageError
+from harness.suite.hooks import SuiteHooks
 from harness.suite.plan import SuiteRequest, cases_of
-from harness.suite.shards import ShardRecord, read_shard_records
 from harness.suite.stream import (
     FILE,
     Inputs,
@@ -50,13 +51,14 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
         if folder.resolve() == target.resolve():
             raise UsageError(f"'{folder}' holds a part; write the whole into another --report-dir")
     first = records[0]
+    cases = read_conditions(folders[0]).replace if first.conditions else None
     request = SuiteRequest(
         first.expression,
         first.cases,
         dict(first.overrides),
         first.seed,
         first.samples,
-        conditions=read_conditions(folders[0]) if first.conditions else None,
+        hooks=SuiteHooks(cases=cases),
     )
     plan = cases_of([(Path(each.file), each.header) for each in first.files], request)
     suite = SuiteRun(plan, SuiteOptions())

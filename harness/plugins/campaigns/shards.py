@@ -13,8 +13,9 @@ from typing import Any
 from harness.core.files import replaced, writing
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
-from harness.suite.header import ScenarioHeader, stated_variation
+from harness.suite.header import ScenarioHeader, read_header, stated_variation
 from harness.suite.installation import Installation, installation
+from harness.suite.plan import SuiteRequest
 
 FORMAT = "armharness-shard/2"
 FILE = "shard.json"
@@ -167,6 +168,46 @@ class ShardRecord:
         return {name: value for name, value in plain.items() if name not in ("shard", "root")} | {
             "count": self.shard.count
         }
+
+
+def record_of(
+    files: Sequence[Path], request: SuiteRequest, shard: Shard, root: Path, conditions: str
+) -> ShardRecord:
+    """What a part of a suite has to know of the whole suite.
+
+    Args:
+        files: Every scenario file of the suite.
+        request: The selection of the cases of the whole suite.
+        shard: The part of the suite that this machine runs.
+        root: The part's report folder.
+        conditions: Hash of the samples of `--conditions`; empty where the files draw them.
+    """
+    planned: list[PlannedFile] = []
+    for file in files:
+        header = read_header(file, request.overrides)
+        planned.append(
+            PlannedFile(
+                str(file),
+                header.title,
+                header.tags,
+                header.verifies,
+                header.varied,
+            )
+        )
+    return ShardRecord(
+        shard,
+        str(root),
+        tuple(planned),
+        request.expression,
+        tuple(request.cases),
+        request.overrides,
+        request.seed,
+        request.samples,
+        request.strict,
+        tuple(request.reporters),
+        dict(request.nodes),
+        conditions,
+    )
 
 
 def write_shard_record(record: ShardRecord) -> None:
