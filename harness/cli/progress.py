@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from harness.cli.output import Output
+from harness.cli.output import Output, complain
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.terminal import Style, case_line, step_done, step_running
 
@@ -63,6 +63,8 @@ class ProgressLines:
             self._line(index, step_done(replace(event, speed=speed), self._style))
         elif event.result is not None and len(self._cases) == 1:
             self._verdict(index, event.result)
+        if event.is_slow and not self._output.stream.isatty():
+            slow_work_on_stderr(index, event)
         if event.kind in ("step_started", "activity"):
             if not self._is_brief:
                 self._begin(index)
@@ -148,6 +150,12 @@ class ProgressLines:
     def _line(self, index: int, text: str) -> None:
         whose = f"{self._cases[index]}:" if self._is_side_by_side else ""
         self._output.line(f"{whose}{text}")
+
+
+def slow_work_on_stderr(_index: int, event: ProgressEvent) -> None:
+    """Write what takes long on standard error, where there is no status line."""
+    if event.is_slow:
+        complain(event.step)
 
 
 def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:

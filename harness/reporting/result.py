@@ -27,6 +27,7 @@ class ProgressEvent:
         wall_time: The time on a monotonic clock [s]; shown, never judged.
         speed: Simulated over wall seconds of the step that finished; None where it is not known.
         result: The outcome of a case that is judged, before its report is written.
+        is_slow: Whether it is work that users should know of without a status line, too.
     """
 
     kind: Literal["compiled", "step_started", "step_finished", "activity", "judged", "written"]
@@ -39,6 +40,7 @@ class ProgressEvent:
     wall_time: float = 0.0
     speed: float | None = None
     result: CaseResult | None = None
+    is_slow: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,21 +1,16 @@
-"""Decomposes the meshes of a robot, and reports on stderr what takes long."""
+"""Decomposes the meshes of a robot, and reports what takes long."""
 
 from __future__ import annotations
 
-import sys
-import threading
 import time
-from collections.abc import Generator, Iterable
-from contextlib import contextmanager
+from collections.abc import Iterable
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
+from harness.core.slow_work import PATIENCE, reported
 from harness.robot.description import Link
 from harness.robot.mesh_file import decomposition_of
 from harness.robot.urdf.urdf import MeshElements
-
-PATIENCE = 2.0
-"""Time after which the mesh that is decomposed is reported [s]."""
 
 
 def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
@@ -43,15 +38,3 @@ def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
             if element is None:
                 raise
             element.refuse(f"link '{link}': mesh {error}", at="filename")
-
-
-@contextmanager
-def reported(text: str, *, after: float) -> Generator[None]:
-    """Print a line on stderr if what runs inside takes longer than some seconds."""
-    timer = threading.Timer(after, print, (text,), {"file": sys.stderr, "flush": True})
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()

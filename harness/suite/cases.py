@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, SpecError
 from harness.core.interruption import is_interrupted
+from harness.core.slow_work import reported_to
 from harness.reporting.result import CaseResult, ProgressEvent
 from harness.session.run_request import RunRequest
 from harness.suite.case_runner import case_runner
@@ -52,7 +53,11 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
     prepare_process()
     from harness.core.inputs import inputs_read
 
-    return replace(_run_job(job, notify), inputs=inputs_read())
+    def slow(text: str) -> None:
+        notify(ProgressEvent("activity", 0, 0, text, "", 0.0, "", is_slow=True))
+
+    with reported_to(slow):
+        return replace(_run_job(job, notify), inputs=inputs_read())
 
 
 def _run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:

@@ -24,6 +24,7 @@ import selectors
 import signal
 import socket
 import sys
+import threading
 import traceback
 import warnings
 from collections.abc import Callable, Sequence
@@ -199,10 +200,12 @@ def _child(call: bytes, arguments: bytes, pipe: int, log: int) -> None:
         from multiprocessing.connection import Connection
 
         with Connection(pipe, readable=False) as connection:
+            sending = threading.Lock()
             try:
 
                 def notify(message: object) -> None:
-                    connection.send(("heard", message))
+                    with sending:
+                        connection.send(("heard", message))
 
                 function: Callable[..., Any] = pickle.loads(call)
                 result = function(*pickle.loads(arguments), notify)

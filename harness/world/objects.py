@@ -22,13 +22,13 @@ from harness.core.geometry import (
     Shape,
     Sphere,
 )
+from harness.core.slow_work import reported
 from harness.core.solids import is_inertia_of_a_body, point_inertia
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import Light, World, WorldObject
 from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.robot.collision_shapes import collision_shapes
-from harness.robot.decomposed_meshes import PATIENCE, reported
 from harness.robot.mesh_file import shape_solid, with_hull
 from harness.world.markers import plate, printed
 
@@ -58,7 +58,7 @@ def resolve_object(
     parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
     given = tuple(_shape(part, spec.color, base_dir) for part in parts)
     try:
-        with reported(f"computing convex shapes of '{spec.name}'", after=PATIENCE):
+        with reported(f"computing convex shapes of '{spec.name}'"):
             shapes = tuple(map(with_hull, collision_shapes(given, collision)))
     except RobotError as error:
         raise ObjectUnusableError(str(error)) from error

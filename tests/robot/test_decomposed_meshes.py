@@ -1,12 +1,15 @@
 """Mistakes are reported before meshes are cut, hulls are not cut, and long work is reported."""
 
 import time
+from functools import partial
 
 import pytest
 
+from harness.cli.main import main
 from harness.core.errors import RobotError, SpecError
+from harness.core.slow_work import reported, reported_to
 from harness.robot.collision_shapes import mesh_shapes
-from harness.robot.decomposed_meshes import decompose_meshes, reported
+from harness.robot.decomposed_meshes import decompose_meshes
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
 from tests.robot.vessels import vessel, write_obj
 
@@ -91,6 +94,38 @@ def test_work_that_takes_long_is_reported_on_stderr(capfd):
     with reported("not this", after=600):
         pass
     assert capfd.readouterr().err == "computing convex shapes of bin.obj, 1 of 1\n"
+
+
+def test_work_that_takes_long_is_reported_to_who_wants_to_know(capfd):
+    told = []
+    with reported_to(told.append):
+        with reported("computing", after=0.01):
+            time.sleep(0.5)
+        with reported("not this", after=600):
+            pass
+    assert (told, capfd.readouterr().err) == (["computing"], "")
+
+
+@pytest.mark.parametrize(
+    ("form", "words"), [("full", ()), ("json", ()), ("full", ("--in-process",))]
+)
+def test_a_run_into_a_pipe_says_what_takes_long(tmp_path, monkeypatch, capfd, form, words):
+    """In a case's process, too, as the server that forks it has the shortened patience."""
+    monkeypatch.setattr("harness.world.objects.reported", partial(reported, after=0.0))
+    if not words:
+        (tmp_path / f"hasty_{form}.py").write_text(
+            "from functools import partial\n"
+            "import harness.world.objects as objects\n"
+            "objects.reported = partial(objects.reported, after=0.0)\n"
+        )
+        words = ("--plugin", str(tmp_path / f"hasty_{form}.py"))
+    file = tmp_path / "a.scenario.yaml"
+    file.write_text(
+        "scenario: a bin\nrobot: open_manipulator_x\nsteps: [{wait: 0.1}]\n"
+        "objects: [{name: bin, static: true, mesh: {file: bin.obj}, pose: {xyz: [1, 0, 0]}}]\n"
+    )
+    assert main(["run", str(file), "--no-report", "--format", form, *words]) == 0
+    assert "computing convex shapes of 'bin'\n" in capfd.readouterr().err
 
 
 def test_no_meshes_are_no_work():

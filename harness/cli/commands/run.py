@@ -113,18 +113,19 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
             server.open()  # it imports for as long as this process takes to get ready
         suite = _suite(arguments, files, hooks)
         update_page = _page_updates(arguments, suite)
+        from harness.cli.progress import ProgressLines, slow_work_on_stderr
+
         if arguments.format == "json":
             with only_json_on_stdout():
-                suite.collect(server, on_result=update_page)
+                suite.collect(server, slow_work_on_stderr, update_page)
                 write_suite_files(arguments, suite, hooks)
                 show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite)
         if arguments.format != "full":
-            suite.collect(server, on_result=update_page)
+            suite.collect(server, slow_work_on_stderr, update_page)
             write_suite_files(arguments, suite, hooks)
             show_interruption(arguments, suite, time.monotonic() - start)
             return show_lines(arguments, suite)
-        from harness.cli.progress import ProgressLines
         from harness.reporting.terminal import Style
 
         names = _case_names(arguments, suite)
