@@ -15,6 +15,7 @@ from harness.core.errors import HarnessError, Problem, SpecError
 from harness.core.geometry import Rgba
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.core.untrusted_json import parse_json
 from harness.recording.arrays import is_signal, signals_from
 from harness.recording.consistency import (
     TABLES,
@@ -96,7 +97,7 @@ def _read_document(path: Path) -> dict[str, Any]:
     """The content of run.json, of this version."""
     text = _read_text(path)
     try:
-        document: Any = json.loads(text)
+        document: Any = parse_json(text)
         if LONE_SURROGATE in text.lower():
             json.dumps(document, ensure_ascii=False).encode()
     except json.JSONDecodeError as error:

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from harness.core.errors import Problem
 from harness.core.quantity import split_quantity
+from harness.core.untrusted_json import parse_json
 from harness.language.files.mistakes import value_text
 from harness.language.files.source import Entry, Located, located
 from harness.language.reading.case_keys import case_entries
@@ -137,7 +138,7 @@ def _drawn(entry: Entry, text: str) -> Located | None:
     """A case's random value, standing where the file says what it is drawn from."""
     distribution = _distribution(entry)
     try:
-        value = json.loads(text)
+        value = parse_json(text)
     except ValueError:
         return None
     if distribution is None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.files import replaced, writing
+from harness.core.untrusted_json import parse_json
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader, read_header, stated_variation
@@ -241,7 +242,7 @@ def read_shard_records(folders: Sequence[Path]) -> list[ShardRecord]:
 def _read(folder: Path) -> ShardRecord:
     path = folder / FILE
     try:
-        entry = json.loads(path.read_text(encoding="utf-8"))
+        entry = parse_json(path.read_bytes())
         if entry.pop("format") != FORMAT:
             raise UsageError(f"'{path}' is not of the format {FORMAT}")
         return from_plain(entry, ShardRecord)

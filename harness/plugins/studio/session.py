@@ -19,6 +19,7 @@ from websockets.exceptions import ConnectionClosed
 
 from harness.core.errors import HarnessError, SpecError
 from harness.core.printable import printable
+from harness.core.untrusted_json import parse_json
 
 FRAME = 1 / 30
 """Time between two pictures of the scene [s]."""
@@ -256,7 +257,7 @@ def guarded(action: Callable[[], Message]) -> Message:
 
 def _parsed(text: str | bytes) -> Message | None:
     try:
-        message: object = json.loads(text)
+        message: object = parse_json(text)
     except ValueError:
         return None
     return message if isinstance(message, dict) else None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
 
+from harness.core.untrusted_json import parse_json
 from harness.reporting.suite.record import FORMAT
 
 MOST_RUNS = 30
@@ -37,7 +37,7 @@ def _runs(folder: Path) -> Iterator[dict[Key, float | None]]:
         try:
             if file.stat().st_size > MOST_BYTES:
                 continue
-            document = cast("dict[str, Any]", json.loads(file.read_text(encoding="utf-8")))
+            document = cast("dict[str, Any]", parse_json(file.read_bytes()))
             if document["format"] != FORMAT:
                 continue
             yield {(case["file"], case["case"]): _share(case) for case in document["cases"]}
@@ -47,4 +47,4 @@ def _runs(folder: Path) -> Iterator[dict[Key, float | None]]:
 
 def _share(case: dict[str, Any]) -> float | None:
     margin = case.get("worst_margin")
-    return None if margin is None else margin["share"]
+    return None if margin is None else float(margin["share"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from harness.plugins.grading.bag.content import BagContent, BagTopics, RecordedTrack, Tracks
 from harness.plugins.grading.bag.message_files import RawMessage, bag_error
 from harness.plugins.grading.bag.storage import bag_files, messages
+from harness.core.untrusted_json import parse_json
 
 MOST_NUMBERS = 20_000_000
 """Most numbers kept of one recording (160 MB); an hour of ten joints at 100 Hz needs half of it."""
@@ -212,7 +212,7 @@ class _Reader:
         self._put(self._track(edges, edge, 7), header, message, row)
 
     def _event(self, content: Any, message: RawMessage) -> None:
-        event = json.loads(content.data)
+        event = parse_json(content.data)
         if not isinstance(event, dict):
             raise _Unusable("it is no event")
         self._kept += NEW_KEY + len(content.data)
