@@ -90,11 +90,15 @@ def add_format(command: argparse.ArgumentParser) -> None:
 
 
 def add_report_dir(
-    command: argparse.ArgumentParser, written: str = "write reports into this folder"
+    command: argparse.ArgumentParser,
+    written: str = "write reports into this folder",
+    *,
+    is_for_nodes: bool = False,
 ) -> None:
-    """`--report-dir DIR`."""
-    text = f"{written} (default: reports)"
-    command.add_argument("--report-dir", metavar="DIR", default="reports", help=text)
+    """`--report-dir DIR`; of a command whose other input is recordings, only `is_for_nodes`."""
+    text = f"{written} (default: {'with --node, ' if is_for_nodes else ''}reports)"
+    default = None if is_for_nodes else "reports"
+    command.add_argument("--report-dir", metavar="DIR", default=default, help=text)
 
 
 def add_hard_cap(command: argparse.ArgumentParser, run: str) -> None:
@@ -121,10 +125,12 @@ def add_node(command: argparse.ArgumentParser, allowed: str) -> None:
     )
 
 
-def add_report_options(command: argparse.ArgumentParser) -> None:
+def add_report_options(
+    command: argparse.ArgumentParser, *, grades_recordings: bool = False
+) -> None:
     """The seed and the report of commands that run one case."""
     add_seed(command)
-    add_report_dir(command)
+    add_report_dir(command, is_for_nodes=grades_recordings)
     command.add_argument("--no-report", action="store_true", help="write no report")
     text = "write the report without its page"
     command.add_argument("--no-page", action="store_true", help=text)

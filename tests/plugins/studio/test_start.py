@@ -36,3 +36,15 @@ def test_a_base_that_is_no_place_is_refused(words, capsys):
 def test_a_scenario_has_its_own_base():
     with pytest.raises(UsageError, match="--base are for a robot"):
         begun("01_open_manipulator_first_steps", "--base", "0", "0", "1")
+
+
+@pytest.mark.parametrize(
+    "words", [("--world", "lesson_ur"), ("--gripper", "rh_p12_rn_a"), ("--base", "0", "0", "1")]
+)
+def test_saved_work_is_not_opened_as_if_it_had_the_options(tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    saved = tmp_path / "ur3e_by_hand.scenario.yaml"
+    saved.write_text(begun("ur3e"))
+    with pytest.raises(UsageError, match=r"'ur3e_by_hand\.scenario\.yaml' exists"):
+        begun("ur3e", *words)
+    assert begun("ur3e") == saved.read_text()

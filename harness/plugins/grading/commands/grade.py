@@ -46,8 +46,8 @@ class GradeCommand(Command):
         add("bag", metavar="BAG", nargs="?", default="", help=text)
         for runner in _runners():
             runner.add_options(command)
-        add_report_options(command)
-        command.set_defaults(report_dir=None, nodes=[])
+        add_report_options(command, grades_recordings=True)
+        command.set_defaults(nodes=[])
         text = "give the nodes this simulated time where no step is `external` (default: 60)"
         add("--timeout", metavar="SECONDS", type=seconds, default=60.0, help=text)
         text = "read the joint positions from this topic (default: /joint_states)"

@@ -144,6 +144,11 @@ def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     stem = Path(word).name.partition(".")[0] or "robot"
     path = Path(f"{stem}_by_hand{SUFFIX}")
     if path.exists():
+        if arguments.gripper or arguments.world or arguments.base is not None:
+            raise UsageError(
+                f"'{path}' exists and has a robot and a world of its own: rename or delete it, or"
+                " leave --gripper, --world and --base out to go on with it"
+            )
         return path, path.read_text(encoding="utf-8")
     given: dict[str, Plain] = {key: value for key, value in robot.items() if value}
     if arguments.base is not None:
