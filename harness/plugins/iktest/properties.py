@@ -27,6 +27,7 @@ from harness.plugins.iktest.strategies.round_poses import round_poses_around
 from harness.plugins.iktest.strategies.tasks import manipulability
 from harness.plugins.iktest.trial import Flaw, SolverTrial
 from harness.robot.chain import Chain
+from harness.strategies.round_poses import round_poses_around, round_reachable_poses
 
 JUMP = 0.2  # [rad or m] of a joint between two targets 2 mm apart, looked into
 HALVINGS = 8  # of a step with a jump in it: a jump is what does not become smaller
@@ -68,6 +69,10 @@ def within_reach(trial: SolverTrial) -> st.SearchStrategy[Target]:
         near_singular_positions(chain, trial.task),
     )
     return reachable_poses(chain, positions)
+
+
+def _within_reach_or_round(trial: SolverTrial) -> st.SearchStrategy[Target]:
+    return st.one_of(within_reach(trial), round_reachable_poses(trial.chain, trial.task))
 
 
 def _beyond_reach(trial: SolverTrial) -> st.SearchStrategy[Target]:
@@ -240,9 +245,9 @@ def _line_size(trial: SolverTrial, line: StraightLine) -> tuple[float, ...]:
 
 PROPERTIES = (
     Property("reaches", "forward kinematics of every answer is the target",
-             within_reach, _reaches, _target_size, needs=("answered",)),
+             _within_reach_or_round, _reaches, _target_size, needs=("answered",)),
     Property("answers", "a target within reach is answered, in finite numbers",
-             within_reach, _answers, _target_size),
+             _within_reach_or_round, _answers, _target_size),
     Property("limits", "answers keep the joint limits",
              within_reach, _limits, _target_size, needs=("answered",)),
     Property("refuses", "a target out of reach is refused", _beyond_reach, _refuses, _target_size),

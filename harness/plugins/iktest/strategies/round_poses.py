@@ -15,11 +15,14 @@ from harness.plugins.iktest.strategies.tasks import Task, natural_task
 from harness.robot.chain import Chain
 from harness.robot.forward_kinematics import rotations_about
 
+
 STEP = 0.01
 """Coordinates that are multiples of this count as even [m]."""
 
 UP = np.array([0.0, 0.0, 1.0])
 PITCH_STEP = np.pi / 4
+EXACT = 1e-9
+"""Distance and turn within which positions reach a pose [m, rad]: far below every tolerance."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +71,56 @@ def round_poses_around(chain: Chain, task: Task | None = None) -> Targets:
     )
 
 
+def round_reachable_poses(chain: Chain, task: Task | None = None) -> Targets:
+    """Poses at round values as of `round_poses_around` that the arm can take, with positions.
+
+    Those near to a reachable pose are reached by Newton's method; where it does not converge
+    within the limits, the reachable pose is the target as it is.
+    """
+    fixed = task or natural_task(chain)
+
+    def target(positions: FloatArray, rounding: Rounding) -> Target:
+        own = chain.link_pose(positions)
+        pose, turn = _turned_and_rounded(chain, fixed, own, rounding)
+        for way in dict.fromkeys(
+            (turn, -turn)
+        ):  # the first joint may turn either way about the vertical
+            turned = positions.copy()
+            turned[0] += np.arctan2(np.sin(way), np.cos(way))
+            reaching = _reaching(chain, fixed, pose, turned)
+            if reaching is not None:
+                return Target(pose, reaching)
+        return Target(own, positions)
+
+    return st.builds(target, joint_positions(chain), ROUNDINGS)
+
+
+def _reaching(chain: Chain, task: Task, pose: SE3, start: FloatArray) -> FloatArray | None:
+    """Positions within the limits that reach a pose, from those near to it; None if not found."""
+    reach, found, last = max(chain.farthest()[1], 1e-6), start, np.inf
+    while True:
+        here = chain.link_pose(found)
+        error = task_error(task, pose, here, reach)
+        size = float(np.linalg.norm(error))
+        if max(miss(task, pose, here)) < EXACT:
+            inside = np.all((found >= chain.lower) & (found <= chain.upper))
+            return found if inside else None
+        if not size < last:
+            return None
+        last = size
+        jacobian = task_jacobians(chain, task, found[None])[0]
+        found = found + np.linalg.lstsq(jacobian, error, rcond=None)[0]
+
+
 def _rounded(chain: Chain, task: Task, pose: SE3, rounding: Rounding) -> SE3:
     """A pose at round values, turned about the vertical to its heading."""
+    return _turned_and_rounded(chain, task, pose, rounding)[0]
+
+
+def _turned_and_rounded(
+    chain: Chain, task: Task, pose: SE3, rounding: Rounding
+) -> tuple[SE3, float]:
+    """A pose at round values, and how far it was turned about the vertical [rad]."""
     pivot, place, turn = chain.farthest()[0], pose.translation.copy(), 0.0
     even = STEP * np.round(place / STEP)
     if rounding.heading >= 0:
@@ -90,7 +141,7 @@ def _rounded(chain: Chain, task: Task, pose: SE3, rounding: Rounding) -> SE3:
         rotation = _along_axes(rotation)
     elif rounding.is_turned:
         rotation = _headed(rotation, PITCH_STEP * round(pitch_of(rotation) / PITCH_STEP))
-    return SE3(rotation, place)
+    return SE3(rotation, place), turn
 
 
 def _along_axes(rotation: FloatArray) -> FloatArray:
