@@ -19,7 +19,8 @@ from harness.recording.signals import VideoRecord
 from harness.robot.description import RobotDescription
 
 MOST_FRAMES = 1500
-"""Most frames of one video: a minute at 25 Hz. Longer runs get a lower rate and a finding."""
+"""Most frames of one video, up to HD: a minute at 25 Hz; fewer of larger pictures. Longer runs get
+a lower rate and a finding."""
 
 
 def record_videos(
@@ -48,11 +49,12 @@ def record_videos(
     for name, requested in rates.items():
         camera = cameras[name]
         duration = float(run.signals.times[-1])
-        rate = min(requested, MOST_FRAMES / duration) if duration > 0 else requested
+        most = int(MOST_FRAMES / camera.pictures_counted)
+        rate = min(requested, most / duration) if duration > 0 else requested
         if rate < requested:
             message = (
                 f"{name} is recorded at {rate:.3g} Hz instead of {requested:g} Hz: "
-                f"a video has at most {MOST_FRAMES} frames"
+                f"a video of this size has at most {most} frames"
             )
             notes.append(Finding("video_rate", message))
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)

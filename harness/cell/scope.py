@@ -141,7 +141,8 @@ class Scope:
         added: Objects that steps added and nothing removed.
         cameras: Every camera, by name.
         requested_time: Simulated time that steps have requested as a number [s].
-        requested_pictures: The number of camera pictures that steps have requested.
+        requested_pictures: The number of camera pictures that steps have requested; a picture
+            beyond HD counts by its pixels.
         problems: The problems, to which mistakes are added.
         link_pose: T_world_link at joint positions in description order.
     """
@@ -161,7 +162,7 @@ class Scope:
         self.added: dict[str, None] = {}
         self.cameras: dict[str, Camera] = {}
         self.requested_time = 0.0
-        self.requested_pictures = 0
+        self.requested_pictures = 0.0
         self.step_ids: dict[str, None] = {}
         self._lacks_gripper = False
 
@@ -216,13 +217,15 @@ class Scope:
                 needs=(),
             )
 
-    def take_picture(self, loc: Loc) -> None:
+    def take_picture(self, camera: str, loc: Loc) -> None:
         """Count a camera picture that a step requests; all of them must be drawn after the run."""
-        self.requested_pictures += 1
-        if self.requested_pictures == MOST_CAPTURES + 1:
+        known, before = self.cameras.get(camera), self.requested_pictures
+        self.requested_pictures += 1.0 if known is None else known.pictures_counted
+        if before <= MOST_CAPTURES < self.requested_pictures:
             self.problems.add(
                 loc,
-                f"the steps take more than {MOST_CAPTURES} pictures, repeated ones counted",
+                f"the steps take more than {MOST_CAPTURES} pictures, repeated ones counted,"
+                " those beyond 1280 x 720 by their pixels",
                 "take fewer, or make it several scenarios; `videos` records a camera at a rate",
                 needs=(),
             )

@@ -14,6 +14,10 @@ OPTICAL = SE3(np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), n
 """T_camera_optical: from x forward, z up to z forward, x right, y down (ROS REP 103)."""
 
 
+HD = 1280 * 720
+"""Pixels of the largest picture for which limits on the number of pictures hold as they are."""
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """A camera that is fixed to a frame, looks along its +x axis and has +z up in the picture.
@@ -49,6 +53,11 @@ class Camera:
     update_rate: float = 20.0
     optical_frame_id: str = ""
     jpeg_quality: int = 80
+
+    @property
+    def pictures_counted(self) -> float:
+        """What one picture counts towards limits on the number of pictures: 1, more beyond HD."""
+        return max(1.0, self.width * self.height / HD)
 
     @property
     def focal_length(self) -> float:

@@ -33,7 +33,7 @@ class Capture(Step):
 
     def check(self, at: At) -> None:
         at.scope.check_camera(self.camera, at.key("camera"))
-        at.scope.take_picture(at.loc)
+        at.scope.take_picture(self.camera, at.loc)
 
     def execute(self, cell: Cell) -> None:
         """Hold the last commands until the camera takes its next picture.

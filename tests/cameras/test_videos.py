@@ -103,8 +103,15 @@ def test_a_long_run_is_recorded_more_slowly_and_says_so():
     video, _, (note,) = recorded(replace(run, cameras=(tiny,)), objects)
     assert len(video.times) <= MOST_FRAMES + 1
     assert note.message == (
-        "eye is recorded at 5 Hz instead of 10 Hz: a video has at most 1500 frames"
+        "eye is recorded at 5 Hz instead of 10 Hz: a video of this size has at most 1500 frames"
     )
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "counted"), [(1280, 720, 1.0), (720, 1280, 1.0), (1920, 1080, 2.25)]
+)
+def test_pictures_beyond_hd_count_by_their_pixels(width, height, counted):
+    assert replace(CAMERA, width=width, height=height).pictures_counted == counted
 
 
 def test_videos_of_equal_runs_are_equal_bytes():

@@ -267,11 +267,13 @@ SRDF_ROWS = (
           lambda arm: any("outside its limits" in note for note in arm.notes)),
     refused("a state of a joint that is not there", "", END,
              STATE.format("3").replace("bend", "bond") + END, "unknown joint 'bond'"),
-    ignored("a hand's state without its joint",
-             "reported; where a `robot.yaml` describes the gripper it is refused", END,
-             TOOL.format("hand") + '<group name="hand"><joint name="left_joint"/></group>'
-             '<group_state name="shut" group="hand"/>' + END,
-             "'shut' of 'hand' left out: 'left_joint' is not placed"),
+    read("a hand's state without its joint",
+          "left out, reported; where a `robot.yaml` describes the gripper it is refused", END,
+          TOOL.format("hand") + '<group name="hand"><joint name="left_joint"/></group>'
+          '<group_state name="shut" group="hand"/>' + END,
+          lambda arm: any(
+              note.endswith("'shut' of 'hand' left out: 'left_joint' is not placed")
+              for note in arm.notes)),
     ignored("several values of a joint there", "of a virtual or a fixed one; it stands still",
              BENT, BENT + '<joint name="held" value="0 0 1"/>'),
     read("`<end_effector>`", "a gripper, if one joint closes two sides; else reported", END,

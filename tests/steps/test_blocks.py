@@ -114,3 +114,12 @@ def test_pictures_that_multiply_are_bounded(tmp_path, times, captures):
         f"the steps take more than {MOST_CAPTURES} pictures"
     ]
     assert not problems(tmp_path, steps.replace(str(times), "20"), rest=cameras)
+
+
+def test_large_pictures_count_by_their_pixels(tmp_path):
+    """Each counts as 4.55 pictures of 1280 x 720."""
+    large = "cameras:\n  - {name: eye, image: {width: 2048, height: 2048}}\n"
+    steps = "- repeat: {times: %d, steps: [capture: eye]}"
+    assert not problems(tmp_path, steps % 219, rest=large)
+    [(_, message)] = problems(tmp_path, steps % 220, rest=large)
+    assert message.endswith("those beyond 1280 x 720 by their pixels")
