@@ -12,8 +12,13 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from harness.core.files import is_dir, path_exists
+
 INSTALLED = ("site-packages", "dist-packages")
 """Folders of installed packages, whose versions count instead of their files."""
+
+FOLDER = "folder"
+"""What stands for the hash of a folder: it is not the empty one of a place without anything."""
 
 _read: dict[str, str] = {}
 
@@ -32,6 +37,17 @@ def read_input(path: Path) -> bytes:
         raise
     _read[key] = hashlib.sha256(content).hexdigest()
     return content
+
+
+def is_there(path: Path) -> bool:
+    """Whether a path of a search exists; where nothing is, that is an input.
+
+    What appears there later would be found first.
+    """
+    found = path_exists(path)
+    if not found:
+        _read.setdefault(str(path.absolute()), "")
+    return found
 
 
 def forget_inputs() -> None:
@@ -57,7 +73,9 @@ def inputs_read() -> Mapping[str, str]:
 
 
 def content_hash(path: Path) -> str:
-    """The hash of a file as `inputs_read` has it; empty where there is no file."""
+    """The hash of a file as `inputs_read` has it; empty where there is nothing."""
+    if is_dir(path):
+        return FOLDER
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:

@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from harness.core.files import is_dir, is_file
+from harness.core.inputs import is_there
 
 SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
 """Environment variable with additional folders to search, separated as in PATH."""
@@ -198,7 +199,7 @@ def additional_package_folders(folders: Sequence[Path]) -> Iterator[None]:
 
 
 def _is_folder(folder: Path, name: str) -> bool:
-    return folder.name == name and is_dir(folder)
+    return folder.name == name and is_there(folder) and is_dir(folder)
 
 
 def _may_be(folder: Path, inside: str) -> bool:
@@ -211,7 +212,7 @@ def _may_be(folder: Path, inside: str) -> bool:
 def _inside(folder: Path, name: str) -> Iterator[Path]:
     """The folder of a package in colcon's `src`, `install` and merged `install` layouts."""
     for path in (folder / name / "share" / name, folder / "share" / name, folder / name):
-        if is_dir(path):
+        if is_there(path) and is_dir(path):
             yield path
 
 
@@ -253,6 +254,8 @@ def _packages_below(folder: Path) -> tuple[Path, ...]:
 
 def _is_package(folder: Path, name: str) -> bool:
     """Whether a folder is the package of a name, by its package.xml."""
+    if not is_there(folder / MANIFEST):
+        return False
     try:
         with (folder / MANIFEST).open("rb") as manifest:
             found = NAME.search(manifest.read(LARGEST_MANIFEST))

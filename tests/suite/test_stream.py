@@ -169,6 +169,66 @@ def test_a_changed_file_is_noticed(project, tmp_path, name, text):
     assert not is_known(copy)
 
 
+def searched(tmp_path, scenario, appears, text):
+    """Whether a file that appears on a search path is noticed; the run uses a later folder."""
+    for folder in ("first", "second"):
+        (tmp_path / folder).mkdir()
+    shutil.copytree(data_folder("robots") / "open_manipulator_x", tmp_path / "second" / "arm")
+    (tmp_path / "second" / "arm" / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "second" / "block").mkdir()
+    (tmp_path / "second" / "block" / "model.sdf").write_text(MODEL)
+    (tmp_path / "room.sdf").write_text(ROOM)
+    (tmp_path / "a.scenario.yaml").write_text(
+        f"{scenario}params: {{n: 1}}\nparametrize: {{n: [1, 2]}}\n"
+    )
+    for plugin in ("nod.py", "nodding.py"):
+        (tmp_path / plugin).write_text("TIME = 1\n")
+    assert "2 passed" in ran(tmp_path)
+    assert is_known(tmp_path)
+    file = tmp_path / "first" / appears
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
+    return not is_known(tmp_path)
+
+
+MODEL = """\
+<sdf version="1.8"><model name="block"><static>true</static><link name="link">
+<collision name="c"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision>
+</link></model></sdf>
+"""
+ROOM = """\
+<sdf version="1.8"><world name="room"><include><uri>model://block</uri>
+<pose>1 0 0.05 0 0 0</pose></include></world></sdf>
+"""
+FOUND_LATE = """\
+scenario: Found in the second folder
+robot:
+  urdf: package://arm/open_manipulator_x.urdf
+  srdf: package://arm/open_manipulator_x.srdf
+  packages: [first, second]
+steps: [{wait: 0.01}]
+"""
+MODELS = """\
+scenario: Found in the second folder
+robot: {model: open_manipulator_x}
+world: {name: room.sdf, model_path: [first, second]}
+steps: [{wait: 0.01}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("scenario", "appears", "text"),
+    [
+        (FOUND_LATE, "package.xml", "<package><name>arm</name></package>"),
+        (FOUND_LATE, "arm/package.xml", "<package><name>arm</name></package>"),
+        (MODELS, "block/model.sdf", MODEL),
+    ],
+    ids=["a package", "a folder of packages", "a model"],
+)
+def test_what_appears_earlier_on_a_search_path_is_noticed(tmp_path, scenario, appears, text):
+    assert searched(tmp_path, scenario, appears, text)
+
+
 def is_known(folder):
     """Whether the result of a folder's scenario is from the files that stand there now."""
     code = """if True:

@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
-from harness.core.files import is_file, path_exists
+from harness.core.files import is_file
+from harness.core.inputs import is_there
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.plugins.formats.world_formats.sdf import Sdf
@@ -86,11 +87,12 @@ class ModelPath:
             element.refuse(
                 f"`{scheme}://` is not supported", "supported: model://, file://, a path"
             )
-        there = [path for path in candidates if _exists(path)]
-        for path in there:
+        is_outside = False
+        for path in filter(is_there, candidates):
             if any(path.resolve().is_relative_to(root) for root in self._roots):
                 return path
-        if there:
+            is_outside = True
+        if is_outside:
             element.refuse(f"`{uri}` is outside the folders that may be read", HINT)
         if scheme in ("http", "https"):
             hint = "nothing is downloaded: get the model with `gz fuel download -u ADDRESS`"
@@ -138,10 +140,3 @@ def model_file(folder: Path, element: XmlElement) -> Path:
 
 def _version(text: str) -> tuple[int, ...]:
     return tuple(int(part) for part in text.split(".") if part.isdigit())
-
-
-def _exists(path: Path) -> bool:
-    try:
-        return path_exists(path)
-    except OSError:  # a name too long for the file system
-        return False
