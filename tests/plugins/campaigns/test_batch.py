@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -9,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from harness.cli.main import main
 from harness.plugins.campaigns.cluster.batch import Batch, Files, unpack_report
@@ -96,6 +98,37 @@ def test_a_node_without_the_files_computes_the_same(suite, tmp_path, is_absolute
         unpack_report(packed, cases[index][1].report_dir)
         assert json.loads(Path(case.report_dir, "run.json").read_text())["digest"] == case.digest
     assert not list(Path(tempfile.gettempdir()).glob("harness-batch-*/*/elsewhere"))
+
+
+ARM = """\
+scenario: An arm in a folder
+robot: {model: %s}
+objects: [{name: part, mesh: {file: part.glb}, pose: {xyz: [1, 0, 0]}, static: true}]
+steps: [{wait: 2 ms}]
+"""
+
+
+@pytest.mark.parametrize("name", ["./arm", "arm", "'../cases/arm'"])
+def test_a_node_gets_the_folder_of_a_robot(tmp_path, monkeypatch, name):
+    (tmp_path / "cases").mkdir()
+    monkeypatch.chdir(tmp_path / "cases")
+    shutil.copytree(data_folder("robots") / "open_manipulator_x", "arm")
+    trimesh.creation.box((0.1, 0.1, 0.1)).export("part.glb")
+    file = Path("a.scenario.yaml")
+    file.write_text(ARM % name)
+    contents = {os.path.abspath(path): data for path, data in named_files(file)}  # noqa: PTH100
+    files = Files(contents, str(Path.cwd()), {})
+    shutil.rmtree(tmp_path / "cases")
+    (tmp_path / "elsewhere").mkdir()
+    batch = Batch(((0, RunRequest(file)),), installation(), None)
+    [(_, case, _)] = run_elsewhere(batch, files, tmp_path / "elsewhere").results
+    assert case.outcome == "passed", (case.problems, case.message)
+
+
+def test_words_that_are_too_long_for_a_path_are_no_files(tmp_path):
+    file = tmp_path / "a.scenario.yaml"
+    file.write_text(f"scenario: {'a' * 5000}\nworld: {'b' * 5000}.yaml\n")
+    assert [path for path, _ in named_files(file)] == [file]
 
 
 def test_problems_of_a_file_are_reported_with_the_path_of_the_sender(tmp_path, monkeypatch):
