@@ -23,11 +23,10 @@ from harness.plugins.iktest.strategies.positions import (
     near_limit_positions,
     near_singular_positions,
 )
-from harness.plugins.iktest.strategies.round_poses import round_poses_around
+from harness.plugins.iktest.strategies.round_poses import round_poses_around, round_reachable_poses
 from harness.plugins.iktest.strategies.tasks import manipulability
 from harness.plugins.iktest.trial import Flaw, SolverTrial
 from harness.robot.chain import Chain
-from harness.strategies.round_poses import round_poses_around, round_reachable_poses
 
 JUMP = 0.2  # [rad or m] of a joint between two targets 2 mm apart, looked into
 HALVINGS = 8  # of a step with a jump in it: a jump is what does not become smaller

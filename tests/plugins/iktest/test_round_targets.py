@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from harness.plugins.iktest import IkTest, run_ik_test
+from harness.plugins.iktest.search import draw
+from harness.plugins.iktest.strategies.positions import load_chain
+from harness.plugins.iktest.strategies.round_poses import round_reachable_poses
+from harness.plugins.iktest.strategies.tasks import miss, natural_task
 from tests.plugins.iktest.arms import OM, correct
-from harness.strategies.round_poses import round_reachable_poses
 
 FIRST_AXIS = 0.012  # [m]
 SHOULDER = 0.0595  # [m]

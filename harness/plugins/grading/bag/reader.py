@@ -9,10 +9,10 @@ from typing import Any
 
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from harness.core.untrusted_json import parse_json
 from harness.plugins.grading.bag.content import BagContent, BagTopics, RecordedTrack, Tracks
 from harness.plugins.grading.bag.message_files import RawMessage, bag_error
 from harness.plugins.grading.bag.storage import bag_files, messages
-from harness.core.untrusted_json import parse_json
 
 MOST_NUMBERS = 20_000_000
 """Most numbers kept of one recording (160 MB); an hour of ten joints at 100 Hz needs half of it."""

@@ -11,10 +11,16 @@ from hypothesis import strategies as st
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.plugins.iktest.strategies.poses import Target, Targets, poses_around
-from harness.plugins.iktest.strategies.tasks import Task, natural_task
+from harness.plugins.iktest.strategies.positions import joint_positions
+from harness.plugins.iktest.strategies.tasks import (
+    Task,
+    miss,
+    natural_task,
+    task_error,
+    task_jacobians,
+)
 from harness.robot.chain import Chain
 from harness.robot.forward_kinematics import rotations_about
-
 
 STEP = 0.01
 """Coordinates that are multiples of this count as even [m]."""
