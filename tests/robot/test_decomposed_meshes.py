@@ -96,14 +96,14 @@ def test_work_that_takes_long_is_reported_on_stderr(capfd):
     assert capfd.readouterr().err == "computing convex shapes of bin.obj, 1 of 1\n"
 
 
-def test_work_that_takes_long_is_reported_to_who_wants_to_know(capfd):
-    told = []
-    with reported_to(told.append):
+def test_work_that_takes_long_is_reported_to_a_listener(capfd):
+    reports = []
+    with reported_to(reports.append):
         with reported("computing", after=0.01):
             time.sleep(0.5)
         with reported("not this", after=600):
             pass
-    assert (told, capfd.readouterr().err) == (["computing"], "")
+    assert (reports, capfd.readouterr().err) == (["computing"], "")
 
 
 @pytest.mark.parametrize(
