@@ -13,6 +13,7 @@ import pytest
 import trimesh
 
 from harness.cli.main import main
+from harness.core.resources import data_folder
 from harness.plugins.campaigns.cluster.batch import Batch, Files, unpack_report
 from harness.plugins.campaigns.cluster.named_files import named_files
 from harness.session.run_request import RunRequest
