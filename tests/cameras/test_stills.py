@@ -147,6 +147,7 @@ def test_states_that_turn_or_lose_a_body_do_not_look_alike():
     assert not looks_alike({"cup": here}, {"lid": here})
 
 
+@pytest.mark.nightly
 def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so():
     """PyOpenGL with the name of a missing library stands for a machine without one."""
     program = """

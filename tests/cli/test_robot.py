@@ -238,6 +238,7 @@ def test_links_that_touch_always_or_at_the_start_are_distinguished(folder, capsy
     assert "default" not in page
 
 
+@pytest.mark.nightly
 def test_pairs_of_a_universal_robot_are_those_that_moveit_has(folder):
     """Adjacent ones all; of the rest, ur_description's own come out as never touching."""
     assert main(["robot", "check", "ur5e", "--write-srdf", "ur.srdf", "--samples", "3000"]) == 0

@@ -36,6 +36,7 @@ def assert_refused(bag, base, *said):
         assert word in printed
 
 
+@pytest.mark.nightly(only=["a text of 4 GB"])
 @pytest.mark.parametrize(
     "record",
     [

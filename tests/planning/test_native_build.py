@@ -30,6 +30,7 @@ def test_this_tree_has_the_compiled_check():
     assert library.certify is not None
 
 
+@pytest.mark.nightly
 def test_other_sources_get_a_library_of_another_name_which_replaces_the_old_one(copy):
     first = compiled(copy)
     assert first.name == sources.library_path().name

@@ -63,7 +63,7 @@ def test_an_arm_that_leaves_its_tolerances_fails_and_the_plug_in_is_named(scenar
     assert json.loads(file.read_text())["verdicts"][0]["status"] == "failed"
 
 
-@pytest.mark.nightly(but=[0])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("answer", "reason"),
     [

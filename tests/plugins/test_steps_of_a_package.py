@@ -86,7 +86,7 @@ def typed_result(run, library):
     return done.stdout.strip()
 
 
-@pytest.mark.nightly(but=["installed"])
+@pytest.mark.nightly
 def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     folder, library, package, options = plugged_in
 

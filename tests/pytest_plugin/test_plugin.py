@@ -243,6 +243,7 @@ def properties(pytester):
     return [(each.get("name"), each.get("value")) for each in case.iter("property")]
 
 
+@pytest.mark.nightly
 def test_junit_of_samples_has_the_smallest_margin_and_every_seed_and_digest(pytester, write):
     lines = "params: {time: 0.1 s}\nrandomize:\n  time: {uniform: [0.02 s, 0.09 s]}\nsamples: 3\n"
     write(tight=TIGHT.replace("wait: 0.1 s", 'wait: "${time}"') + lines)

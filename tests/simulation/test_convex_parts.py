@@ -49,7 +49,7 @@ def bin_file(folder):
     return write_obj(folder / "bin.obj", *vessel(**words))
 
 
-@pytest.mark.nightly(but=[""])
+@pytest.mark.nightly
 @pytest.mark.parametrize("mode", ["", ", collision: exact"])
 def test_a_ball_that_falls_into_a_cup_stays_in_it(tmp_path, mode):
     cup_file(tmp_path)

@@ -44,6 +44,7 @@ def test_arm_and_gripper_move_at_once(blocks):
     assert both.sum() * saved.timestep > 0.5
 
 
+@pytest.mark.nightly
 def test_the_resolved_file_holds_the_included_steps_and_runs_to_the_same_digest(blocks):
     folder, result, _ = blocks
     resolved = folder / "run/scenario.resolved.yaml"
@@ -91,6 +92,7 @@ def test_parallel_takes_one_motion_and_one_gripper_step(tmp_path):
     assert len(found) == 1
 
 
+@pytest.mark.nightly
 def test_a_motion_that_fails_inside_a_block_fails_the_block_and_says_where(tmp_path):
     far = "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 3}"
     result, saved = run(

@@ -49,7 +49,7 @@ IN_THE_MIDDLE = """
 """
 
 
-@pytest.mark.nightly(but=["more1"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("more", ["", IN_THE_MIDDLE])
 def test_an_object_is_placed_on_a_support_at_the_free_place_nearest_to_its_middle(tmp_path, more):
     steps = """

@@ -130,6 +130,7 @@ def test_an_arm_of_four_joints_follows_a_line_off_its_plane(tmp_path):
     assert result.outcome == "passed", [step.message for step in result.steps]
 
 
+@pytest.mark.nightly
 def test_a_line_to_a_position_with_a_pitch_ends_at_that_pitch(tmp_path):
     result, record = run(
         tmp_path,

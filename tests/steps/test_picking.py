@@ -172,6 +172,7 @@ def test_padding_does_not_apply_to_what_is_about_to_be_grasped(tmp_path, padding
     assert result.outcome == "passed", [step.message for step in result.steps]
 
 
+@pytest.mark.nightly
 def test_padding_that_is_in_the_way_is_named_with_both_distances(tmp_path):
     """The floor keeps its padding; the cube to grasp does not."""
     result, record = run(
@@ -269,6 +270,7 @@ def test_a_load_too_heavy_to_hold_still_is_reported_with_torques(tmp_path):
     assert "no slower motion helps" in recorded_explanation(lift.explanation).advice
 
 
+@pytest.mark.nightly
 def test_nothing_is_put_down_where_the_gripper_cannot_open(tmp_path):
     """The open fingers are 117 mm wide."""
     length, half = 0.12, 0.06

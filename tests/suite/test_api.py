@@ -69,6 +69,7 @@ def test_the_step_and_the_expectations_of_the_page_run(tmp_path):
     run_with_plugins(tmp_path)
 
 
+@pytest.mark.nightly
 def test_a_model_runs_as_its_file_does(tmp_path):
     scenario = Scenario(
         scenario="Home", robot="open_manipulator_x", seed=2,

@@ -34,6 +34,7 @@ def places(document):
     return [float(case["values"]["x"]) for case in document["cases"]]
 
 
+@pytest.mark.nightly
 def test_samples_that_overlap_are_counted(file, tmp_path):
     reported = results(file(POST), "--no-report", cwd=tmp_path)
     overlapping = [abs(x - 0.5) < FREE for x in places(reported)]

@@ -69,6 +69,7 @@ def test_coming_nearer_than_planned_can_be_forbidden_and_is_measured_against_the
     assert 0.1 * lag < np.nanmax(loss) < lag, "the arm reaches half a metre"
 
 
+@pytest.mark.nightly
 def test_pressing_fingers_are_not_planned_to_be_inside_of_what_they_press(tmp_path):
     result, saved = run(
         tmp_path,

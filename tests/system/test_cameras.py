@@ -39,7 +39,7 @@ def case(request, tmp_path_factory):
     return result, folder, read_run(folder).run
 
 
-@pytest.mark.nightly(but=["markers"])
+@pytest.mark.nightly
 def test_it_passes_and_its_record_is_judged_alike_where_nothing_can_draw(case):
     result, folder, _ = case
     assert result.outcome == "passed", (result.message, result.verdicts)
@@ -54,6 +54,7 @@ def test_it_passes_and_its_record_is_judged_alike_where_nothing_can_draw(case):
     assert [{**verdict, "line": 0} for verdict in json.loads(done.stdout)] == expected
 
 
+@pytest.mark.nightly(but=["markers"])
 def test_the_report_names_who_drew_each_picture(case):
     _, folder, _ = case
     document = json.loads((folder / "run.json").read_text())
@@ -61,6 +62,7 @@ def test_the_report_names_who_drew_each_picture(case):
     assert {film["backend"] for film in document["videos"]} <= {"egl", "osmesa", "rays"}
 
 
+@pytest.mark.nightly(but=["markers"])
 def test_every_capture_is_a_sample_of_its_step_and_stands_where_the_robot_was(case):
     _, _, run = case
     steps = {step.id: step for step in run.steps}
@@ -98,6 +100,7 @@ def test_pictures_change_no_sample_of_the_physics(tmp_path):
         np.testing.assert_array_equal(rows, signals[1].object_poses[name])
 
 
+@pytest.mark.nightly(but=["markers"])
 def test_a_video_has_a_time_for_every_frame_within_the_run(case):
     _, _, run = case
     for film in run.videos:

@@ -199,6 +199,7 @@ def test_repeat_says_whether_the_digests_are_the_same():
     assert [each["report_dir"] for each in document["cases"]] == ["reports/a", ""]
 
 
+@pytest.mark.nightly
 def test_k_set_seed_and_report_dir_do_what_they_say(run_here):
     write("a", tag="slow")
     write("b", tag="quick", title="Move it")

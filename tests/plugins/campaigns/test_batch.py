@@ -70,7 +70,7 @@ def suite(tmp_path, monkeypatch):
     return {result["case"]: result for result in results}
 
 
-@pytest.mark.nightly(but=["True"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("is_absolute", [False, True])
 def test_a_node_without_the_files_computes_the_same(suite, tmp_path, is_absolute):
     file = Path("wait.scenario.yaml")

@@ -28,6 +28,7 @@ def report_of(tmp_path, body, **options):
     return run_ik_test(IkTest(f"{file}:ik", OM, examples=20, **options))
 
 
+@pytest.mark.nightly
 def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
     body = "    while y > 0.1: pass\n    return correct(x, y, z, pitch)\n"
     report = report_of(tmp_path, body, patience=0.5)
@@ -51,6 +52,7 @@ def test_a_function_that_kills_its_process_is_reported_and_shrunk(tmp_path):
     assert -0.02 < finding.target.pose.translation[2] < 0
 
 
+@pytest.mark.nightly
 def test_what_it_prints_and_an_exit_do_no_harm(tmp_path, capfd):
     body = (
         "    print('x', flush=True)\n    if x < 0: os._exit(3)\n    return correct(x, y, z, pitch)"

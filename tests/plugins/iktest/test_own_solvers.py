@@ -13,16 +13,19 @@ from harness.robot.chain import Chain
 from harness.robot_tools.robot_source import RobotSource, load_source
 
 
+@pytest.mark.nightly(but=["open_manipulator_x"])
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur5e"])
 def test_closed_forms_keep_every_property_and_find_every_way(robot):
     check_ik(own_solver(RobotSource(robot)), robot, branches=True, examples=40)
 
 
+@pytest.mark.nightly
 def test_a_tool_attached_to_a_gripper_is_solved_too():
     robot = RobotSource("ur3e", gripper="rh_p12_rn_a")
     check_ik(own_solver(robot), robot, branches=True, examples=30)
 
 
+@pytest.mark.nightly
 def test_the_numeric_solver_never_answers_wrongly():
     """It may find nothing near a singularity; what it answers is right, inside limits, the same."""
     robot = RobotSource("ur3e")

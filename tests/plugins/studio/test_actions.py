@@ -159,6 +159,7 @@ expect:
 """
 
 
+@pytest.mark.nightly
 def test_a_verdict_is_shown_as_soon_as_its_step_has_ended(tmp_path):
     studio, verdicts = opened(tmp_path, JUDGED), []
 

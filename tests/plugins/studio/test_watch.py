@@ -106,6 +106,7 @@ def test_a_page_that_is_gone_changes_nothing(request_, unwatched, tmp_path):
     assert result.digest == unwatched.digest
 
 
+@pytest.mark.nightly
 def test_the_command_prints_the_address_and_ends_with_the_run(request_, unwatched):
     command = [sys.executable, "-m", "harness.cli", "run", request_.file.name, "--live"]
     command += ["--no-report", "-j", "2", "--repeat", "2"]

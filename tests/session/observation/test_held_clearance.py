@@ -17,6 +17,7 @@ def carried(tmp_path_factory):
     return read_run(folder / "report").run
 
 
+@pytest.mark.nightly
 def test_distances_of_what_is_carried_are_those_of_its_shapes_while_the_hand_carries_it(carried):
     """A cube of 4 cm and a beam whose face is at x = 0.25 m, both along the axes."""
     measured = carried.signals.clearances["cup", "beam"]
