@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from harness.plugins.ros.graph import LATCHED, Graph, Reply
+from harness.plugins.ros.endpoints import LATCHED, Reply
 from harness.plugins.ros.interfaces import CANCEL, UUID, seconds, stamp
+from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message
 
 INFO = "action_msgs/msg/GoalInfo"

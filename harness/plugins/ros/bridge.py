@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 from harness.core.errors import Problem, SpecError
 from harness.plugins.ros.domain import free_domain
-from harness.plugins.ros.graph import Graph
-from harness.plugins.ros.live import BridgeRequest, LiveControl, Say
+from harness.plugins.ros.live import BridgeRequest, LiveControl
+from harness.plugins.ros.rtps.graph import Graph
 from harness.ports.simulation import LONGEST_RUN
 from harness.reporting.result import CaseResult
 from harness.session.prepare import Prepared
@@ -32,29 +32,6 @@ class BridgeResult:
     remarks: tuple[str, ...] = ()
 
 
-def open_graph(
-    adapter: str, domain: int, *, node: str, is_local: bool = True, say: Say = lambda _: None
-) -> Graph:
-    """Join a domain.
-
-    Args:
-        adapter: `rtps`, or `rclpy` of a ROS 2 installation.
-        is_local: Whether the node talks to this machine alone.
-        say: Receives a note for each topic that cannot be published.
-
-    Raises:
-        SpecError: The adapter, or a message package that it needs, is not installed.
-        NetworkError: The domain cannot be joined.
-    """
-    if adapter == "rclpy":
-        from harness.plugins.ros.rclpy_graph import RclpyGraph
-
-        return RclpyGraph(domain, node=node, is_local=is_local, say=say)
-    from harness.plugins.ros.rtps.graph import RtpsGraph
-
-    return RtpsGraph(domain, node=node, is_local=is_local)
-
-
 def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> BridgeResult:
     """Run a scenario whose step `external` is nodes' to carry out.
 
@@ -68,8 +45,7 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
         made.append(LiveControl(prepared, simulator, graph, request))
         return made[0]
 
-    place = request.adapter, request.domain
-    graph = open_graph(*place, node=NODE, is_local=request.is_local, say=request.say)
+    graph = Graph(request.domain, node=NODE, is_local=request.is_local)
     with closing(graph):
         _refuse_other_robot(graph, request.domain)
         case = run_case(request.run, notify, session)

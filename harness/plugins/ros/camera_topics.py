@@ -14,8 +14,9 @@ from harness.cell.program import Program
 from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.plugins.ros.graph import Graph, Qos
+from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.interfaces import header
+from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
 from harness.reporting.rosbag.frames import optical_frames
 from harness.reporting.rosbag.topics import topic_word

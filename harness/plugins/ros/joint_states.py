@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.plugins.ros.graph import BEST_EFFORT, Graph
+from harness.plugins.ros.endpoints import BEST_EFFORT
 from harness.plugins.ros.interfaces import seconds
+from harness.plugins.ros.rtps.graph import Graph
 from harness.robot.description import RobotDescription
 
 GRID = 0.01

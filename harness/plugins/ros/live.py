@@ -12,11 +12,11 @@ import numpy as np
 
 from harness.core.printable import counted
 from harness.plugins.ros.camera_topics import CameraTopics
-from harness.plugins.ros.graph import Graph
 from harness.plugins.ros.handover import HandOver
 from harness.plugins.ros.launch import Program, start_program
 from harness.plugins.ros.names import mismatched, unserved
 from harness.plugins.ros.pacing import Pace
+from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wiring import Wiring
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 from collections.abc import Iterable
 
 from harness.core.types import FloatArray
-from harness.plugins.ros.graph import LATCHED, Qos
+from harness.plugins.ros.endpoints import LATCHED, Qos
 from harness.plugins.ros.interfaces import header, stamp
 from harness.recording.link_poses import placement_poses
 from harness.recording.robot_record import RobotRecord
@@ -101,7 +101,6 @@ class BridgeRequest:
 
     Attributes:
         is_local: Whether nodes of other machines are kept out.
-        adapter: `rtps`, or `rclpy` of a ROS 2 installation.
         factor: Simulated seconds in a wall second.
         say: Receives notes for the user while it runs.
         stop: Ends the session when it is set.
@@ -110,7 +109,6 @@ class BridgeRequest:
     run: RunRequest
     domain: int
     is_local: bool = True
-    adapter: str = "rtps"
     factor: float = 1.0
     say: Say = lambda _: None
     stop: Event = field(default_factory=Event)

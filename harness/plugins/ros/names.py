@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
-from harness.plugins.ros.graph import Use
+from harness.plugins.ros.endpoints import Use
 
 IGNORED = {"/rosout", "/parameter_events", "/clock"}
 """Topics that every node of rclpy has."""

@@ -14,8 +14,6 @@ def add_domain(command: argparse.ArgumentParser) -> None:
     text = "join this ROS domain (default: ROS_DOMAIN_ID or 0; with --node, a free one)"
     add("--domain", metavar="N", type=int, default=None, help=text)
     add("--network", action="store_true", help="communicate with nodes on other machines too")
-    text = "communicate through the built-in RTPS, or through an installed rclpy"
-    add("--adapter", choices=("rtps", "rclpy"), default="rtps", help=text)
 
 
 def add_served_robot(command: argparse.ArgumentParser) -> None:

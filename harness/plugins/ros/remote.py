@@ -14,10 +14,10 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.plugins.ros.actions import ActionClient, ClientGoal, Status
 from harness.plugins.ros.control.goals import Code
-from harness.plugins.ros.graph import Graph, spin_until
 from harness.plugins.ros.interfaces import COMMAND, FOLLOW, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
 from harness.plugins.ros.names import actions
+from harness.plugins.ros.rtps.graph import Graph
 from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import UNPUBLISHED, Signals
@@ -229,7 +229,7 @@ class RemoteArm:
         )
 
     def _wait(self, holds: Callable[[], bool], timeout: float) -> bool:
-        return spin_until(self._graph, holds, timeout)
+        return self._graph.spin_until(holds, timeout)
 
     def _follow(self, client: ActionClient, goal: ClientGoal, timeout: float) -> None:
         """Watch a goal until it is over, at most some wall time [s].

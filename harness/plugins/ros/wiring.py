@@ -10,8 +10,8 @@ from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.control.goals import MOTION
-from harness.plugins.ros.graph import Graph
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, seconds
+from harness.plugins.ros.rtps.graph import Graph
 from harness.recording.commands import CommandKind, CommandRecord
 
 Content = dict[str, Any]

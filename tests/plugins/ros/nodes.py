@@ -5,9 +5,8 @@ import time
 import numpy as np
 
 from harness.plugins.ros.actions import ActionClient
-from harness.plugins.ros.graph import spin_until
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
-from harness.plugins.ros.rtps.graph import RtpsGraph
+from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message
 
 ARM = ("joint1", "joint2", "joint3", "joint4")
@@ -17,7 +16,7 @@ class Node:
     """A graph with action clients for the OpenMANIPULATOR-X, or another robot."""
 
     def __init__(self, domain, arm="arm_controller", gripper="gripper_controller"):
-        self.graph = RtpsGraph(domain, node="student")
+        self.graph = Graph(domain, node="student")
         self.arm = ActionClient(self.graph, f"/{arm}/follow_joint_trajectory", FOLLOW)
         self.gripper = ActionClient(self.graph, f"/{gripper}/gripper_cmd", GRIPPER)
         self.received = {}
@@ -28,7 +27,7 @@ class Node:
         return messages
 
     def wait(self, holds=lambda: False, timeout=20.0):
-        assert spin_until(self.graph, holds, timeout), "nothing happened"
+        assert self.graph.spin_until(holds, timeout), "nothing happened"
 
     def ready(self):
         self.wait(lambda: self.arm.is_ready and self.gripper.is_ready)

@@ -9,7 +9,7 @@ from harness.core.errors import SpecError
 from harness.plugins.ros.actions import ActionClient
 from harness.plugins.ros.bridge import BridgeRequest, run_bridge
 from harness.plugins.ros.domain import free_domain
-from harness.plugins.ros.graph import BEST_EFFORT, LATCHED, Use
+from harness.plugins.ros.endpoints import BEST_EFFORT, LATCHED, Use
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.plugins.ros.names import unserved
 from harness.plugins.ros.rtps.graph import dds_type

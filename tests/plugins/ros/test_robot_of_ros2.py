@@ -15,7 +15,7 @@ from harness.cli.main import main
 from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.interfaces import FOLLOW, stamp
-from harness.plugins.ros.rtps.graph import RtpsGraph
+from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 
@@ -96,7 +96,7 @@ def test_ctrl_c_stops_the_robot(tmp_path, plan):
 def test_a_robot_that_falls_silent_ends_the_run(plan, capsys, monkeypatch):
     monkeypatch.setattr(harness.plugins.ros.remote, "SILENCE", 0.3)
     with free_domain() as domain:
-        driver, goals, is_over = RtpsGraph(domain, node="driver"), [], Event()
+        driver, goals, is_over = Graph(domain, node="driver"), [], Event()
         states = driver.advertise("/joint_states", "sensor_msgs/msg/JointState")
         joints = ["joint1", "joint2", "joint3", "joint4", "gripper_left_joint"]
         still = message("sensor_msgs/msg/JointState", name=joints, position=np.zeros(5))

@@ -14,7 +14,7 @@ import rosless
 
 from harness.plugins.ros.actions import Status
 from harness.plugins.ros.domain import free_domain
-from harness.plugins.ros.graph import DEFAULT, LATCHED, Qos
+from harness.plugins.ros.endpoints import DEFAULT, LATCHED, Qos
 from harness.plugins.ros.interfaces import decoded, encoded
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.participant import Participant

@@ -7,7 +7,7 @@ import pytest
 from harness.plugins.ros.actions import Status
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.interfaces import CANCEL
-from harness.plugins.ros.rtps.graph import RtpsGraph
+from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 
@@ -47,7 +47,7 @@ def test_a_server_on_cyclone_dds_answers_our_client():
 
     responses, name = [], "/arm/_action/cancel_goal"
     with free_domain() as domain:
-        server, graph = CancelServer(domain, name), RtpsGraph(domain, node="test")
+        server, graph = CancelServer(domain, name), Graph(domain, node="test")
         client, end = graph.client(name, CANCEL), time.monotonic() + 30
         next_call = 0.0
         while not responses and time.monotonic() < end:

@@ -107,7 +107,6 @@ def bridge_request(
         request,
         domain=domain,
         is_local=not arguments.network,
-        adapter=arguments.adapter,
         factor=arguments.pace,
         say=note,
     )

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from harness.plugins.ros.graph import Qos
+from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.wire import Address, Parameters
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
-from harness.plugins.ros.graph import (
+from harness.plugins.ros.endpoints import (
     DEFAULT,
     LATCHED,
     Client,
@@ -43,25 +44,54 @@ def dds_type(kind: str) -> str:
     return f"{package}::{folder}::dds_::{name}_"
 
 
-class RtpsGraph:
-    """A node in a domain, with a participant of its own."""
+class Graph:
+    """A node of a ROS 2 domain. Every callback is called inside `spin`, never from a thread.
+
+    Messages are those of `harness.plugins.ros.interfaces`, services are named without `Request`,
+    and actions are made of services and topics by `harness.plugins.ros.actions`.
+    """
 
     def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
-        """Join a domain, as `open_graph` says."""
+        """Join a domain.
+
+        Args:
+            domain: The number of the ROS domain.
+            node: The name of the node in the domain.
+            is_local: Whether the node communicates with this machine alone.
+
+        Raises:
+            NetworkError: The domain cannot be joined.
+        """
         self.participant = Participant(domain, name=node, is_local=is_local)
-        self.spin, self.close = self.participant.spin, self.participant.close
+        self.close = self.participant.close
         self._node = node
         self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED)
         self._introduce()
 
+    def spin(self, until: float) -> None:
+        """Receive until a moment of `time.monotonic`, and answer."""
+        self.participant.spin(until)
+
+    def spin_until(self, holds: Callable[[], bool], timeout: float) -> bool:
+        """Spin until something holds; whether it did within the wall time [s]."""
+        deadline = time.monotonic() + timeout
+        while not holds():
+            if time.monotonic() > deadline:
+                return False
+            self.spin(min(deadline, time.monotonic() + 0.005))
+        return True
+
     def advertise(self, topic: str, kind: str, qos: Qos = DEFAULT) -> Publisher:
+        """A publisher of a topic."""
         made = self._writer(f"rt{topic}", kind, qos)
         return Publisher(kind, made.write, lambda: len(made.matched), qos.is_latched)
 
     def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
+        """Receive the messages of a topic; what cannot be read is ignored."""
         self._reader(f"rt{topic}", kind, lambda content, _: on_message(content), qos)
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
+        """Answer requests of a service; `kind` is its type, such as action_msgs/srv/CancelGoal."""
         writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE)
 
         def take(request: Any, identity: bytes) -> None:
@@ -73,6 +103,7 @@ class RtpsGraph:
         self._reader(f"rq{name}Request", f"{kind}_Request", take)
 
     def client(self, name: str, kind: str) -> Client:
+        """A client of a service."""
         waiting: dict[bytes, OnMessage] = {}
 
         def take(response: Any, identity: bytes) -> None:
@@ -91,6 +122,7 @@ class RtpsGraph:
         return Client(lambda: bool(writer.matched and reader.matched), call)
 
     def uses(self) -> tuple[list[Use], list[Use]]:
+        """How this node uses topics, and how all other nodes that are known do."""
         own, others = self.participant.own_endpoints(), self.participant.known_endpoints()
         return [*_uses(own)], [*_uses(others)]
 

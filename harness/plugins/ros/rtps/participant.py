@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 
-from harness.plugins.ros.graph import Qos
+from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import (
     Endpoint,

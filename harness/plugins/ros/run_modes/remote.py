@@ -72,10 +72,9 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     Raises:
         UsageError: There is more than one scenario, or the user cannot confirm.
     """
-    from harness.plugins.ros.bridge import open_graph
-    from harness.plugins.ros.commands.bridge import note
     from harness.plugins.ros.domain import domain_of_user
     from harness.plugins.ros.remote import RemoteArm, run_on_robot
+    from harness.plugins.ros.rtps.graph import Graph
     from harness.session.run_request import RunRequest
     from harness.suite.folders import report_folders
 
@@ -95,8 +94,7 @@ def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:
     confirmation = _Confirmation(arguments.yes, arguments.velocity_scaling)
     domain = domain_of_user(arguments.domain)
     is_local, share = not arguments.network, arguments.velocity_scaling
-    graph = open_graph(arguments.adapter, domain, node="armharness", is_local=is_local, say=note)
-    with closing(graph):
+    with closing(Graph(domain, node="armharness", is_local=is_local)) as graph:
         connect = partial(RemoteArm, graph, share, confirmation)
         case = run_on_robot(request, connect, confirmation.note)
     show_case(case, request.file)
