@@ -39,7 +39,7 @@ pytestmark = pytest.mark.benchmark
 SEED = int(os.environ.get("SEED") or secrets.randbelow(1_000_000))
 EACH = int(os.environ.get("EACH") or 3)
 OMPL_SEEDS = (1, 2, 3)
-OPTIONS = PlanningOptions(seed=1)
+OPTIONS = PlanningOptions(seed=1, padding=DEFAULT.padding)
 
 Outcome = tuple[float, bool]
 """Processor time from the loaded scene on [s], and whether there is a path or motion."""
