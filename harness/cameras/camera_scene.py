@@ -17,7 +17,6 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.step_results import SceneChange
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import robot_poses
 
 
 def scene_poses(
@@ -35,7 +34,7 @@ def scene_poses(
         step: Selects one of several steps that share the sample. Changes by steps without duration
             at the moment a motion ends are not part of the motion's end.
     """
-    poses = robot_poses(description, run.signals.joint_positions[sample])
+    poses = description.link_poses(run.signals.joint_positions[sample])
     present = _present_after(run, step)
     seen = sample if step is None or step.end_time > step.start_time else sample + 1
     later = _moved_later(run, step)
@@ -79,7 +78,7 @@ def floor_height(description: RobotDescription, world_objects: Sequence[WorldObj
         for shape in obj.shapes:
             if isinstance(shape.geometry, Plane):
                 return float((obj.pose @ shape.pose).translation[2])
-    base = robot_poses(description, description.start_positions())[description.base_link]
+    base = description.link_poses(description.start_positions())[description.base_link]
     return min(0.0, float(base.translation[2]))
 
 
@@ -151,7 +150,7 @@ class CameraScene:
 
     def pose_robot(self, joint_positions: FloatArray, objects: Mapping[str, SE3]) -> dict[str, SE3]:
         """Pose the robot and some objects; returns T_world_body of all of them and of `world`."""
-        poses = {**robot_poses(self._description, joint_positions), **objects}
+        poses = {**self._description.link_poses(joint_positions), **objects}
         self.picture.pose(poses)
         return poses
 

@@ -19,7 +19,6 @@ from harness.recording.explanation import NearestState, recorded_explanation
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import robot_poses
 
 ARM_SIZE = 0.12  # radius around a link's origin that the view contains [m]
 
@@ -44,7 +43,7 @@ def draw_failure(
     state = np.array([nearest.joint_positions[name] for name in description.joint_names])
     sample = min(max(step.end_index - 1, 0), len(run.signals.times) - 1)
     poses = scene_poses(description, world_objects, run, sample, step)
-    poses |= robot_poses(description, state)
+    poses |= description.link_poses(state)
     for held in run.attachments:
         if held.start_time <= step.end_time < held.end_time and held.object in poses:
             poses[held.object] = poses[held.link] @ SE3.from_vector(held.pose_in_link)

@@ -19,7 +19,6 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.robot.description import Link, RobotDescription
-from harness.robot.forward_kinematics import robot_poses
 
 SIZE = 800
 """Width and height of a picture of a robot alone [pixels]."""
@@ -45,7 +44,7 @@ def save_robot_picture(
     """
     floor = floor_height(description, ())
     picture = build_picture_model(description, (), floor_height=floor, width=SIZE, height=SIZE)
-    poses = robot_poses(description, joint_positions)
+    poses = description.link_poses(joint_positions)
     links = [link for link in description.links if link.visuals or link.collisions]
     links = links or description.links[1:]
     centres = np.array([poses[link.name].translation for link in links])
@@ -93,7 +92,7 @@ def draw_ik_comparison(
     """
     solid = expected if reached is None else reached
     assert solid is not None
-    shown = robot_poses(description, solid)
+    shown = description.link_poses(solid)
     marks = [frame_mark(target, AXIS_LENGTH)]
     line = line_mark(shown[link].translation, target.translation)
     marks += [] if line is None else [line]
@@ -122,7 +121,7 @@ def draw_ik_comparison(
 
 def _ghosts(description: RobotDescription, state: FloatArray) -> list[WorldObject]:
     """The robot's links at a state, translucent."""
-    poses = robot_poses(description, state)
+    poses = description.link_poses(state)
     return [
         replace(mark(f"{link.name} expected", poses[link.name], *link.visuals), in_simulation=False)
         for link in description.links

@@ -19,7 +19,6 @@ from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import robot_poses
 
 WIDTH, HEIGHT = 640, 480
 SHADOW_SIZE = 1024
@@ -149,12 +148,12 @@ def overview(
         for link in description.links
     }
     for sample in np.unique(np.linspace(0, last, OVERVIEW_STATES).astype(int)):
-        poses = robot_poses(description, run.signals.joint_positions[sample])
+        poses = description.link_poses(run.signals.joint_positions[sample])
         for name, size in link_sizes.items():
             if name != "world":
                 points.append(poses[name].translation)
                 radii.append(min(size, 0.15))
-    base = robot_poses(description, run.signals.joint_positions[0])[description.base_link]
+    base = description.link_poses(run.signals.joint_positions[0])[description.base_link]
     for sample in (0, last):
         scene = scene_poses(description, world_objects, run, int(sample))
         for obj in world_objects:

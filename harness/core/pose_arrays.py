@@ -100,3 +100,34 @@ def rotation_angle(quat: FloatArray) -> FloatArray:
 def angle_between(a: FloatArray, b: FloatArray) -> FloatArray:
     """Angle between vectors [rad], accurate for small ones too, shape (...,)."""
     return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))
+
+
+def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
+    """Rotation matrices about a unit axis, shape (N, 3, 3): Rodrigues' formula."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
+    return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
+
+
+def quats_from_rotations(rotations: FloatArray) -> FloatArray:
+    """Convert rotations (N, 3, 3) to unit quaternions with w >= 0, shape (N, 4), by Shepperd."""
+    m = rotations
+    diagonal = m[:, [0, 1, 2], [0, 1, 2]]
+    trace = diagonal.sum(axis=1)
+    candidates = np.column_stack([1 + trace, 1 + 2 * diagonal - trace[:, None]])
+    a, b, c = m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1]
+    d, e, f = m[:, 0, 1] + m[:, 1, 0], m[:, 0, 2] + m[:, 2, 0], m[:, 1, 2] + m[:, 2, 1]
+    k = candidates
+    rows = np.stack(
+        [
+            np.column_stack([k[:, 0], a, b, c]),
+            np.column_stack([a, k[:, 1], d, e]),
+            np.column_stack([b, d, k[:, 2], f]),
+            np.column_stack([c, e, f, k[:, 3]]),
+        ],
+        axis=1,
+    )
+    quats: FloatArray = rows[np.arange(len(m)), np.argmax(k, axis=1)]
+    quats /= np.linalg.norm(quats, axis=1, keepdims=True)
+    return np.where(quats[:, :1] < 0, -quats, quats)

@@ -118,6 +118,8 @@ def _robot_flaws(robot: RobotRecord) -> Iterator[Inconsistency]:
         key = f"robot.placements[{index}]"
         yield from _length(f"{key}.pose", placement.pose, 7)
         yield from _length(f"{key}.axis", placement.axis, 3)
+        if placement.parent in {later.link for later in robot.placements[index:]}:
+            yield f"{key}.parent", f"expected a link that is placed before '{placement.link}'"
         if placement.joint:
             yield from _unknown(f"{key}.joint", [placement.joint], joints, "joint")
     if robot.gripper is not None:

@@ -6,7 +6,8 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from harness.core.pose_arrays import IDENTITY, compose
+from harness.core.kinematics import LinkJoint, LinkPoses
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.recording.robot_record import LinkPlacement, RobotRecord
 from harness.recording.run import Run
@@ -16,22 +17,18 @@ from harness.recording.step_record import StepRecord
 def replayed_link_poses(
     robot: RobotRecord, joint_positions: FloatArray, links: Collection[str] | None = None
 ) -> dict[str, FloatArray]:
-    """T_world_link at every sample, shape (N, 7) each; (1, 7) of links that cannot move.
+    """T_world_link at every sample, shape (N, 7) each.
 
     Args:
         joint_positions: Columns in the order of `robot.joints`, shape (N, n).
         links: The links to return; all when None.
     """
-    needed = None if links is None else _with_carriers(robot, links)
     columns = {joint.name: column for column, joint in enumerate(robot.joints)}
-    poses: dict[str, FloatArray] = {}
-    for placement in robot.placements:
-        parent = poses.setdefault(placement.parent, IDENTITY[None])
-        if needed is not None and placement.link not in needed:
-            continue
-        moved = joint_positions[:, columns[placement.joint]] if placement.joint else None
-        poses[placement.link] = compose(parent, placement_poses(placement, moved))
-    return poses if links is None else {name: poses[name] for name in links if name in poses}
+    moving = [columns[placement.joint] for placement in robot.placements if placement.joint]
+    joints = [_joint(placement) for placement in robot.placements]
+    poses = LinkPoses(joints, joint_positions[:, moving], links)
+    names = poses.rotations if links is None else links
+    return {name: poses.rows(name) for name in names if name in poses.rotations}
 
 
 def planned_tcp_poses(
@@ -54,35 +51,21 @@ def planned_tcp_poses(
     start = min(step.start_index, len(run.signals.times) - 1)
     rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
     rows[:, [columns[name] for name in joint_names]] = positions
-    poses = replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
-    return None if poses is None else np.broadcast_to(poses, (len(rows), 7))
+    return replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
 
 
-def _with_carriers(robot: RobotRecord, links: Collection[str]) -> set[str]:
-    """The links, and all that they hang on: the others cost memory for nothing."""
-    needed = set(links)
-    for placement in reversed(robot.placements):
-        if placement.link in needed:
-            needed.add(placement.parent)
-    return needed
+def placement_poses(placement: LinkPlacement, positions: FloatArray) -> FloatArray:
+    """T_parent_link at positions [rad or m] of the joint that moves it, (N,) -> (N, 7)."""
+    return LinkPoses([_joint(placement)], positions[:, None]).rows(placement.link)
 
 
-def placement_poses(placement: LinkPlacement, positions: FloatArray | None) -> FloatArray:
-    """T_parent_link at positions of its joint, shape (N, 7); (1, 7) when it is fixed.
-
-    Args:
-        placement: How the link hangs.
-        positions: The positions of its joint [rad or m], shape (N,); None when it has none.
-    """
-    pose = np.array([placement.pose])
-    return pose if positions is None else compose(pose, _motion(placement, positions))
-
-
-def _motion(placement: LinkPlacement, positions: FloatArray) -> FloatArray:
-    motion = np.tile(IDENTITY, (len(positions), 1))
-    if placement.slides:
-        motion[:, :3] = positions[:, None] * np.array(placement.axis)
-    else:
-        motion[:, 3] = np.cos(0.5 * positions)
-        motion[:, 4:] = np.sin(0.5 * positions)[:, None] * np.array(placement.axis)
-    return motion
+def _joint(placement: LinkPlacement) -> LinkJoint:
+    kind = "prismatic" if placement.slides else "revolute" if placement.joint else "fixed"
+    return LinkJoint(
+        placement.joint,
+        kind,
+        placement.parent,
+        placement.link,
+        SE3.from_vector(placement.pose),
+        np.array(placement.axis),
+    )

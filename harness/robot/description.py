@@ -15,10 +15,9 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.geometry import Shape
+from harness.core.kinematics import LinkJoint, LinkPoses
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-
-JointKind = Literal["fixed", "revolute", "continuous", "prismatic"]
 
 WORLD = "world"
 """Name of the root link of every composed robot, in which poses are in world coordinates."""
@@ -63,12 +62,10 @@ class Mimic:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class Joint(LinkJoint):
     """A joint and its limits; rad, rad/s, N m for turning joints, m, m/s, N for prismatic ones.
 
     Attributes:
-        pose: The pose T_parent_joint at zero.
-        axis: Unit vector in the joint frame, shape (3,).
         lower: Lower position limit; -inf when continuous.
         upper: Upper position limit; inf when continuous.
         velocity: Velocity limit; inf when the description has none.
@@ -80,12 +77,6 @@ class Joint:
         command_interfaces: Its command interfaces in ros2_control; the program commands efforts.
     """
 
-    name: str
-    kind: JointKind
-    parent: str
-    child: str
-    pose: SE3
-    axis: FloatArray
     lower: float = -np.inf
     upper: float = np.inf
     velocity: float = np.inf
@@ -97,11 +88,6 @@ class Joint:
     mimic: Mimic | None = None
     command_interfaces: tuple[str, ...] = ()
     is_velocity_assumed: bool = False
-
-    @property
-    def is_movable(self) -> bool:
-        """Whether the joint has a position."""
-        return self.kind != "fixed"
 
     @property
     def position_unit(self) -> Literal["m", "rad"]:
@@ -331,3 +317,7 @@ class RobotDescription:
         """
         named = {**self.start_state, **(placed or {})}
         return self.with_mimics(np.array([named.get(name, 0.0) for name in self.joint_names]))
+
+    def link_poses(self, joint_positions: FloatArray) -> dict[str, SE3]:
+        """T_world_link of every link at joint positions in description order, shape (n,)."""
+        return LinkPoses(self.joints, joint_positions).at(0)

@@ -22,7 +22,6 @@ from harness.core.geometry import Mesh, Shape
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.recording.step_results import SceneChange
-from harness.robot.forward_kinematics import robot_poses
 from harness.robot.load import load_robot
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
 from tests.running import run_case
@@ -191,7 +190,7 @@ def test_link_poses_are_those_of_pinocchio(ur3e):
         else:
             q[joint.idx_q] = position
     pin.framesForwardKinematics(model, data, q)
-    poses = robot_poses(ur3e, positions)
+    poses = ur3e.link_poses(positions)
     for link in ur3e.link_names:
         expected = data.oMf[model.getFrameId(link)]
         np.testing.assert_allclose(poses[link].translation, expected.translation, atol=1e-9)

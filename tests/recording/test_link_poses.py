@@ -1,39 +1,79 @@
-"""Poses of links from a run alone, against Pinocchio's."""
+"""Poses of links from a run alone, against Pinocchio's and MuJoCo's."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from harness.core.kinematics import LinkPoses
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.recording.link_poses import replayed_link_poses
+from harness.recording.consistency import run_flaws
+from harness.recording.link_poses import placement_poses, replayed_link_poses
+from harness.recording.robot_record import LinkPlacement
 from harness.robot.load import load_robot
 from harness.session.record import robot_record
+from harness.simulation.agreement import link_poses_in_physics
+from tests.judging.synthetic_run import ROBOT, make_run
+
+POSE = (0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0)
+ROBOTS = [
+    {"model": "ur3e", "gripper": "rh_p12_rn_a", "base": {"xyz": [0.1, 0.2, 1.0]}},
+    {"model": "open_manipulator_x"},
+]
 
 
-@pytest.mark.parametrize(
-    "spec",
-    [
-        {"model": "ur3e", "gripper": "rh_p12_rn_a", "base": {"xyz": [0.1, 0.2, 1.0]}},
-        {"model": "open_manipulator_x"},
-    ],
-    ids=["ur3e", "open_manipulator_x"],
-)
-def test_links_stand_where_pinocchio_puts_them(spec, tmp_path):
-    description = load_robot(RobotSpec.model_validate(spec), tmp_path)
+@pytest.fixture(params=ROBOTS, ids=lambda spec: spec["model"])
+def description(request, tmp_path):
+    return load_robot(RobotSpec.model_validate(request.param), tmp_path)
+
+
+def samples_of(description, count=5):
+    lower = [max(joint.lower, -3.0) for joint in description.movable_joints]
+    upper = [min(joint.upper, 3.0) for joint in description.movable_joints]
+    drawn = np.random.default_rng(1).uniform(lower, upper, (count, len(lower)))
+    return np.array([description.with_mimics(row) for row in drawn])
+
+
+def assert_same(ours, theirs):
+    np.testing.assert_allclose(ours[:, :3], theirs[:, :3], atol=1e-9)
+    same = np.abs(np.sum(ours[:, 3:] * theirs[:, 3:], axis=1))
+    np.testing.assert_allclose(same, 1.0, atol=1e-9)
+
+
+def test_links_are_where_pinocchio_and_mujoco_put_them(description):
+    samples = samples_of(description)
     kinematics = PinocchioKinematics(description)
-    record = robot_record(description, kinematics)
-    lower = [max(joint.lower, -3.0) for joint in record.joints]
-    upper = [min(joint.upper, 3.0) for joint in record.joints]
-    samples = np.random.default_rng(1).uniform(lower, upper, (5, len(lower)))
-    poses = replayed_link_poses(record, samples)
-    names = [name for name in record.link_names if name in poses]
-    assert len(names) >= len(record.joints)
-    theirs = kinematics.link_poses(samples, names)
-    for column, name in enumerate(names):
-        ours = np.broadcast_to(poses[name], (5, 7))
-        np.testing.assert_allclose(ours[:, :3], theirs[:, column, :3], atol=1e-9)
-        same = np.abs(np.sum(ours[:, 3:] * theirs[:, column, 3:], axis=1))
-        np.testing.assert_allclose(same, 1.0, atol=1e-9)
+    poses = replayed_link_poses(robot_record(description, kinematics), samples)
+    in_physics, _ = link_poses_in_physics(description, samples)
+    assert set(poses) == set(description.link_names)
+    for place, name in enumerate(description.link_names[1:]):
+        pinocchio = [kinematics.link_pose(row, name).as_vector() for row in samples]
+        assert_same(poses[name], np.array(pinocchio))
+        assert_same(poses[name], in_physics[:, place])
+
+
+def test_a_saved_run_has_the_kinematics_of_the_description(description):
+    samples = samples_of(description)
+    record = robot_record(description, PinocchioKinematics(description))
+    poses = LinkPoses(description.joints, samples)
+    for name, rows in replayed_link_poses(record, samples).items():
+        assert_same(rows, poses.rows(name))
+    moved = next(placement for placement in record.placements if placement.joint)
+    column = description.joint_index[moved.joint]
+    local = placement_poses(moved, samples[:, column])
+    carrier, link = (
+        LinkPoses(description.joints, samples).at(2)[each] for each in (moved.parent, moved.link)
+    )
+    np.testing.assert_allclose(local[2], (carrier.inverse() @ link).as_vector(), atol=1e-9)
+
+
+def test_one_joint_moves_its_link_as_the_whole_tree_does(description):
+    row = samples_of(description)[3]
+    poses = description.link_poses(row)
+    for joint, position in zip(description.movable_joints, row, strict=True):
+        expected = poses[joint.parent].inverse() @ poses[joint.child]
+        np.testing.assert_allclose(joint.at(position).matrix(), expected.matrix(), atol=1e-9)
 
 
 def test_only_the_requested_links_come_back(tmp_path):
@@ -41,3 +81,15 @@ def test_only_the_requested_links_come_back(tmp_path):
     record = robot_record(description, PinocchioKinematics(description))
     samples = np.zeros((3, len(record.joints)))
     assert list(replayed_link_poses(record, samples, ["link3", "no_such_link"])) == ["link3"]
+
+
+@pytest.mark.parametrize("order", [(1, 0), (1, 2, 0), (0, 2, 1)])
+def test_a_link_that_is_placed_before_its_parent_is_a_flaw_of_the_file(order):
+    chain = [LinkPlacement("a", "world", POSE), LinkPlacement("b", "a", POSE)]
+    chain.append(LinkPlacement("c", "b", POSE))
+    run = make_run(robot=replace(ROBOT, placements=tuple(chain[each] for each in order)))
+    keys = [key for key, _ in run_flaws(run)]
+    assert keys
+    assert all(key.startswith("robot.placements[") for key in keys)
+    ordered = make_run(robot=replace(ROBOT, placements=tuple(chain)))
+    assert not [key for key, _ in run_flaws(ordered) if "placements" in key]

@@ -5,7 +5,6 @@ import pytest
 
 from harness.core.errors import RobotError, SpecError
 from harness.language.scenario import RobotSpec
-from harness.robot.forward_kinematics import robot_poses
 from harness.robot.load import load_robot
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
 from tests.session.front_door import run
@@ -181,8 +180,8 @@ def test_a_joint_of_one_position_is_fixed_there_with_what_follows_it(tmp_path):
     assert arm.joint_names == ("turn",)
     assert noted(arm, "are equal cannot move and are fixed: bend at 0.5")
     assert noted(arm, "they follow a fixed joint: reach")
-    tip = robot_poses(arm, np.array([0.3]))["tool"]
-    expected = robot_poses(moving, np.array([0.3, 0.5, 0.07]))["tool"]
+    tip = arm.link_poses(np.array([0.3]))["tool"]
+    expected = moving.link_poses(np.array([0.3, 0.5, 0.07]))["tool"]
     assert np.allclose(tip.matrix(), expected.matrix(), atol=1e-12)
 
 

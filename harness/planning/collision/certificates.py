@@ -19,7 +19,6 @@ from harness.planning.collision.native.library import FULL, Certify
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
-from harness.robot.description import Joint
 
 ROUNDING = 1e-5
 """Band around a margin that is left undecided, because of Coal's tolerance [m]."""
@@ -176,10 +175,10 @@ class MovingJoints:
     def __init__(self, space: GroupSpace) -> None:
         robot, description = space.robot, space.robot.description
         pin_model = robot.model
-        at_zero = np.array(space.offset)
+        is_moving = np.any(space.matrix != 0, axis=1)
+        at_zero = np.where(is_moving, 0.0, space.offset)
         pin.forwardKinematics(pin_model, robot.data, robot.configuration(at_zero))
         self._poses = [np.array(pose.homogeneous) for pose in robot.data.oMi]
-        is_moving = np.any(space.matrix != 0, axis=1)
         index_of = {name: i for i, name in enumerate(description.joint_names)}
         self.above: list[int] = [-1]
         self._at: list[int] = []
@@ -193,14 +192,12 @@ class MovingJoints:
                 self.above.append(before)
                 continue
             known = description.joint_by_name[name]
-            turn = float(at_zero[index_of[name]])
-            pose = self._seen(before, joint) @ np.linalg.inv(_joint_motion(known, turn))
             self.above.append(len(columns))
             self._at.append(joint)
             columns.append(index_of[name])
             parent.append(before)
             kind = [1.0 if known.kind == "prismatic" else 0.0]
-            rows.append(np.concatenate([_flat(pose), known.axis, kind]))
+            rows.append(np.concatenate([_flat(self._seen(before, joint)), known.axis, kind]))
         self.columns: IntArray = np.array(columns, dtype=np.int64)
         self.parent: IntArray = np.array(parent, dtype=np.int64)
         self.chain: FloatArray = np.array(rows).reshape(-1, 16)
@@ -281,17 +278,6 @@ def _has_plane(body: Body) -> bool:
 def _layout(model: CollisionModel, above: tuple[int, ...], parent: tuple[int, ...]) -> _Layout:
     """The layout of a scene for a set of moving joints."""
     return _Layout(model, above, parent)
-
-
-def _joint_motion(joint: Joint, value: float) -> FloatArray:
-    """The transform of a joint at a position, in the joint's frame, shape (4, 4)."""
-    axis = np.asarray(joint.axis, dtype=float)
-    motion = np.eye(4)
-    if joint.kind == "prismatic":
-        motion[:3, 3] = axis * value
-    else:
-        motion[:3, :3] = pin.exp3(axis * value)
-    return motion
 
 
 def _flat(matrix: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from harness.core.errors import PlanningFailed
+from harness.core.kinematics import LinkPoses
 from harness.core.registry import OWN_PACKAGE, registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -26,7 +27,6 @@ from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.kinematics import IkRequest, IkSolver
 from harness.recording.goal_failures import LinkFailure
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 
 CLOSED_FORMS = ("ur", "open_manipulator_x")
 """Solvers that `auto` tries, in this order, before `numeric`."""
@@ -48,14 +48,8 @@ class PinocchioKinematics:
 
     def link_poses(self, joint_positions: FloatArray, links: Sequence[str]) -> FloatArray:
         """T_world_link of many samples: (N, n) -> (N, len(links), 7), xyz and quat wxyz."""
-        poses = LinkPoses(self.description, joint_positions, links)
-        return np.stack(
-            [
-                np.hstack([poses.translations[link], quats_wxyz(poses.rotations[link])])
-                for link in links
-            ],
-            axis=1,
-        )
+        poses = LinkPoses(self.description.joints, joint_positions, links)
+        return np.stack([poses.rows(link) for link in links], axis=1)
 
     def solve(
         self,

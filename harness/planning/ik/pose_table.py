@@ -6,10 +6,10 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from harness.core.kinematics import LinkPoses
 from harness.core.types import FloatArray
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports.goals import PoseGoal, PositionGoal
-from harness.robot.forward_kinematics import LinkPoses
 from harness.robot.tree import joints_to
 
 SIZE = 1024
@@ -30,7 +30,7 @@ class PoseTable:
         lower = [joint.lower if np.isfinite(joint.lower) else -np.pi for joint in joints]
         upper = [joint.upper if np.isfinite(joint.upper) else np.pi for joint in joints]
         self._positions = rng.uniform(lower, upper, (SIZE, len(joints)))
-        poses = LinkPoses(space.robot.description, space.whole(self._positions), [link])
+        poses = LinkPoses(space.robot.description.joints, space.whole(self._positions), [link])
         points = poses.translations[link]
         self._turn = float(points.std())  # [m] what a turn counts
         self._poses = np.hstack([points, self._turn * poses.rotations[link].reshape(SIZE, 9)])

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
+from harness.core.pose_arrays import quats_from_rotations, rotation_vector
 from harness.core.types import FloatArray
-from harness.robot.forward_kinematics import quats_wxyz
 
 FREE = np.pi - 1e-6
 """A tolerance about one axis from which on any turn about it is allowed [rad]."""
@@ -36,7 +36,7 @@ def turns_from(middle: FloatArray, rotations: FloatArray, tolerance: Sequence[fl
     relative = middle.T @ rotations
     axis = free_axis(tolerance)
     if axis is None:
-        return _rotation_vectors(quats_wxyz(relative))
+        return rotation_vector(quats_from_rotations(relative))
     first, second = (axis + 1) % 3, (axis + 2) % 3
     sines = np.hypot(relative[:, first, axis], relative[:, second, axis])
     angles = np.arctan2(sines, relative[:, axis, axis])
@@ -64,10 +64,3 @@ def is_within(turn: FloatArray, tolerance: Sequence[float]) -> bool:
         limit >= FREE or abs(angle) <= limit + 1e-9
         for angle, limit in zip(turn, tolerance, strict=True)
     )
-
-
-def _rotation_vectors(quats_wxyz: FloatArray) -> FloatArray:
-    size = np.linalg.norm(quats_wxyz[:, 1:], axis=1, keepdims=True)
-    angle = 2 * np.arctan2(size, np.abs(quats_wxyz[:, :1]))
-    sign = np.where(quats_wxyz[:, :1] < 0, -1.0, 1.0)
-    return sign * angle * quats_wxyz[:, 1:] / np.maximum(size, 1e-12)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from harness.core.kinematics import LinkPoses
 from harness.core.pose_arrays import times_each
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -18,7 +19,6 @@ from harness.planning.model.robot_model import GroupSpace
 from harness.planning.model.turns import FREE, free_axis, turn_rates, turns_from
 from harness.ports.goals import OrientationBand, PathConstraints, PositionBox
 from harness.recording.motion_failures import ConstraintFailure
-from harness.robot.forward_kinematics import LinkPoses
 
 INNER_SHARE = 0.8
 """Of every tolerance that states are projected to, so that the lines between them hold it too; half
@@ -122,7 +122,7 @@ class HeldConstraints:
         """Values of all constraints at group positions (N, dof), shape (N, m)."""
         self.checks += len(states)
         links = {link for _, link, _ in self._measured}
-        poses = LinkPoses(self.space.robot.description, self.space.whole(states), [*links])
+        poses = LinkPoses(self.space.robot.description.joints, self.space.whole(states), [*links])
         columns = [states[:, self._joints]]
         for measure, link, offset in self._measured[::-1]:
             rotations = poses.rotations[link]

@@ -14,10 +14,10 @@ from harness.planning.ik.kinematics import PinocchioKinematics, is_built_in
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.ik.third_party import read_solutions
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.tasks import natural_task
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.kinematics import IkRequest, IkSolver
-from harness.robot.chain import Chain
 from harness.robot_tools.robot_source import RobotSource, load_source
 
 Solutions = Sequence[FloatArray]

@@ -10,10 +10,10 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.contract import Value, call_arguments
 from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import Task, task_error, task_jacobians
-from harness.robot.chain import Chain
 
 LENGTHS = {"metres": 1.0, "centimetres": 0.01, "millimetres": 0.001}
 ANGLES = {"": 1.0, "is given in degrees": np.pi / 180, "counts upwards": -1.0}

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.contract import UnusableSolver, call_text, task_of_parameters
 from harness.plugins.iktest.convention import (
     KEPT,
@@ -36,7 +37,6 @@ from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import ROWS
 from harness.plugins.iktest.text import report_lines
 from harness.plugins.iktest.trial import HANGS, Flaw, SolverTrial
-from harness.robot.chain import Chain
 from harness.robot_tools.robot_source import RobotSource, load_source
 
 MOSTLY = 0.5

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.convention import Convention
 from harness.plugins.iktest.offset import Offset, common_offset
 from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import Task, miss
-from harness.robot.chain import Chain
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from harness.core.types import BoolArray, FloatArray
 from harness.plugins.iktest.calls import CallOutcome, OutcomeKind
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.paths import StraightLine, straight_lines
 from harness.plugins.iktest.strategies.poses import (
     Target,
@@ -26,7 +27,6 @@ from harness.plugins.iktest.strategies.positions import (
 from harness.plugins.iktest.strategies.round_poses import round_poses_around, round_reachable_poses
 from harness.plugins.iktest.strategies.tasks import manipulability
 from harness.plugins.iktest.trial import Flaw, SolverTrial
-from harness.robot.chain import Chain
 
 JUMP = 0.2  # [rad or m] of a joint between two targets 2 mm apart, looked into
 HALVINGS = 8  # of a step with a jump in it: a jump is what does not become smaller

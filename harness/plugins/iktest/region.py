@@ -9,9 +9,9 @@ import numpy as np
 
 from harness.core.spatial import pitch_of
 from harness.core.types import BoolArray, FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.offset import number_of_places
 from harness.plugins.iktest.strategies.poses import Target
-from harness.robot.chain import Chain
 
 LEAST_PLACES = 3
 """Places of right answers, and of misses in each region: fewer may be an accident."""

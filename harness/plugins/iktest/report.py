@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import Task
 from harness.reporting.json_text import json_text
-from harness.robot.chain import Chain
 from harness.suite.discovery import UsageError
 
 

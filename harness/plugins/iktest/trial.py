@@ -10,6 +10,7 @@ from harness.core.quantity import distinct
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.plugins.iktest.calls import CallOutcome
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.contract import Value
 from harness.plugins.iktest.convention import Convention
 from harness.plugins.iktest.offset import Offset, numbers_text
@@ -17,7 +18,6 @@ from harness.plugins.iktest.region import Region, coordinates
 from harness.plugins.iktest.solver import Solver
 from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import Task, miss
-from harness.robot.chain import Chain
 
 LIMIT_SLACK = 1e-9  # [rad or m] that rounding may put an answer beyond a limit
 HANGS = "does not come back"

@@ -12,11 +12,11 @@ import viser
 
 from harness.cameras.meshes import coarsen, mesh_parts
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
+from harness.core.kinematics import LinkPoses
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 
 MOST_TRIANGLES = 20_000
 """Triangles of the whole robot; its meshes are coarsened until they are no more."""
@@ -312,10 +312,8 @@ class SceneView:
 
     def _link_poses(self, joint_positions: FloatArray, names: Sequence[str]) -> FloatArray:
         """T_world_link (xyz, quat wxyz) of some links, shape (n, 7)."""
-        poses = LinkPoses(self._description, joint_positions, names)
-        translations = np.array([poses.translations[name][0] for name in names])
-        rotations = np.array([poses.rotations[name][0] for name in names])
-        return np.hstack([translations, quats_wxyz(rotations)])
+        poses = LinkPoses(self._description.joints, joint_positions, names)
+        return np.array([poses.rows(name)[0] for name in names])
 
     def _body(self, name: str, parts: Sequence[Triangles], opacity: float | None = None) -> _Body:
         scene = self._server.scene

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.kinematics import LinkPoses
 from harness.core.spatial import SE3
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.description import Joint, Link
-from harness.robot.forward_kinematics import link_poses
 from harness.robot.solids import coal_geometry
 from harness.robot.srdf.srdf import link_pair
 from harness.robot.tree import carriers
@@ -77,7 +77,8 @@ def urdf_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
         if joint.mimic is not None:
             driven = positions.get(joint.mimic.joint, 0.0)
             every[joint.name] = joint.mimic.multiplier * driven + joint.mimic.offset
-    return link_poses(urdf.joints, every, urdf.root)
+    row = [every.get(joint.name, 0.0) for joint in urdf.joints if joint.is_movable]
+    return {urdf.root: SE3.identity(), **LinkPoses(urdf.joints, np.array(row)).at(0)}
 
 
 def coal_transform(pose: SE3) -> Any:

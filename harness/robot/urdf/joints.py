@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.kinematics import JointKind
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, JointKind, Mimic, fixed_joint
-from harness.robot.forward_kinematics import motion
+from harness.robot.description import Joint, Mimic, fixed_joint
 from harness.robot.urdf.values import number, pose, three
 from harness.robot.urdf.write import NO_LIMIT
 
@@ -186,9 +186,7 @@ def held_without_range(joints: Sequence[Joint], notes: list[str]) -> tuple[Joint
             held[joint.name] = joint.mimic.multiplier * followed + joint.mimic.offset
         notes.append(f"they follow a fixed joint: {', '.join(joint.name for joint in following)}")
     return tuple(
-        fixed_joint(
-            joint.name, joint.parent, joint.child, joint.pose @ motion(joint, held[joint.name])
-        )
+        fixed_joint(joint.name, joint.parent, joint.child, joint.at(held[joint.name]))
         if joint.name in held
         else joint
         for joint in joints

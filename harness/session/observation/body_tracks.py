@@ -12,12 +12,12 @@ import coal
 import numpy as np
 
 from harness.core.geometry import Shape
+from harness.core.kinematics import LinkPoses
 from harness.core.pose_arrays import rotations_of, times_each
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
-from harness.robot.forward_kinematics import LinkPoses
 from harness.robot.solids import coal_geometry
 
 LOOKS = 8

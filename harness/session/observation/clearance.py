@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from harness.core.geometry import Shape
+from harness.core.kinematics import LinkPoses
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import LinkPoses
 from harness.session.observation.body_tracks import (
     BodyTrack,
     MovingBody,
@@ -186,7 +186,7 @@ class _Measurement:
     def __init__(self, scene: _Scene, motion: Motion, found: MeasuredClearance) -> None:
         self._scene, self._motion, self._found = scene, motion, found
         self._description = scene.robot.description
-        self._links = LinkPoses(self._description, motion.joint_positions)
+        self._links = LinkPoses(self._description.joints, motion.joint_positions)
         self._tracks = {
             record.name: object_track(record, scene.attachments, motion, self._links)
             for record in scene.objects

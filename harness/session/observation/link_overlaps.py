@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.kinematics import LinkPoses
 from harness.core.types import FloatArray, IntArray, Pair
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import Finding, Run
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
-from harness.robot.forward_kinematics import LinkPoses
 from harness.session.observation.body_tracks import (
     MovingBody,
     TrackedShape,
@@ -41,7 +41,7 @@ def with_excluded_links(signals: Signals, description: RobotDescription) -> Sign
     shapes = links_with_shapes({link.name: link.collisions for link in description.links})
     apart = _pairs_apart_by_design(description, shapes)
     samples = knots(signals.times, (), ())
-    moving = LinkPoses(description, signals.joint_positions[samples])
+    moving = LinkPoses(description.joints, signals.joint_positions[samples])
     overlaps: dict[Pair, FloatArray] = {}
     nearest = np.full(count, signals.clearance_cutoff)
     links = np.full(count, -1)
@@ -90,7 +90,7 @@ def _pairs_apart_by_design(
     lower = np.array([joint.lower for joint in description.movable_joints])
     upper = np.array([joint.upper for joint in description.movable_joints])
     zero = description.with_mimics(np.clip(np.zeros(len(lower)), lower, upper))
-    still = LinkPoses(description, zero[None])
+    still = LinkPoses(description.joints, zero[None])
     hand = description.gripper
     moved_by_hand = set() if hand is None else {*hand.links, hand.palm_link}
     found: dict[Pair, float] = {}

@@ -8,8 +8,8 @@ from harness.core.spatial import SE3
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.iktest import IkTest, check_ik, run_ik_test
 from harness.plugins.iktest.builtin_ik import own_solver
+from harness.plugins.iktest.chain import Chain
 from harness.ports.goals import PoseGoal
-from harness.robot.chain import Chain
 from harness.robot_tools.robot_source import RobotSource, load_source
 
 

@@ -7,7 +7,6 @@ import pytest
 
 from docs.generators.studio_guide import follow, is_shown, steps
 from harness.plugins.studio.document import new_text
-from harness.robot.forward_kinematics import robot_poses
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from tests.plugins.studio.conftest import pixel_of
@@ -225,7 +224,7 @@ def test_handles_and_ghosts_are_used_with_the_mouse(browser, serve):
     opened.wait_text("#reach", "to the handle")
     mouse.drop()
     opened.wait("document.querySelectorAll('#ways button').length > 0")
-    ghost = robot_poses(served.studio.cell.description, served.studio.reach.ways[0].positions)
+    ghost = served.studio.cell.description.link_poses(served.studio.reach.ways[0].positions)
     chosen = "document.querySelectorAll('#ways button[aria-pressed=true]').length === 1"
     forearm = 0.5 * (ghost["link4"].translation + ghost["link5"].translation)
     mouse.click_until(forearm, chosen)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Cylinder, Shape, Sphere
+from harness.core.kinematics import LinkPoses
+from harness.core.pose_arrays import quats_from_rotations
 from harness.core.spatial import SE3
 from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.signals import Signals
-from harness.robot.forward_kinematics import LinkPoses, quats_wxyz
 from harness.session.observation.clearance import CoalClearance
 from harness.session.observation.sampled_clearance import LARGEST_ERROR
 from tests.planning.lesson import TCP, Cell, at, boxes, tables, thing, ur
@@ -130,14 +131,14 @@ def test_a_held_object_is_measured_as_believed_and_as_it_is():
     cell = Cell(ur("ur3e"), with_tables=False)
     positions = swing(cell)
     count = len(positions)
-    links = LinkPoses(cell.description, positions, [TCP])
+    links = LinkPoses(cell.description.joints, positions, [TCP])
     slipped = at(0, 0, 0.01)
     in_link = at(0, 0, 0)
     real = np.empty((count, 7))
     offset = in_link @ slipped
     rotations = links.rotations[TCP] @ offset.rotation
     real[:, :3] = links.translations[TCP] + links.rotations[TCP] @ offset.translation
-    real[:, 3:] = quats_wxyz(rotations)
+    real[:, 3:] = quats_from_rotations(rotations)
     cylinder = Shape(Cylinder(0.03, 0.1))
     green = thing("green_cylinder", SE3.from_vector(real[0]), cylinder, static=False)
     believed = thing("cylinder", at(9, 9, 9), cylinder)

@@ -185,13 +185,10 @@ class _Recording:
             joint_efforts=measured.efforts,
             joint_commands=commanded.positions,
             joint_command_velocities=commanded.velocities,
-            tcp_pose=self._whole(links[known.robot.tcp_link]),
-            frames={name: self._whole(links[name]) for name in known.frames if name in links},
+            tcp_pose=links[known.robot.tcp_link],
+            frames={name: links[name] for name in known.frames if name in links},
             object_poses=self._poses,
         )
-
-    def _whole(self, poses: FloatArray) -> FloatArray:
-        return np.array(np.broadcast_to(poses, (len(self._times), 7)))
 
     def _notes(self, signals: Signals) -> list[str]:
         names = [joint.name for joint in self._known.robot.joints]

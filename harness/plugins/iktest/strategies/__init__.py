@@ -3,6 +3,7 @@
 Poses result from forward kinematics and are never filtered, so no draw is discarded.
 """
 
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.paths import StraightLine, joint_paths, straight_lines
 from harness.plugins.iktest.strategies.poses import (
     Target,
@@ -19,7 +20,6 @@ from harness.plugins.iktest.strategies.positions import (
     near_singular_positions,
 )
 from harness.plugins.iktest.strategies.scenarios import scenarios
-from harness.robot.chain import Chain
 
 __all__ = [
     "Chain",

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointPath
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.positions import Positions, joint_positions
 from harness.plugins.iktest.strategies.tasks import (
     Task,
@@ -19,7 +20,6 @@ from harness.plugins.iktest.strategies.tasks import (
     task_error,
     task_jacobians,
 )
-from harness.robot.chain import Chain
 
 _CORNERS = np.array(list(product((1.0, -1.0), repeat=3))) / np.sqrt(3.0)
 DIRECTIONS: FloatArray = np.concatenate([np.eye(3), -np.eye(3), _CORNERS])

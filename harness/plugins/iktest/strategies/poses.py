@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.positions import (
     Positions,
     joint_positions,
@@ -16,7 +17,6 @@ from harness.plugins.iktest.strategies.positions import (
     near_singular_positions,
 )
 from harness.plugins.iktest.strategies.tasks import Task
-from harness.robot.chain import Chain
 
 
 @dataclass(frozen=True, eq=False)

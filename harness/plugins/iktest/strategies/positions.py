@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from harness.core.types import FloatArray
 from harness.language.scenario import RobotSpec
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.tasks import Task, manipulability, natural_task
-from harness.robot.chain import Chain
 from harness.robot.load import load_robot
 
 Positions = st.SearchStrategy[FloatArray]

@@ -8,8 +8,10 @@ from typing import Literal
 import numpy as np
 from hypothesis import strategies as st
 
+from harness.core.pose_arrays import rotations_about
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.poses import Target, Targets, poses_around
 from harness.plugins.iktest.strategies.positions import joint_positions
 from harness.plugins.iktest.strategies.tasks import (
@@ -19,8 +21,6 @@ from harness.plugins.iktest.strategies.tasks import (
     task_error,
     task_jacobians,
 )
-from harness.robot.chain import Chain
-from harness.robot.forward_kinematics import rotations_about
 
 STEP = 0.01
 """Coordinates that are multiples of this count as even [m]."""

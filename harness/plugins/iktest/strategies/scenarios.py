@@ -7,9 +7,9 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.poses import Target, reachable_poses
 from harness.plugins.iktest.strategies.positions import joint_positions, load_chain
-from harness.robot.chain import Chain
 
 Document = dict[str, Any]
 """The content of a scenario's YAML file; `yaml.safe_dump` writes it."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
-from harness.robot.chain import Chain
+from harness.plugins.iktest.chain import Chain
 
 Task = Literal["pose", "position and pitch", "position"]
 

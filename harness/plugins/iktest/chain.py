@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.core.errors import RobotError
+from harness.core.kinematics import LinkPoses
+from harness.core.pose_arrays import times_each
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import Joint, RobotDescription
-from harness.robot.forward_kinematics import motion, rotations_about
 from harness.robot.tree import joints_to
 
 HOME = "home"
@@ -68,15 +69,15 @@ class Chain:
         pose = SE3.identity()
         way = joints_to(link, description.joints)
         for joint in way:
-            pose = pose @ joint.pose
             if joint.name in names:
-                before.append(pose)
+                before.append(pose @ joint.pose)
                 pose = SE3.identity()
             elif joint.is_movable:
                 if joint.mimic is not None and joint.mimic.joint in names:
                     raise RobotError(f"'{link}' moves with '{joint.name}', which mimics a joint")
-                value = float(start[description.joint_index[joint.name]])
-                pose = pose @ motion(joint, value)
+                pose = pose @ joint.at(float(start[description.joint_index[joint.name]]))
+            else:
+                pose = pose @ joint.pose
         if len(before) < len(names) or not names:
             raise RobotError(f"the joints of group '{group}' do not all carry '{link}'")
         joints = [description.joint_by_name[name] for name in names]
@@ -110,8 +111,7 @@ class Chain:
 
     def link_pose(self, joint_positions: FloatArray) -> SE3:
         """T_world_link at the group's positions, shape (dof,)."""
-        rotations, translations, _ = self._walk(np.asarray(joint_positions, float)[None])
-        return SE3(rotations[0], translations[0])
+        return self._poses(np.asarray(joint_positions, float)[None]).at(0)[self.link]
 
     def jacobians(self, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Jacobians in world axes at (N, dof) positions, and R_world_link.
@@ -119,12 +119,16 @@ class Chain:
         Returns:
             Rows of [m, rad] per joint, shape (N, 6, dof); rotations, shape (N, 3, 3).
         """
-        rotations, tips, carried = self._walk(np.asarray(samples, dtype=float))
+        poses = self._poses(np.asarray(samples, dtype=float))
+        tips = poses.translations[self.link]
         columns: list[FloatArray] = []
-        for (origins, axes), is_turning in zip(carried, self.is_turning, strict=True):
-            linear = np.cross(axes, tips - origins) if is_turning else axes
+        for name, is_turning in zip(self.joint_names, self.is_turning, strict=True):
+            joint = self.description.joint_by_name[name]
+            axes = times_each(poses.rotations[joint.child], joint.axis)
+            arms = tips - poses.translations[joint.child]
+            linear = np.cross(axes, arms) if is_turning else axes
             columns.append(np.hstack([linear, axes if is_turning else np.zeros_like(axes)]))
-        return np.stack(columns, axis=2), rotations
+        return np.stack(columns, axis=2), poses.rotations[self.link]
 
     def whole(self, joint_positions: FloatArray) -> FloatArray:
         """Positions of the whole robot in description order; other joints are at their start."""
@@ -153,20 +157,8 @@ class Chain:
         away = np.cross(self.axes[index], self.before[index + 1].translation)
         return bool(self.is_turning[index]) and float(np.linalg.norm(away)) < 1e-9
 
-    def _walk(
-        self, samples: FloatArray
-    ) -> tuple[FloatArray, FloatArray, list[tuple[FloatArray, FloatArray]]]:
-        """The link's rotations and positions, and each joint's origin and axis in the world."""
-        count = len(samples)
-        R, p = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))
-        carried: list[tuple[FloatArray, FloatArray]] = []
-        for index, before in enumerate(self.before):
-            p = p + R @ before.translation
-            R = R @ before.rotation
-            axes = R @ self.axes[index]
-            carried.append((p, axes))
-            if self.is_turning[index]:
-                R = R @ rotations_about(self.axes[index], samples[:, index])
-            else:
-                p = p + axes * samples[:, index, None]
-        return R @ self.tip.rotation, p + R @ self.tip.translation, carried
+    def _poses(self, samples: FloatArray) -> LinkPoses:
+        """The poses of the chain's links at positions (N, dof)."""
+        whole = np.tile(self.description.start_positions(), (len(samples), 1))
+        whole[:, [self.description.joint_index[name] for name in self.joint_names]] = samples
+        return LinkPoses(self.description.joints, whole, [self.link])
