@@ -124,7 +124,7 @@ def exit_code_in(tmp_path_factory):
     return exit_code
 
 
-@pytest.mark.nightly(but=["ASCII alone", "graphics library that is missing"])
+@pytest.mark.nightly(but=["graphics library that is missing"])
 @pytest.mark.parametrize("scene", ENVIRONMENTS, ids=lambda scene: scene.title)
 def test_a_run_goes_on_in_any_environment(scene, exit_code_in):
     assert exit_code_in(scene) == 1, "its expectation fails"

@@ -116,7 +116,7 @@ def test_the_first_signal_waits_for_the_end_of_an_import(folder, signals, where)
     assert (done.stdout.strip(), done.stderr) == (where, "")
 
 
-@pytest.mark.nightly(but=[">/dev/full-3"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("redirection", "code"),
     [(">&-", 1), ("2>&-", 1), ("<&-", 1), ("<&- >&- 2>&-", 1), (">/dev/full", 3),

@@ -5,6 +5,8 @@ import subprocess
 import sys
 import time
 
+import pytest
+
 from tests.suite.ball import ball
 
 REFRESH = '<meta http-equiv="refresh"'
@@ -40,6 +42,7 @@ def test_a_running_suite_has_a_page_that_reloads_and_the_last_page_does_not(tmp_
     assert last.count("<tr data-index") == 9
 
 
+@pytest.mark.nightly
 def test_the_page_of_a_suite_that_goes_on_counts_what_was_known(tmp_path):
     (tmp_path / "ball.scenario.yaml").write_text(ball(9))
     run(tmp_path).communicate()

@@ -73,7 +73,7 @@ def test_a_command_reads_utf_8_and_writes_what_the_terminal_has(folder, environm
         assert (folder / "reports" / "über" / "run.json").is_file()
 
 
-@pytest.mark.nightly(but=["ascii_only"])
+@pytest.mark.nightly
 def test_a_bundled_arm_is_read_from_python_whatever_the_locale(folder, environment):
     code = "import harness; print(harness.run('plain.scenario.yaml').passed)"
     plain = "scenario: Plain\nrobot: ur5e\nsteps: [{wait: 0.1 s}]\nexpect: [tracking_error: 1]\n"

@@ -131,6 +131,7 @@ expect:
 """
 
 
+@pytest.mark.nightly
 def test_no_terminal_is_silent_for_two_seconds_and_no_line_wraps(tmp_path):
     (tmp_path / "film.scenario.yaml").write_text(CAMERAS)
     session = run_in_terminal(["run", "film.scenario.yaml"], tmp_path)

@@ -49,6 +49,7 @@ def self_collision(description):
     return collides
 
 
+@pytest.mark.nightly(but=["ur3e"])
 @pytest.mark.parametrize("name", STATED)
 def test_no_self_collision_is_missed_and_false_ones_are_as_rare_as_stated(name):
     spec = RobotSpec.model_validate({"model": name, "gripper": "rh_p12_rn_a"})

@@ -35,6 +35,7 @@ def run(folder, command="run", code=0):
     return harness(folder, command, "nod.scenario.yaml", "--plugin", "nod.py", *more, code=code)
 
 
+@pytest.mark.nightly
 def test_the_guide_s_step_moves_the_arm(folder):
     assert "3 steps" in run(folder)
     assert "nod.scenario.yaml: ok" in run(folder, "check")

@@ -118,7 +118,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     assert "names.scenario.yaml:13:22: there is no joint 'joint9'" in problems
 
 
-@pytest.mark.nightly(but=["file"])
+@pytest.mark.nightly
 def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
     folder, library, _, options = plugged_in
     out = harness(folder, "run", "remarks.scenario.yaml", *options, path=library)

@@ -77,7 +77,7 @@ def decomposed(name):
     return decompose(vertices[faces])
 
 
-@pytest.mark.nightly(but=["cup"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", VESSELS)
 def test_the_parts_hold_the_whole_surface_and_stay_as_near_to_it_as_they_say(name, tmp_path):
     vertices, faces = VESSELS[name]

@@ -174,6 +174,7 @@ CIRCLE = '<node id="n0"><instance_node url="#n1"/></node><node id="n1"><instance
 CHAIN = "".join(f'<node id="n{n}"><instance_node url="#n{n + 1}"/></node>' for n in range(20_000))
 
 
+@pytest.mark.nightly(only=["nodes2-too deeply"])
 @pytest.mark.parametrize(
     ("nodes", "message"),
     [

@@ -46,6 +46,7 @@ def test_a_follower_s_damping_acts_at_the_joint_that_it_follows(tmp_path):
     assert joints["right_joint"].damping == joints["left_tip_joint"].damping == 0
 
 
+@pytest.mark.nightly(but=["3"])
 @pytest.mark.parametrize("damping", ["0.7", "3"])
 def test_light_fingers_with_a_large_damping_stay_parallel_and_hold(tmp_path, damping):
     write_arm(tmp_path, SIX.replace(HAND, hand(damping)))

@@ -22,6 +22,7 @@ def written(folder, text):
     return path
 
 
+@pytest.mark.nightly
 def test_a_scenario_that_expects_nothing_passes_and_everything_says_so(tmp_path, capsys):
     path = written(tmp_path, "  - wait: 0.05 s\n")
     assert main(["check", str(path)]) == 0

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from tests.session.front_door import file_of
 
 PROGRAM = """
@@ -38,6 +40,7 @@ def first_line(program, file):
     return done.stdout.split("\n")[0]
 
 
+@pytest.mark.nightly
 def test_a_run_that_is_kept_because_it_failed_is_drawn_by_another_process(tmp_path):
     rest = "expect: [{joints: {positions: {joint1: 0.25}, tolerance: 0.01}}]"
     steps = "- ptp: {joints: {joint1: 0.5}}"

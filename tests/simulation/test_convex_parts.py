@@ -124,6 +124,7 @@ def test_planner_and_physics_agree_on_random_poses_of_a_body_near_a_bin(tmp_path
     assert 0.2 < np.mean([one for one, _ in agreed]) < 0.8
 
 
+@pytest.mark.nightly
 def test_planner_and_physics_agree_on_random_states_of_an_arm_of_meshes(tmp_path):
     ring = {"sides": 6, "outer": 0.45, "inner": 0.4, "height": 0.3, "floor": 0.02}
     write_obj(tmp_path / "ring.obj", *vessel(**ring))

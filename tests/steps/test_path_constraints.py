@@ -51,6 +51,7 @@ SHAFT = """
 """
 
 
+@pytest.mark.nightly
 def test_the_origin_of_an_attached_object_stays_in_a_box(tmp_path):
     result, record = run(tmp_path, SHAFT % "1.0", robot=ARM)
     assert result.outcome == "passed", result.message

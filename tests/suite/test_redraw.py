@@ -44,6 +44,7 @@ def test_samples_that_overlap_are_counted(file, tmp_path):
     assert (rate["rate"]["overlapping"], rate["rate"]["redraws"]) == (sum(overlapping), 0)
 
 
+@pytest.mark.nightly
 def test_samples_that_overlap_are_drawn_again_and_counted(file, tmp_path):
     path = file(REDRAWN)
     reported = results(path, "--no-report", cwd=tmp_path)

@@ -4,6 +4,8 @@ import gc
 import tracemalloc
 from dataclasses import replace
 
+import pytest
+
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.record import SuiteCase
 from harness.suite.header import stated_variation
@@ -43,6 +45,7 @@ def test_results_are_read_back_from_the_stream(tmp_path):
     assert sum(outcome == "failed" for _, outcome in results.outcomes()) == len(range(0, COUNT, 14))
 
 
+@pytest.mark.nightly
 def test_a_result_takes_few_bytes_of_memory(tmp_path):
     line = StreamEntry("key", passed(0), {"x": 1.0}).line
 

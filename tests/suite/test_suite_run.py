@@ -275,6 +275,7 @@ def test_samples_that_cannot_be_run_do_not_count_in_the_rate(varied):
     assert "--set" not in done.stdout
 
 
+@pytest.mark.nightly
 def test_a_mistake_of_the_file_is_reported_once_not_for_every_sample(varied):
     path = varied(VARIED.replace("wait:", "wiat:"))
     done = harness("run", path, "--no-report", cwd=path.parent)

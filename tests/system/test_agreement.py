@@ -41,6 +41,7 @@ def test_planned_clearance_stands_next_to_the_actual_one(weak_grip):
     assert found.values["planned"] == pytest.approx(found.values["actual"], abs=grip)
 
 
+@pytest.mark.nightly
 def test_coming_nearer_than_planned_can_be_forbidden_and_is_measured_against_the_plan(tmp_path):
     result, saved = run(
         tmp_path,

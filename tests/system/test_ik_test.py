@@ -50,6 +50,7 @@ def without_times(text):
     return re.sub(r"(?m)(?<=^  speed).*| in [0-9.]+ s$", "", text)
 
 
+@pytest.mark.nightly
 def test_the_corrected_solver_passes_and_finds_every_way(tmp_path, capfd):
     solver = f"{EXAMPLES / 'corrected_ik.py'}:ik"
     assert main(["ik-test", solver, *ARM, "--branches", "--report-dir", str(tmp_path)]) == 0

@@ -66,6 +66,7 @@ def test_what_the_steps_of_the_flagship_added_is_gone_at_the_end(flagship):
     assert not any(attachment.end_time > end for attachment in run.attachments)
 
 
+@pytest.mark.nightly
 def test_without_the_boxes_the_path_is_another(flagship, tmp_path):
     with_boxes = flagship.run
     text = FLAGSHIP.read_text()

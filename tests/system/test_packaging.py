@@ -83,6 +83,7 @@ def test_the_wheel_holds_package_data_and_licence_and_nothing_else(wheel):
         assert {f"harness/data/{name}" for name in ours} <= set(inside)
 
 
+@pytest.mark.nightly
 def test_an_installed_package_is_not_the_checkout(harness, installed):
     shown = harness("new", "a.scenario.yaml")
     assert shown.returncode == 0

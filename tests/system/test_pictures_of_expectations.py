@@ -25,6 +25,7 @@ def without_numbers(text):
     return re.sub(r"\d+(\.\d+)?", "#", html.unescape(text))
 
 
+@pytest.mark.nightly
 def test_every_predicate_has_a_small_picture_of_a_pass_and_a_failure(panels, generator):
     assert set(panels) == set(PREDICATES)
     for word, pair in panels.items():
@@ -32,6 +33,7 @@ def test_every_predicate_has_a_small_picture_of_a_pass_and_a_failure(panels, gen
         assert (generator.FOLDER / f"{word}.svg").stat().st_size < 60_000
 
 
+@pytest.mark.nightly
 def test_the_pictures_say_what_the_runs_of_now_say(panels, generator):
     for word, pair in panels.items():
         kept = without_numbers(

@@ -246,7 +246,7 @@ class Odd(Predicate):
 """
 
 
-@pytest.mark.nightly(but=[3])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("body", "expected"),
     [

@@ -38,7 +38,7 @@ def centimetres_and_degrees(x, y, z, pitch):
     return [in_degrees(*each) for each in targets(0.01, pi / 180)(x, y, z, pitch)]
 
 
-@pytest.mark.nightly(but=["ik-it is taken in degrees"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("ik", "words"),
     [

@@ -42,6 +42,7 @@ def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
     assert not report.has_passed
 
 
+@pytest.mark.nightly
 def test_a_function_that_kills_its_process_is_reported_and_shrunk(tmp_path):
     body = "    if z < 0: os.kill(os.getpid(), 11)\n    return correct(x, y, z, pitch)\n"
     report = report_of(tmp_path, body)

@@ -43,6 +43,7 @@ def test_a_correct_solver_passes_with_everything_it_claims():
     assert report.speed.calls == 40
 
 
+@pytest.mark.nightly
 def test_a_tool_of_another_length_is_reported_in_the_links_axes():
     def longer(x, y, z, pitch):
         heading = np.arctan2(y, x - 0.012)

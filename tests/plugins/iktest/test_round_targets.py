@@ -38,7 +38,7 @@ def sideways(x, y, z, pitch):
     return correct(x, y, z, pitch)
 
 
-@pytest.mark.nightly(but=["slope"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("ik", [slope, level, at_the_shoulder, sideways])
 def test_a_division_by_zero_on_a_plane_of_the_arm_is_found(ik):
     report = run_ik_test(IkTest(ik, OM))

@@ -103,6 +103,7 @@ def test_names_that_ros_does_not_take_are_reported_at_their_place(tmp_path, name
     assert line == 6
 
 
+@pytest.mark.nightly(only=["run"])
 @pytest.mark.parametrize("command", ["check", "bridge", "run"])
 def test_a_name_that_the_robot_uses_already_is_refused_before_the_run(tmp_path, capsys, command):
     file = scenario(tmp_path, HOLD, "ros2: {arm_controllers: [gripper_controller]}")

@@ -72,6 +72,7 @@ def test_nothing_moves_before_the_user_agrees(tmp_path, plan, capsys, monkeypatc
     assert results[0].commands == 0
 
 
+@pytest.mark.nightly
 def test_ctrl_c_stops_the_robot(tmp_path, plan):
     with bridge(scenario(tmp_path, HOLD)) as (node, results):
         states = node.listen("/joint_states", "sensor_msgs/msg/JointState")

@@ -387,6 +387,7 @@ def test_the_angles_of_a_goal_are_converted_with_their_unit(opened):
     opened.page.fill("#goal-pitch", "0")
 
 
+@pytest.mark.nightly
 def test_a_second_page_watches_until_it_is_given_control(browser, opened, served):
     context = browser.new_context()
     second = Page(context, served.address)

@@ -117,6 +117,7 @@ def test_the_command_prints_the_address_and_ends_with_the_run(request_, unwatche
     assert f"2 runs, one digest: {unwatched.digest}" in done.stdout
 
 
+@pytest.mark.nightly
 def test_ctrl_c_ends_a_run_that_two_pages_watch(tmp_path):
     text = TEXT.replace("30 s", "590 s")
     (tmp_path / "long.scenario.yaml").write_text(text)

@@ -194,6 +194,7 @@ def test_starts_with_overlaps_do_not_count_where_the_file_redraws_them(tmp_path,
     assert "bodies overlap at the start of every sample" in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_a_scenario_that_fails_as_written_needs_no_search(tmp_path, capsys):
     code, found = search(tmp_path, TWO_KINDS.replace("x: 0.0", "x: 0.4"))
     assert code == 1
