@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc, SourceMap
 from harness.language.planning import Planning
 from harness.language.scenario import Scenario
-from harness.language.step import Step
+from harness.language.step import Block, Step
 from harness.language.world import ObjectSpec, WorldSpec
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import PlanningOptions
@@ -57,6 +58,7 @@ class Sources:
         missing: What could not be loaded; something stands in for it, and problems that it decides
             are not reported.
         doubtful: Names in what could not be read; problems with them may follow from that.
+        is_broken: Whether parts of the file cannot be read, so that models lack fields.
     """
 
     scenario: Scenario
@@ -71,6 +73,7 @@ class Sources:
     check_mesh: Callable[[Mesh], None]
     missing: frozenset[Prerequisite] = frozenset()
     doubtful: frozenset[str] = frozenset()
+    is_broken: bool = False
 
 
 def compile_scenario(sources: Sources) -> Program:
@@ -107,7 +110,8 @@ class _Compiler:
         for index, expectation in enumerate(scenario.expect):
             self._expectation(expectation, ("expect", index), "")
         for expectation, loc in self.pending:
-            check_expectation(as_expectation(expectation), loc, self.scope)
+            with self._gaps_allowed():
+                check_expectation(as_expectation(expectation), loc, self.scope)
         check_cameras(sources.world.cameras, scenario.cameras, self.scope)
         videos = check_videos(scenario.videos, self.scope)
         controllers = controller_names(sources.description, scenario.ros2, self.problems)
@@ -132,6 +136,20 @@ class _Compiler:
             videos=videos,
             controllers=controllers,
         )
+
+    @contextmanager
+    def _gaps_allowed(self, name: str = "") -> Generator[None]:
+        """Skip the rest of what uses a model that lacks what cannot be read of the file.
+
+        Args:
+            name: The name of an object; problems with it may follow from that.
+        """
+        try:
+            yield
+        except Exception:  # a class relies on its validators, which have not run
+            if not self.sources.is_broken:
+                raise
+            self.problems.add_unusable(name)
 
     # -- objects ------------------------------------------------------------------------------
 
@@ -161,9 +179,10 @@ class _Compiler:
                 )
             here.add(spec.name)
             self.object_specs.setdefault(spec.name, _without_pose(spec))
-            obj = self._resolve(spec, loc, self._start_pose(spec, loc, resolved))
-            if obj is not None:
-                resolved[spec.name] = obj
+            with self._gaps_allowed(spec.name):
+                obj = self._resolve(spec, loc, self._start_pose(spec, loc, resolved))
+                if obj is not None:
+                    resolved[spec.name] = obj
         return tuple(resolved.values())
 
     def _world_objects(self) -> dict[str, WorldObject]:
@@ -292,19 +311,27 @@ class _Compiler:
         step_id = f"{spec.id}{suffix}" if spec.id else path
         if not self.scope.claim_step_id(step_id):
             self.problems.add((*loc, "id"), f"another step has the id '{step_id}'", needs=())
-        for keys, obj in spec.new_objects():
-            self._later_object(obj, (*loc, *keys))
+        with self._gaps_allowed():
+            for keys, obj in spec.new_objects():
+                with self._gaps_allowed(obj.name):
+                    self._later_object(obj, (*loc, *keys))
         if spec.group is not None:
             self.scope.check_group(spec.group, (*loc, "group"))
-        spec.check(At(self.scope, loc))
+        with self._gaps_allowed():
+            spec.check(At(self.scope, loc))
+        title, options = spec.verb, self._options(None, loc, path)
+        with self._gaps_allowed():
+            title = spec.title
+        with self._gaps_allowed():
+            options = self._options(spec.planning, loc, path)
         line, _ = sources.lines.line_of(loc)
         step = ProgramStep(
             id=step_id,
             path=path,
             spec=spec,
-            summary=spec.title,
+            summary=title,
             line=line,
-            options=self._options(spec.planning, loc, path),
+            options=options,
             children=self._children(spec, loc, path, suffix),
         )
         for index, expectation in enumerate(spec.expect):
@@ -313,7 +340,10 @@ class _Compiler:
 
     def _children(self, spec: Step, loc: Loc, path: str, suffix: str) -> tuple[ProgramStep, ...]:
         children: list[ProgramStep] = []
-        for block in spec.blocks(loc, path):
+        blocks: Iterable[Block] = ()
+        with self._gaps_allowed():
+            blocks = [*spec.blocks(loc, path)]
+        for block in blocks:
             if len(self.step_locs) > MOST_STEPS:
                 self.problems.add(
                     loc,

@@ -97,8 +97,6 @@ def prepare(
     except SpecError as error:
         problems = _together(reading, error.problems)
         raise SpecError(_with_notes(problems, reading.loaded.notes)) from error
-    if reading.problems:
-        raise SpecError(reading.problems)
     return prepared
 
 
@@ -150,13 +148,14 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
         check_mesh=_check_mesh,
         missing=missing,
         doubtful=reading.doubtful,
+        is_broken=bool(reading.problems),
     )
     notes = (*description.notes, *map(str, world.notes))
     try:
         program = compile_scenario(sources)
     except SpecError as error:
         raise SpecError([*problems, *error.problems]) from error
-    if problems:
+    if problems or reading.problems:
         raise SpecError(problems)
     added = (*program.world.objects, *program.later_objects.values())
     notes += parts_notes({obj.name: obj.shapes for obj in added})

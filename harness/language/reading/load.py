@@ -24,7 +24,7 @@ from harness.language.reading.params import substitute
 from harness.language.reading.repair import Repaired, repair
 from harness.language.reading.short_forms import models_shape
 from harness.language.reading.varied_paths import check_variation, values_of_case
-from harness.language.reading.wording import problems_of
+from harness.language.reading.wording import is_follow_up, problems_of
 from harness.language.scenario import Scenario
 from harness.language.world import WorldSpec
 
@@ -305,7 +305,7 @@ def _model(
         loaded = model.model_validate(data)
     except ValidationError as error:
         known = {(problem.path, problem.line, problem.column) for problem in problems}
-        errors = error.errors(include_url=False)
+        errors = [each for each in error.errors(include_url=False) if not is_follow_up(each)]
         independent = [each for each in errors if not _contains(lines, each["loc"], known)]
         problems += (
             problem

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any, Literal, cast
 
-from harness.language.expectation import CHECK
+from harness.language.base import SpecModel
+from harness.language.expectation import CHECK, KIND
 from harness.language.language import PLACEHOLDER_VERB, PLACEHOLDER_WORD
-from harness.language.step import TAG
+from harness.language.reading.partial import partial_model, partial_plugin, texts
+from harness.language.step import TAG, Step
 from harness.language.variation import VARIATION_KEYS
+from harness.language.world import ObjectSpec
 
 STAND_INS: dict[str, dict[str, Any]] = {
     "steps": {TAG: PLACEHOLDER_VERB},
     "expect": {CHECK: PLACEHOLDER_WORD},
-    "objects": {"static": True, "sphere": {"radius": 1e-3}, "in": "planning"},
 }
-"""Lists of a scenario, and what stands in for an item that cannot be read."""
+"""Lists of a scenario, and what stands in for an item whose word is unknown."""
 
 STAND_IN_ROBOT = "open_manipulator_x"
 """In place of a robot that cannot be known, so that what does not depend on it is checked."""
@@ -25,8 +27,8 @@ STAND_IN_ROBOT = "open_manipulator_x"
 ROBOT_DETAILS = ("base", "start_state", "joint_limits", "named_states", "moveit", "args")
 """Keys of `robot` without which it is the same arm."""
 
-KEPT = {"steps": ("id", "planning", "expect"), "expect": (), "objects": ("name",)}
-"""Keys of a broken item that are kept unless they are what is broken."""
+KEPT = {"steps": ("id", "planning", "expect"), "expect": ()}
+"""Keys of such an item that are kept unless they are what is broken."""
 
 
 @dataclass
@@ -72,18 +74,17 @@ def _remove_mistake(found: Repaired, place: tuple[str | int, ...]) -> None:
     item = _deepest_item(data, place)
     if item is not None:
         items, index, kind, inside = item
-        old, new = items[index], _stand_in(kind, items[index], index, inside)
-        still_judged = {key: new[key] for key in ("planning", "expect") if key in new}
-        found.words.update(set(_texts(old)) - set(_texts(still_judged)))
-        items[index] = new
+        if not isinstance(items[index], SpecModel):  # of the item's other mistakes nothing is left
+            partial = _partial(kind, items[index], index, found.words)
+            items[index] = partial or _stand_in(kind, items[index], inside)
         return
     value = data.get(key)
     part = str(place[1]) if len(place) > 1 else ""
     is_detail = key != "robot" or part in ROBOT_DETAILS
     if isinstance(value, dict) and part in value and is_detail and key != "world":
-        found.words.update(_texts(cast("dict[str, Any]", value).pop(part)))
+        found.words.update(texts(cast("dict[str, Any]", value).pop(part)))
         return
-    found.words.update(_texts(data.pop(key, None)))
+    found.words.update(texts(data.pop(key, None)))
     if key == "world":
         found.missing.add("world")
 
@@ -98,7 +99,7 @@ def _deepest_item(
         if isinstance(at, list) and isinstance(part, int) and part < len(cast("list[Any]", at)):
             items = cast("list[Any]", at)
             kind = "steps" if name == "during" else name
-            if kind in STAND_INS:
+            if kind in (*STAND_INS, "objects"):
                 found, inside = (items, part, kind), ""
             at = items[part]
         elif isinstance(at, dict) and part in at:
@@ -107,21 +108,20 @@ def _deepest_item(
     return None if found is None else (*found, inside)
 
 
-def _stand_in(kind: str, item: Any, index: int, inside: str) -> dict[str, Any]:
+def _partial(kind: str, item: Any, index: int, words: set[str]) -> SpecModel | None:
+    """The model of what is valid of a step, an expectation or an object."""
+    if kind == "steps":
+        return partial_plugin(Step.plugin_kind, TAG, item, words)
+    if kind == "expect":
+        return partial_plugin(KIND, CHECK, item, words)
+    named = cast("dict[str, Any]", item) if isinstance(item, dict) else {}
+    if not (isinstance(named.get("name"), str) and named["name"]):
+        named = {**named, "name": f"object {index + 1}"}
+    return partial_model(ObjectSpec, named, words)
+
+
+def _stand_in(kind: str, item: Any, inside: str) -> dict[str, Any]:
+    """An item in place of one whose word is unknown."""
     named = cast("dict[str, Any]", item) if isinstance(item, dict) else {}
     kept = {key: named[key] for key in KEPT[kind] if key in named and key != inside}
-    if kind == "objects" and not (isinstance(kept.get("name"), str) and kept["name"]):
-        kept["name"] = f"object {index + 1}"
     return {**STAND_INS[kind], **kept}
-
-
-def _texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, dict):
-        for key, item in cast("dict[str, Any]", value).items():
-            yield key
-            yield from _texts(item)
-    elif isinstance(value, list):
-        for item in cast("list[Any]", value):
-            yield from _texts(item)

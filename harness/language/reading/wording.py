@@ -23,14 +23,14 @@ def problems_of(errors: Iterable[ErrorDetails], lines: SourceMap) -> list[Proble
     """One problem for each place and message."""
     problems: dict[tuple[int, int, str], Problem] = {}
     for error in errors:
-        if _is_follow_up(error):
+        if is_follow_up(error):
             continue
         problem = _problem(error, lines)
         problems.setdefault((problem.line, problem.column, problem.message), problem)
     return list(problems.values())
 
 
-def _is_follow_up(error: ErrorDetails) -> bool:
+def is_follow_up(error: ErrorDetails) -> bool:
     """Whether pydantic calls a list too short because items of it are wrong."""
     given: object = error["input"]
     length = len(cast("list[Any]", given)) if isinstance(given, list) else 0
