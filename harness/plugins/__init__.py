@@ -1,1 +1,5 @@
-"""The plug-ins of this distribution: what only some users start, one package for each."""
+"""What only some users start: campaigns, formats, formulas, grading, iktest, ros and studio.
+
+Each is a package that nothing else imports. Its folders `commands`, `expectations` and so on hold
+its plug-ins of that kind.
+"""

@@ -1,1 +1,1 @@
-"""One scenario: the only place that joins engine, adapters, assertions and reports."""
+"""One case from its file to its report: compiled, executed, observed, judged and written."""
