@@ -1,7 +1,7 @@
 # Short names for those who have make; the README's commands need none.
 PYTHON ?= python3
 
-.PHONY: demo test lint nightly bench docs pictures
+.PHONY: demo test lint nightly bench docs site pictures
 
 demo: .venv/.installed
 	.venv/bin/harness run scenarios/lessons/03_ur_sixteen_steps.scenario.yaml
@@ -24,6 +24,9 @@ bench: .venv/.installed
 docs: .venv/.installed
 	.venv/bin/python -m docs.generate
 	.venv/bin/python -m tests.adversarial.table
+
+site: .venv/.installed
+	.venv/bin/python -m sphinx -q -W --keep-going -b html -c docs . build/site
 
 # Longer: runs the scenes and lessons that the pictures show.
 pictures: .venv/.installed

@@ -88,10 +88,10 @@ def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
                 if part.__name__ not in found:
                     found[part.__name__] = part
                     waiting.append(part)
-    lines = ["# Parts"] if found else []
+    lines = ["## Parts"] if found else []
     for name in sorted(found):
         fields = keys_of(found[name]).items()
-        lines += [f"## {name}", description_of(found[name]), *([table(fields)] if fields else [])]
+        lines += [f"### {name}", description_of(found[name]), *([table(fields)] if fields else [])]
     return lines
 
 

@@ -31,7 +31,7 @@ class Quantity:
     Attributes:
         name: The name of its measure in a verdict, without the names of bodies or joints.
         unit: The unit of the number and of its margin; `1` for a number without one. Where it
-            depends on the joint, both are joined by ` or `.
+            depends on the joint, both are given with `or` between them.
         holds: The condition under which the predicate holds.
         plot: The plot that the report shows for it; empty where no plot has this number.
     """

@@ -1,0 +1,98 @@
+"""The documentation site: built without a warning, complete, and without requests elsewhere."""
+
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+REQUESTING = {
+    ("link", "href"),
+    ("script", "src"),
+    ("img", "src"),
+    ("source", "src"),
+    ("iframe", "src"),
+}
+
+
+class Page(HTMLParser):
+    """The anchors and links of a page, and the addresses that a browser requests for it."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.anchors, self.links, self.requested = set(), [], []
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id":
+                self.anchors.add(value)
+            if (tag, name) == ("a", "href"):
+                self.links.append(value)
+            if (tag, name) in REQUESTING:
+                self.requested.append(value)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site") / "html"
+    command = "-m sphinx -q -W --keep-going -b html -c docs ."
+    done = subprocess.run(
+        [sys.executable, *command.split(), str(folder)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pages(site):
+    return {path: Page(path) for path in site.rglob("*.html")}
+
+
+def test_every_page_of_the_documentation_is_on_the_site(site, pages):
+    named = {path.relative_to(ROOT).with_suffix(".html") for path in (ROOT / "docs").rglob("*.md")}
+    assert named <= {path.relative_to(site) for path in pages}
+    listed = (site / "llms.txt").read_text(encoding="utf-8")
+    assert all(f"({path.as_posix()})" in listed for path in named)
+
+
+def test_every_link_and_anchor_of_the_site_exists(site, pages):
+    broken = []
+    for path, page in pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = path if not parts.path else (path.parent / unquote(parts.path)).resolve()
+            if not target.exists():
+                broken.append((path.relative_to(site).as_posix(), link))
+            elif parts.fragment and target in pages:
+                anchors = pages[target].anchors
+                if unquote(parts.fragment) not in anchors:
+                    broken.append((path.relative_to(site).as_posix(), link))
+    assert broken == []
+
+
+def test_the_site_requests_nothing_from_other_hosts(site, pages):
+    requested = [link for page in pages.values() for link in page.requested]
+    assert [link for link in requested if urlsplit(link).netloc] == []
+    code = [path for kind in ("*.css", "*.js") for path in site.rglob(kind)]
+    assert code
+    for path in code:
+        text = path.read_text(encoding="utf-8")
+        loads = r"(?:@import|url\(|fetch\(|importScripts\(|\.src\s*=)\s*['\"]?https?://"
+        assert not re.search(loads, text), path
+
+
+def test_the_interface_of_packages_has_its_signatures(site):
+    text = (site / "docs/reference/api.html").read_text(encoding="utf-8")
+    for name in ("harness.run", "harness.expectations.Predicate", "harness.ports.PathPlanner"):
+        assert f'id="{name}"' in text
