@@ -84,7 +84,8 @@ class Part:
         values: The measured values in `unit`, shape (n,).
         limit: The limit of the value, in `unit`.
         comparison: How values must stand to the limit.
-        scale: What a margin is divided by before it is compared with other parts'; default abs(limit).
+        scale: What a margin is divided by before it is compared with other parts'; by default
+            abs(limit).
         relevant: Samples at which the part counts; default all.
         detail: The joint, link or pair that was measured.
         points: The two ends of a distance in the world: the required and the actual place, shape
