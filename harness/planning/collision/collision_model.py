@@ -133,19 +133,25 @@ class CollisionModel:
         return of_bodies[body_of[:, None], body_of]
 
     def check_data(self, margins: FloatArray) -> pin.GeometryData:
-        """Data for checks that find pairs nearer than their margins [m]; takes milliseconds.
+        """Data for checks that find pairs nearer than their margins [m].
 
         Checks begin anew at each state: from the guess of the state before, Coal overlooks
         collisions of up to 5 cm.
         """
+        data = self._plain_check_data.copy()
+        of_shapes = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
+        of_shapes[self.rows[:, 0], self.rows[:, 1]] = margins[self.pair_of_row]
+        data.setSecurityMargins(self.geometry, of_shapes, True, False)
+        return data
+
+    @cached_property
+    def _plain_check_data(self) -> pin.GeometryData:
+        """The same without margins; setting up every pair takes milliseconds."""
         data = self.geometry.createData()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)
             for request in data.collisionRequests:
                 request.enable_cached_gjk_guess = False
-        of_shapes = np.zeros((self.geometry.ngeoms, self.geometry.ngeoms))
-        of_shapes[self.rows[:, 0], self.rows[:, 1]] = margins[self.pair_of_row]
-        data.setSecurityMargins(self.geometry, of_shapes, True, False)
         return data
 
     @cached_property
