@@ -6,8 +6,6 @@ import argparse
 
 from harness.cli.arguments import folder, override_argument, seconds
 
-STRICT = "fail where a verdict has a warning, such as `already true at the start`"
-
 
 def add_paths(command: argparse.ArgumentParser) -> None:
     """Scenario files, and the options of every command that prepares them."""

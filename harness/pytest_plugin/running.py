@@ -26,7 +26,8 @@ from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated
 from harness.suite.header import ScenarioHeader, source_lines
 from harness.suite.leftovers import clean_report_folder
-from harness.suite.plan import PlannedCase, SuiteRequest, planned_cases
+from harness.suite.plan import PlannedCase, planned_cases
+from harness.suite.request import SuiteRequest
 from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError
 

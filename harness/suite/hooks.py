@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from harness.reporting.suite.write import History
     from harness.session.run_request import RunRequest
     from harness.suite.cases import Chooser
-    from harness.suite.plan import FileCases, Plan, SuiteRequest
+    from harness.suite.plan import FileCases, Plan
+    from harness.suite.request import SuiteRequest
     from harness.suite.suite_run import SuiteRun
 
 Execute: TypeAlias = (

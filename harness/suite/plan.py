@@ -6,7 +6,7 @@ import bisect
 import itertools
 from array import array
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
@@ -17,45 +17,9 @@ from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import folder_name, report_folders
 from harness.suite.header import ScenarioHeader, read_header
-from harness.suite.hooks import NO_HOOKS, SuiteHooks
+from harness.suite.request import SuiteRequest
 from harness.suite.selection import selects
 from harness.suite.variation import Case
-
-
-@dataclass(frozen=True)
-class SuiteRequest:
-    """Which cases a command runs, and what it writes.
-
-    Attributes:
-        expression: The expression of `-k`; empty selects all cases.
-        cases: Patterns of case names; empty selects all cases.
-        overrides: Dotted path -> value as YAML; they take precedence over a case's own values.
-        seed: Seed that replaces the files' seeds.
-        samples: Number of samples that replaces the number in files that have samples.
-        report_root: Folder for the reports; None writes no reports.
-        keep: Cases whose reports are written: `all`, `failed`, or by default all cases and, of
-            samples, the failed ones.
-        page: Whether to write the page of a report.
-        bag: Whether to write a rosbag2.
-        strict: Whether a warning of a verdict fails a case.
-        reporters: Names of other reporters that write into the reports.
-        nodes: Commands by name that steps may start as ROS 2 nodes.
-        hooks: What plug-ins change of the suite.
-    """
-
-    expression: str = ""
-    cases: Sequence[str] = ()
-    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
-    seed: int | None = None
-    samples: int | None = None
-    report_root: Path | None = None
-    keep: str = ""
-    page: bool = True
-    bag: bool = False
-    strict: bool = False
-    reporters: Sequence[str] = ()
-    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
-    hooks: SuiteHooks = NO_HOOKS
 
 
 class FileCaseSequence(Protocol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from harness.core.lazy import LazySequence
@@ -14,40 +14,17 @@ from harness.reporting.result import CaseResult, ProgressEvent
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated
-from harness.suite.hooks import NO_HOOKS, SuiteHooks
 from harness.suite.installation import installation
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, exit_code
 from harness.suite.plan import Plan
 from harness.suite.repetitions import Repetitions
+from harness.suite.request import SuiteRequest
 from harness.suite.results import Results
 from harness.suite.sampling import Sampling
 from harness.suite.stream import Place, ResultHead, Stream
 from harness.suite.warm import WarmServer
 
 OnResult = Callable[[int, CaseResult], None]
-
-
-@dataclass(frozen=True)
-class SuiteOptions:
-    """How a suite is run.
-
-    Attributes:
-        workers: Cases side by side.
-        repeat: Runs of each case; only the first is reported.
-        in_process: Without a process for each case, for debuggers.
-        hard_cap: Wall seconds a case may take; None: the program's own.
-        stream: Folder that results are written to as they come; None: nowhere.
-        resume: Whether results that are there are taken instead of computed.
-        hooks: What plug-ins change of the suite.
-    """
-
-    workers: int = 1
-    repeat: int = 1
-    in_process: bool = False
-    hard_cap: float | None = None
-    stream: Path | None = None
-    resume: bool = False
-    hooks: SuiteHooks = NO_HOOKS
 
 
 class SuiteRun:
@@ -64,11 +41,11 @@ class SuiteRun:
         unfinished: The last event of each run that has begun and not ended, by index into `jobs`.
     """
 
-    def __init__(self, plan: Plan, how: SuiteOptions, files: Sequence[Path] = ()) -> None:
+    def __init__(self, plan: Plan, request: SuiteRequest, files: Sequence[Path] = ()) -> None:
         self.plan = plan
         self.files = files
         self._repetitions = (
-            Repetitions([each.job for each in plan], how.repeat) if how.repeat > 1 else None
+            Repetitions([each.job for each in plan], request.repeat) if request.repeat > 1 else None
         )
         self.jobs = (
             self._repetitions.jobs
@@ -80,7 +57,7 @@ class SuiteRun:
         self.is_interrupted = False
         self.missing_parts: tuple[str, ...] = ()
         self.unfinished: dict[int, ProgressEvent] = {}
-        self._how = how
+        self._request = request
         self._stream: Stream | None = None
         self._sampling = Sampling(plan, is_part=self.is_part)
 
@@ -141,7 +118,7 @@ class SuiteRun:
     @property
     def is_part(self) -> bool:
         """Whether the plan is one part of a suite."""
-        return self._how.hooks.part is not None
+        return self._request.is_part
 
     @property
     def _is_sampled(self) -> bool:
@@ -149,7 +126,7 @@ class SuiteRun:
         return self._repetitions is None
 
     def _arriving(self, server: WarmServer, watch: Watcher) -> Iterator[tuple[int, CaseResult]]:
-        how = self._how
+        how = self._request
         if how.in_process:
             return run_here(self.jobs, watch=watch, is_needless=self.is_needless)
         if how.hooks.execute is not None:
@@ -166,12 +143,15 @@ class SuiteRun:
 
     def _open_stream(self) -> None:
         """Open where results go as they come; those of an earlier run are taken from there."""
-        if self._how.stream is None and (self._repetitions is not None or len(self.jobs) == 1):
+        how = self._request
+        is_whole = how.repeat == 1 and (len(self.plan) > 1 or how.is_part)
+        root = how.report_root if how.resume or is_whole else None
+        if root is None and (how.repeat > 1 or len(self.jobs) == 1):
             return
-        stream = Stream(self._how.stream, resume=self._how.resume)
+        stream = Stream(root, resume=how.resume)
         installation()  # now, while the modules of a run are imported in another process
         self.read_from(stream)
-        for index, job in enumerate(self.jobs if self._how.resume else ()):
+        for index, job in enumerate(self.jobs if how.resume else ()):
             if known := stream.known(job):
                 place, result = known
                 self.take(index, result, place)
@@ -183,7 +163,7 @@ class SuiteRun:
             result = self._repetitions.take(index, result)
         place = None
         if self._stream is not None:
-            planned, job = self.plan[index // self._how.repeat], self.jobs[index]
+            planned, job = self.plan[index // self._request.repeat], self.jobs[index]
             values = {**planned.values, **result.values}
             place = self._stream.write(job, result, values, planned.header.tags)
         result = replace(result, inputs={})
@@ -223,7 +203,7 @@ class SuiteRun:
     def files_text(self) -> str:
         """How many files were found, have a selected case, and were run."""
         collected = {each.file for each in self.plan}
-        ran = {self.plan[index // self._how.repeat].file for index in self.results}
+        ran = {self.plan[index // self._request.repeat].file for index in self.results}
         return f"{len(self.files)} files found, {len(collected)} collected, {len(ran)} run"
 
     @property
@@ -235,7 +215,7 @@ class SuiteRun:
 
     def case(self, index: int) -> SuiteCase:
         """A result as the files of a suite show it, by index into `jobs`."""
-        planned = self.plan[index // self._how.repeat]
+        planned = self.plan[index // self._request.repeat]
         header, stored = planned.header, self.results.stored(index)
         if stored is not None:
             return SuiteCase(stored.result, stored.values, header.tags, header.verifies)
@@ -251,7 +231,7 @@ class SuiteRun:
         """Results of the same case together, in file order."""
         together: dict[int, list[CaseResult]] = {}
         for index, result in self.results.items():
-            together.setdefault(index // self._how.repeat, []).append(result)
+            together.setdefault(index // self._request.repeat, []).append(result)
         return list(together.values())
 
     @property

@@ -18,9 +18,10 @@ from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.header import read_header
 from harness.suite.hooks import SuiteHooks
-from harness.suite.plan import SuiteRequest, planned_cases
+from harness.suite.plan import planned_cases
+from harness.suite.request import SuiteRequest
 from harness.suite.stream import Stream, StreamEntry, entry_of
-from harness.suite.suite_run import SuiteOptions, SuiteRun
+from harness.suite.suite_run import SuiteRun
 from harness.suite.warm import WarmServer
 from tests.benchmarks.test_suites import picks
 from tests.suite.ball import ball
@@ -127,7 +128,7 @@ def test_what_ray_costs_a_case(tmp_path, print_row):
         for cluster, rows in seconds.items():
             hooks = SuiteHooks(execute=on_ray if cluster else None)
             suite = SuiteRun(
-                planned_cases([file], SuiteRequest()), SuiteOptions(workers=2, hooks=hooks)
+                planned_cases([file], SuiteRequest()), SuiteRequest(workers=2, hooks=hooks)
             )
             ends = []
             with WarmServer() as server:

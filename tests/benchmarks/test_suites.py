@@ -19,8 +19,9 @@ import pytest
 
 from harness.core.resources import data_folder
 from harness.suite.cases import run_here
-from harness.suite.plan import SuiteRequest, planned_cases
-from harness.suite.suite_run import SuiteOptions, SuiteRun
+from harness.suite.plan import planned_cases
+from harness.suite.request import SuiteRequest
+from harness.suite.suite_run import SuiteRun
 from harness.suite.warm import Ended, WarmServer
 
 pytestmark = pytest.mark.benchmark
@@ -40,7 +41,7 @@ randomize:
 
 
 def suite_of(file, **words):
-    return SuiteRun(planned_cases([file], SuiteRequest()), SuiteOptions(**words))
+    return SuiteRun(planned_cases([file], SuiteRequest()), SuiteRequest(**words))
 
 
 def picks(folder, count):
@@ -128,7 +129,7 @@ def test_what_isolation_costs_a_scenario(tmp_path, print_row):
             processor[name].append(used(server) - used_before)
 
         for job in jobs:
-            suite = SuiteRun(planned_cases([file], SuiteRequest(cases=[job.case])), SuiteOptions())
+            suite = SuiteRun(planned_cases([file], SuiteRequest(cases=[job.case])), SuiteRequest())
             measure("nothing", lambda: in_own_process(server))
             measure("here", lambda job=job: list(run_here([job])))
             measure("apart", lambda suite=suite: suite.collect(server))

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from harness.core.errors import SpecError
 from harness.language.reading.load import load_scenario
 from harness.suite.header import read_header, stated_variation
-from harness.suite.plan import SuiteRequest, planned_cases
+from harness.suite.plan import planned_cases
+from harness.suite.request import SuiteRequest
 
 FILE = """\
 scenario: Varied

@@ -10,12 +10,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.arguments import whole_number
 from harness.cli.command import Command
+from harness.cli.options import add_options, read_options
 from harness.cli.output import only_json_on_stdout, output
 from harness.cli.run_mode import RunFiles, RunMode
 from harness.cli.shared_options import (
-    STRICT,
     add_format,
     add_hard_cap,
     add_history,
@@ -38,6 +37,7 @@ from harness.suite.case_runner import case_runner
 from harness.suite.discovery import UsageError, discover
 from harness.suite.hooks import NO_HOOKS, SuiteHooks
 from harness.suite.leftovers import clean_report_folder
+from harness.suite.request import SuiteRequest
 
 if TYPE_CHECKING:
     from harness.reporting.result import CaseResult
@@ -59,39 +59,17 @@ class RunCommand(Command):
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness run`."""
-        add = command.add_argument
         add_paths(command)
         add_seed(command)
-        text = "run only scenarios whose path, title or tags match: 'pick and not ur5e'"
-        add("-k", metavar="EXPR", dest="expression", default="", help=text)
-        text = "run N scenarios side by side"
-        add("-j", metavar="N", dest="workers", type=whole_number, default=1, help=text)
-        text = "run each case N times and report whether all digests are equal"
-        add("--repeat", metavar="N", type=whole_number, default=1, help=text)
-        text = "run only the case of this name, or the cases whose names match a pattern: 'ur5e-*'"
-        add("--case", metavar="NAME", dest="cases", action="append", default=[], help=text)
-        text = "draw this many samples, instead of the number in the file"
-        add("--samples", metavar="N", type=whole_number, default=None, help=text)
-        text = (
-            "write the reports of all cases, or only of those that failed (default: all; of"
-            " samples, those that failed)"
-        )
-        add("--keep", choices=("all", "failed"), default="", help=text)
-        text = "continue where the same command was interrupted, and keep the results that exist"
-        add("--resume", action="store_true", help=text)
-        add("--strict", action="store_true", help=STRICT)
+        add_options(command, SuiteRequest)
         add_report_dir(command)
-        add("--no-report", action="store_true", help="write no report")
-        add("--no-page", action="store_true", help="write the report without its page")
-        add("--bag", action="store_true", help="write a rosbag2 into the report too")
-        text = "let a reporter of `harness list reporters` write into the report too; repeatable"
-        add("--reporter", metavar="NAME", dest="reporters", action="append", default=[], help=text)
+        command.add_argument("--no-report", action="store_true", help="write no report")
+        text = "write the report without its page"
+        command.add_argument("--no-page", action="store_true", help=text)
         add_history(command)
         add_format(command)
         add_hard_cap(command, "scenario")
         add_node(command, "the step `external` to start this command")
-        text = "run all cases in this process, for a debugger"
-        add("--in-process", action="store_true", help=text)
         for mode in self._modes:
             mode.add_options(command)
 
@@ -151,8 +129,8 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> SuiteRun:
     from harness.session.run_request import named_commands
-    from harness.suite.plan import SuiteRequest, planned_cases
-    from harness.suite.suite_run import SuiteOptions, SuiteRun
+    from harness.suite.plan import planned_cases
+    from harness.suite.suite_run import SuiteRun
 
     if arguments.nodes:
         case_runner("nodes")  # refuses where no plug-in runs them
@@ -166,35 +144,19 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHoo
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)
-    request = SuiteRequest(
-        expression=arguments.expression,
-        cases=arguments.cases,
+    request = read_options(
+        arguments,
+        SuiteRequest,
         overrides=dict(arguments.overrides),
-        seed=arguments.seed,
-        samples=arguments.samples,
-        report_root=root,
-        keep=arguments.keep,
-        page=not arguments.no_page,
-        bag=arguments.bag,
-        strict=arguments.strict,
-        reporters=arguments.reporters,
         nodes=named_commands(arguments.nodes) if arguments.nodes else {},
+        report_root=root,
+        page=not arguments.no_page,
         hooks=hooks,
     )
     plan = planned_cases(files, request)
     if hooks.planned is not None:
         hooks.planned(files, request)
-    is_whole = arguments.repeat == 1 and (len(plan) > 1 or hooks.part is not None)
-    how = SuiteOptions(
-        workers=arguments.workers,
-        repeat=arguments.repeat,
-        in_process=arguments.in_process,
-        hard_cap=arguments.hard_cap,
-        stream=root if arguments.resume or is_whole else None,
-        resume=arguments.resume,
-        hooks=hooks,
-    )
-    return SuiteRun(plan, how, files)
+    return SuiteRun(plan, request, files)
 
 
 def _page_updates(

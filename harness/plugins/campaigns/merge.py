@@ -15,7 +15,8 @@ from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
 from harness.suite.discovery import UsageError
 from harness.suite.hooks import SuiteHooks
-from harness.suite.plan import SuiteRequest, cases_of
+from harness.suite.plan import cases_of
+from harness.suite.request import SuiteRequest
 from harness.suite.stream import (
     FILE,
     Inputs,
@@ -28,7 +29,7 @@ from harness.suite.stream import (
     is_intact,
     lines_of,
 )
-from harness.suite.suite_run import SuiteOptions, SuiteRun
+from harness.suite.suite_run import SuiteRun
 
 
 def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardRecord]:
@@ -52,16 +53,9 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
             raise UsageError(f"'{folder}' holds a part; write the whole into another --report-dir")
     first = records[0]
     cases = read_conditions(folders[0]).replace if first.conditions else None
-    request = SuiteRequest(
-        first.expression,
-        first.cases,
-        dict(first.overrides),
-        first.seed,
-        first.samples,
-        hooks=SuiteHooks(cases=cases),
-    )
+    request = SuiteRequest(**vars(first.selection), hooks=SuiteHooks(cases=cases))
     plan = cases_of([(Path(each.file), each.header) for each in first.files], request)
-    suite = SuiteRun(plan, SuiteOptions())
+    suite = SuiteRun(plan, request)
     stream = Stream(target, name=f".{FILE}.{os.getpid()}")
     suite.read_from(stream)
     parts = [

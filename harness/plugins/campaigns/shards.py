@@ -6,7 +6,7 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +16,9 @@ from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader, read_header, stated_variation
 from harness.suite.installation import Installation, installation
-from harness.suite.plan import SuiteRequest
+from harness.suite.request import SuiteRequest, SuiteSelection
 
-FORMAT = "armharness-shard/2"
+FORMAT = "armharness-shard/3"
 FILE = "shard.json"
 AUTO = "auto"
 SOURCES = (
@@ -136,14 +136,7 @@ class ShardRecord:
         shard: The part of the suite that this describes.
         root: The part's report folder, as the paths in its results begin.
         files: Every scenario file of the suite, in order.
-        expression: The expression of `-k`.
-        cases: Patterns of case names.
-        overrides: Dotted path -> value as YAML.
-        seed: Seed that replaced the files' seeds.
-        samples: Number of samples that replaced the files' numbers.
-        strict: Whether a warning of a verdict fails a case.
-        reporters: Names of other reporters that write into the reports.
-        nodes: Commands by name that steps may start as ROS 2 nodes.
+        selection: What selects the cases of the whole suite.
         conditions: Hash of the samples of `--conditions`; empty where the files draw them.
         installation: The program and the libraries that ran the part.
     """
@@ -151,24 +144,15 @@ class ShardRecord:
     shard: Shard
     root: str
     files: tuple[PlannedFile, ...]
-    expression: str = ""
-    cases: tuple[str, ...] = ()
-    overrides: Mapping[str, str] = field(default_factory=dict[str, str])
-    seed: int | None = None
-    samples: int | None = None
-    strict: bool = False
-    reporters: tuple[str, ...] = ()
-    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
+    selection: SuiteSelection
     conditions: str = ""
     installation: Installation = field(default_factory=installation)
 
     @property
     def suite(self) -> dict[str, Any]:
         """What all parts of one suite have in common."""
-        plain: dict[str, Any] = to_plain(self)
-        return {name: value for name, value in plain.items() if name not in ("shard", "root")} | {
-            "count": self.shard.count
-        }
+        plain: dict[str, Any] = to_plain(replace(self, root="", shard=Shard(1, self.shard.count)))
+        return plain | plain.pop("selection")
 
 
 def record_of(
@@ -183,32 +167,13 @@ def record_of(
         root: The part's report folder.
         conditions: Hash of the samples of `--conditions`; empty where the files draw them.
     """
-    planned: list[PlannedFile] = []
-    for file in files:
-        header = read_header(file, request.overrides)
-        planned.append(
-            PlannedFile(
-                str(file),
-                header.title,
-                header.tags,
-                header.verifies,
-                header.varied,
-            )
-        )
-    return ShardRecord(
-        shard,
-        str(root),
-        tuple(planned),
-        request.expression,
-        tuple(request.cases),
-        request.overrides,
-        request.seed,
-        request.samples,
-        request.strict,
-        tuple(request.reporters),
-        dict(request.nodes),
-        conditions,
-    )
+    planned = [
+        PlannedFile(str(file), header.title, header.tags, header.verifies, header.varied)
+        for file in files
+        for header in [read_header(file, request.overrides)]
+    ]
+    selection = {each.name: getattr(request, each.name) for each in fields(SuiteSelection)}
+    return ShardRecord(shard, str(root), tuple(planned), SuiteSelection(**selection), conditions)
 
 
 def write_shard_record(record: ShardRecord) -> None:
@@ -260,7 +225,7 @@ def _check_same_suite(record: ShardRecord, folder: Path, other: ShardRecord, pla
         what = next(name for name in here if here[name] != there[name])
         names = {
             "files": "the scenario files, their cases, titles or tags",
-            "count": "the number of parts",
+            "shard": "the number of parts",
             "conditions": "the samples of --conditions",
             "installation": "the program or its libraries:"
             f" {other.installation.difference(record.installation)}",

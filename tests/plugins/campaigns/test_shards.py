@@ -15,7 +15,8 @@ import yaml
 from harness.core.resources import data_folder
 from harness.plugins.campaigns.shards import Shard, shard_of
 from harness.suite.discovery import UsageError
-from harness.suite.plan import SuiteRequest, planned_cases
+from harness.suite.plan import planned_cases
+from harness.suite.request import SuiteRequest
 
 GUIDE = (Path(__file__).parents[3] / "docs/guides/many_machines.md").read_text(encoding="utf-8")
 SAMPLED = """\

@@ -37,6 +37,7 @@ class MergeCommand(Command):
         suite, record = merge_parts(
             [Path(each) for each in arguments.folders], Path(arguments.report_dir)
         )
+        selection = record.selection
         options = argparse.Namespace(
             **vars(arguments),
             repeat=1,
@@ -44,12 +45,11 @@ class MergeCommand(Command):
             bag=False,
             package_folders=(),
             plugins=(),
-            strict=record.strict,
-            reporters=record.reporters,
-            nodes=[f"{name}={command}" for name, command in record.nodes.items()],
-            overrides=list(record.overrides.items()),
-            seed=record.seed,
-            samples=record.samples,
+            **vars(selection)
+            | {
+                "nodes": [f"{name}={command}" for name, command in selection.nodes.items()],
+                "overrides": list(selection.overrides.items()),
+            },
         )
         page, columns = write_suite_files(options, suite, SuiteHooks(write=write_results))
         if arguments.format == "json":

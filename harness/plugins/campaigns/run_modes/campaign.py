@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from harness.reporting.suite.write import History
     from harness.session.run_request import RunRequest
     from harness.suite.cases import Chooser
-    from harness.suite.plan import SuiteRequest
+    from harness.suite.request import SuiteRequest
     from harness.suite.suite_run import SuiteRun
 
 
