@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 
-LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "toppra", "numpy")
+LIBRARIES = ("armharness", "mujoco", "pin", "coal", "ompl", "numpy")
 
 
 @cache

@@ -24,7 +24,6 @@ from harness.suite.server import receive, send
 RUN_MODULES = (
     "harness.planning.ik.solvers.ur",
     "harness.planning.search.pipelines.ompl",
-    "harness.planning.timing.toppra_library",
     "harness.session.run_case",
     "harness.session.timed_simulator",
     "harness.simulation.controllers.position_servo",

@@ -26,7 +26,7 @@ from harness.suite.warm import Ended, WarmServer
 
 pytestmark = pytest.mark.benchmark
 PICK = data_folder("scenarios") / "lessons/04_ur_pick_by_friction.scenario.yaml"
-NATIVE = ("numpy", "mujoco", "pinocchio", "coal", "ompl", "toppra", "cv2")
+NATIVE = ("numpy", "mujoco", "pinocchio", "coal", "ompl", "cv2")
 MARKS = (200, 500, 1000, 1500, 2000)  # samples after which memory is looked at
 TICK = os.sysconf("SC_CLK_TCK")  # [1/s], of /proc's processor times
 BLINK = """\

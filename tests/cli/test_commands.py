@@ -26,7 +26,6 @@ HEAVY = (
     "mujoco",
     "pinocchio",
     "ompl",
-    "toppra",
     "cv2",
     "multiprocessing",
 )

@@ -3,8 +3,6 @@
 import subprocess
 import sys
 
-import pytest
-
 BEGIN = "import sys; from harness.core.deferred_import import deferred\n"
 
 
@@ -37,21 +35,9 @@ def test_a_module_that_is_there_already_is_used():
     assert run(f"{code}print(f is fractions)") == ["True"]
 
 
-@pytest.mark.parametrize(
-    ("library", "left_out", "still_works"),
-    [
-        (
-            "from harness.planning.timing.toppra_library import toppra",
-            ("matplotlib", "scipy"),
-            "toppra.SplineInterpolator([0, 1, 2], [[0], [1], [0]])(1)[0]",
-        ),
-        (
-            "from harness.simulation.mujoco_library import mujoco",
-            ("glfw",),
-            "float(mujoco.MjModel.from_xml_string('<mujoco/>').nbody)",
-        ),
-    ],
-)
-def test_solvers_are_imported_without_pictures_and_windows(library, left_out, still_works):
-    shown = run(f"{library}\nprint(*[m for m in {left_out} if m in sys.modules], {still_works})")
-    assert shown == ["1.0"]
+def test_the_physics_is_imported_without_windows():
+    shown = run(
+        "from harness.simulation.mujoco_library import mujoco\n"
+        "print('glfw' in sys.modules, mujoco.MjModel.from_xml_string('<mujoco/>').nbody)"
+    )
+    assert shown == ["False", "1"]

@@ -1,15 +1,16 @@
-"""The passes over toppra's programs find what the library's own algorithm finds."""
+"""TOPP-RA's passes find what the library toppra finds, and exceed no limit."""
 
 # pyright: reportAttributeAccessIssue=false
 
 import numpy as np
 import pytest
-import toppra
 
 from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.timing import BlendedPath
-from harness.planning.timing.toppra_library import squared_rates
+from harness.planning.timing.toppra_passes import HalfPlanes, squared_rates
 from harness.planning.timing.toppra_solver import Bounds, fastest, joint_bounds
+
+toppra = pytest.importorskip("toppra", reason="it has no wheel for this platform")
 
 
 class Geometry(toppra.interpolator.AbstractGeometricPath):
@@ -22,6 +23,26 @@ class Geometry(toppra.interpolator.AbstractGeometricPath):
         return self.path.evaluate(parameters)[order]
 
 
+class Known(toppra.constraint.LinearConstraint):
+    """The bounds as the library takes them."""
+
+    def __init__(self, bounds, grid):
+        super().__init__()
+        self.identical = True
+        kinds = len(bounds.most)
+        sides = np.vstack([np.eye(kinds), -np.eye(kinds)])
+        rows = bounds.speeds, bounds.bends, bounds.offsets, sides, np.tile(bounds.most, 2)
+        if bounds.between:
+            scheme = toppra.constraint.linear_constraint.canlinear_colloc_to_interpolate
+            rows = scheme(*rows, None, None, grid, identical=True)[:5]
+        rates = bounds.rate_squared
+        limits = None if rates is None else np.column_stack([np.zeros_like(rates), rates])
+        self.parameters = (*rows, None, limits)
+
+    def compute_constraint_params(self, *_):
+        return self.parameters
+
+
 def drawn(seed):
     rng = np.random.default_rng(seed)
     dof = int(rng.integers(1, 9))
@@ -31,20 +52,51 @@ def drawn(seed):
     return path, limits, path.grid()
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_the_rates_are_those_of_the_library(seed):
+def drawn_bounds(seed):
+    """Bounds of joints, on some paths with efforts of a constant load and a collocated bound."""
     path, limits, grid = drawn(seed)
-    found = squared_rates([joint_bounds(path.evaluate(grid), limits)], grid)
-    both = [np.column_stack([-most, most]) for most in (limits.velocity, limits.acceleration)]
-    constraint = toppra.constraint
-    constraints = [
-        constraint.JointVelocityConstraint(both[0]),
-        constraint.JointAccelerationConstraint(both[1]),
-    ]
-    geometry = Geometry(path, len(limits.velocity))
-    solver = toppra.algorithm.TOPPRA(constraints, geometry, gridpoints=grid)
-    _, rates, _ = solver.compute_parameterization(0, 0)
-    assert np.sqrt(found) == pytest.approx(rates, rel=1e-9, abs=1e-12)
+    states = path.evaluate(grid)
+    bounds = [joint_bounds(states, limits)]
+    rng = np.random.default_rng([seed, 1])
+    if seed % 2:
+        efforts = rng.normal(size=(3, len(grid), 2)).cumsum(axis=1) / 10
+        most = np.abs(efforts[2]).max(axis=0) + rng.uniform(0.1, 5, 2)
+        bounds.append(Bounds(*efforts, most))
+    if seed % 3 == 0:
+        row = rng.normal(size=(2, len(grid), 1))
+        slow = rng.uniform(0.05, 2, len(grid))
+        bounds.append(Bounds(*row, 0 * row[0], np.ones(1), slow, between=False))
+    return path, bounds, grid
+
+
+def duration(squares, grid):
+    rates = np.sqrt(squares)
+    return float((2 * np.diff(grid) / (rates[:-1] + rates[1:])).sum())
+
+
+def agree(seeds):
+    for seed in seeds:
+        path, bounds, grid = drawn_bounds(seed)
+        known = [Known(each, grid) for each in bounds]
+        geometry = Geometry(path, len(path.ends[0]))
+        solver = toppra.algorithm.TOPPRA(known, geometry, gridpoints=grid, solver_wrapper="seidel")
+        _, reference, _ = solver.compute_parameterization(0, 0)
+        found = squared_rates(bounds, grid)
+        expected = duration(reference**2, grid)
+        assert duration(found, grid) == pytest.approx(expected, rel=1e-6), seed
+        planes = HalfPlanes.of(bounds, grid)
+        excess = planes.now * found[:-1, None] + planes.after * found[1:, None] - planes.room
+        assert excess.max() <= 1e-8, seed
+
+
+def test_the_duration_is_the_librarys_and_no_limit_is_exceeded():
+    agree(range(200))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("part", range(10))
+def test_ten_thousand_paths_last_as_long_as_the_library_makes_them(part):
+    agree(range(1000 * part, 1000 * (part + 1)))
 
 
 @pytest.mark.parametrize("standing", [2.0, -2.0])

@@ -344,7 +344,7 @@ EXPORT = """
 import sys
 class Closed:
     def find_spec(self, name, path=None, target=None):
-        if name.split(".")[0] in {"mujoco", "ompl", "pinocchio", "coal", "toppra"}:
+        if name.split(".")[0] in {"mujoco", "ompl", "pinocchio", "coal"}:
             raise ImportError(f"{name} is not needed to export a run")
 sys.meta_path.insert(0, Closed())
 from harness.cli.main import main

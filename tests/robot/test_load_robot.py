@@ -188,7 +188,7 @@ def test_loading_a_robot_imports_no_solver():
     code = (
         "import sys; from harness.robot.load import load_robot; "
         "from harness.language.scenario import RobotSpec; load_robot(RobotSpec(model='ur3e')); "
-        "print([m for m in ('pinocchio', 'mujoco', 'coal', 'ompl', 'toppra') if m in sys.modules])"
+        "print([m for m in ('pinocchio', 'mujoco', 'coal', 'ompl') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -22,7 +22,8 @@ from harness.planning.timing.limits import (
     stretched,
 )
 from harness.planning.timing.profiles import on_grid, resting
-from harness.planning.timing.toppra_solver import Bounds, fastest
+from harness.planning.timing.toppra_passes import Bounds
+from harness.planning.timing.toppra_solver import fastest
 
 _MOST_STRETCHES = 8
 _TINY = 1e-9

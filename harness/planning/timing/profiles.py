@@ -68,6 +68,65 @@ class Trapezoid:
         return s, rate, change
 
 
+@dataclass(frozen=True, eq=False)
+class JerkLimited:
+    """A motion from 0 to 1 with piecewise constant jerk, at rest at both ends.
+
+    Attributes:
+        duration: A whole multiple of `GRID` [s].
+        knots: Times between the pieces, shape (8,), from 0 to `duration` [s].
+        states: Parameter, rate and acceleration at each knot, shape (8, 3).
+        jerks: Jerk of each piece, shape (7,).
+    """
+
+    duration: float
+    knots: FloatArray
+    states: FloatArray
+    jerks: FloatArray
+
+    @classmethod
+    def fastest(cls, velocity: float, acceleration: float, jerk: float) -> JerkLimited:
+        """The quickest profile under limits of rate, acceleration and jerk, on the time grid.
+
+        The acceleration rises for `ramp`, is constant for `hold` and falls for `ramp`; then the
+        rate is constant for `cruise`, and the other half mirrors the first.
+        """
+        ramp = min(acceleration / jerk, np.sqrt(velocity / jerk), np.cbrt(0.5 / jerk))
+        peak = jerk * ramp
+        # Without a cruise, ramp + hold is the time t with peak t (t + ramp) = 1.
+        hold = min(velocity / peak, 0.5 * (np.sqrt(ramp**2 + 4 / peak) - ramp)) - ramp
+        hold = max(0.0, hold)
+        rate = peak * (ramp + hold)
+        cruise = max(0.0, 1 / rate - 2 * ramp - hold)
+        lengths = np.array([ramp, hold, ramp, cruise, ramp, hold, ramp])
+        stretch = on_grid(float(lengths.sum())) / float(lengths.sum())
+        lengths, jerks = lengths * stretch, np.array([1, 0, -1, 0, -1, 0, 1]) * jerk / stretch**3
+        states = [np.zeros(3)]
+        for piece, length in zip(jerks, lengths, strict=True):
+            states.append(_advanced(states[-1][None], np.array([piece]), np.array([length]))[0])
+        knots = np.concatenate([[0.0], np.cumsum(lengths)])
+        return cls(float(knots[-1]), knots, np.array(states), jerks)
+
+    def __call__(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Parameter, its rate and its acceleration at times (N,)."""
+        inside = np.clip(times, 0.0, self.duration)
+        piece = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, 6)
+        found = _advanced(self.states[piece], self.jerks[piece], inside - self.knots[piece])
+        return found[:, 0], found[:, 1], found[:, 2]
+
+
+def _advanced(states: FloatArray, jerk: FloatArray, time: FloatArray) -> FloatArray:
+    """Parameter, rate and acceleration (N, 3) some time (N,) later, under constant jerk (N,)."""
+    s, rate, change = states.T
+    return np.column_stack(
+        [
+            s + time * (rate + time * (change / 2 + time * jerk / 6)),
+            rate + time * (change + time * jerk / 2),
+            change + time * jerk,
+        ]
+    )
+
+
 def on_grid(duration: float) -> float:
     """The duration, lengthened to the next multiple of `GRID` [s]."""
     return float(max(1, np.ceil(duration / GRID - 1e-9)) * GRID)

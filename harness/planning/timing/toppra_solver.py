@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -16,6 +16,7 @@ from harness.planning.timing.limits import (
     within_limits,
 )
 from harness.planning.timing.profiles import Curve
+from harness.planning.timing.toppra_passes import Bounds, squared_rates
 
 UNLIMITED_EFFORT = 1e6
 """Stands for no limit [N m or N]: the solver takes finite numbers."""
@@ -31,28 +32,6 @@ class JointCurve(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
-class Bounds:
-    """|speeds u + bends x + offsets| <= most at every grid point, and x <= rate_squared.
-
-    x is the square of the parameter's rate and u its acceleration.
-
-    Attributes:
-        speeds: The factors of u, shape (M, k), like `bends` of x and `offsets`.
-        most: The largest magnitudes, shape (k,).
-        rate_squared: The largest x, shape (M,); None for no bound.
-        between: Whether the bounds of a grid point hold at the next one too, as it is approached:
-            toppra's scheme "Interpolation".
-    """
-
-    speeds: FloatArray
-    bends: FloatArray
-    offsets: FloatArray
-    most: FloatArray
-    rate_squared: FloatArray | None = None
-    between: bool = True
-
-
 def fastest(
     path: JointCurve, limits: Limits, grid: FloatArray, link_bounds: Bounds | None = None
 ) -> tuple[Curve, float]:
@@ -63,10 +42,6 @@ def fastest(
 
     Raises:
         TimingError: There is no solution.
-
-    References:
-        H. Pham, Q.-C. Pham, "A New Approach to Time-Optimal Path Parameterization Based on
-        Reachability Analysis", IEEE T-RO 34(3), 2018.
     """
     states = path.evaluate(grid)
     bounds = [joint_bounds(states, limits)]
@@ -81,15 +56,11 @@ def fastest(
 
 
 def joint_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
-    """Bounds of the joints' velocities and accelerations, at the states of a path's grid points.
-
-    The bound of the rate has single precision, as in the library.
-    """
+    """Bounds of the joints' velocities and accelerations, at the states of a path's grid points."""
     _, first, second = states
     with np.errstate(divide="ignore"):
-        rate = np.min(limits.velocity / np.abs(first), axis=1).astype(np.float32)
-    squared = (rate**2).astype(float)
-    return Bounds(first, second, np.zeros_like(first), limits.acceleration, squared)
+        rate = np.min(limits.velocity / np.abs(first), axis=1)
+    return Bounds(first, second, np.zeros_like(first), limits.acceleration, rate**2)
 
 
 def _effort_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
@@ -105,8 +76,6 @@ def _effort_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Li
 
 
 def _solve(path: JointCurve, bounds: list[Bounds], grid: FloatArray) -> tuple[Curve, float]:
-    from harness.planning.timing.toppra_library import squared_rates  # here: few motions need it
-
     rates = squared_rates(bounds, grid)
     if rates is None:
         raise TimingError("TOPP-RA found no times under the limits")
