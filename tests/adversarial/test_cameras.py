@@ -86,6 +86,7 @@ SCENES = {
 }  # fmt: skip
 
 
+@pytest.mark.nightly(but=[1, 2])
 @pytest.mark.parametrize("title", SCENES)
 def test_the_naive_check_is_fooled_and_sees_is_not(title, tmp_path):
     changes, naive, refuted, kept = SCENES[title]

@@ -163,6 +163,7 @@ def test_a_camera_on_an_object_goes_where_it_goes_and_takes_no_picture_while_it_
     np.testing.assert_allclose(run.captures[1].pose, expected[0], atol=1e-9)
 
 
+@pytest.mark.nightly
 def test_the_gripper_camera_is_the_lessons():
     """Its place and view against the URDF, which has the lesson's numbers; noise and all."""
     description = load_robot(RobotSpec(model="open_manipulator_x"))

@@ -240,7 +240,7 @@ def test_the_command_is_the_module():
     assert done.stdout == f"armharness {__version__}\n"
 
 
-@pytest.mark.nightly(but=["option0"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("option", [("--yes",), ("--velocity-scaling", "0.5")])
 def test_options_of_a_ros_2_robot_are_refused_without_one(option, capsys):
     assert main(["run", "lessons/04_gripper_alone", *option]) == 2

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pinocchio as pin
+import pytest
 
 from harness.language.scenario import RobotSpec
 from harness.planning.collision.pair_statistics import sample_robot_positions
@@ -9,6 +10,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.robot.load import load_robot
 
 
+@pytest.mark.nightly
 def test_a_check_answers_as_one_that_begins_anew():
     """With Coal's guess from the state before, one of 299 touching pairs was overlooked."""
     description = load_robot(RobotSpec.model_validate({"model": "ur5e", "gripper": "rh_p12_rn_a"}))

@@ -11,6 +11,7 @@ expect:
 """
 
 
+@pytest.mark.nightly(but=["line"])
 @pytest.mark.parametrize(
     "steps",
     [

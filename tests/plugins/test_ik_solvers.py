@@ -53,6 +53,7 @@ def test_a_solver_is_used_where_it_fits_and_explained_by_its_name(scenario):
     assert position["explanation"]["ik_method"] == "numeric"
 
 
+@pytest.mark.nightly
 def test_wrong_answers_are_refused_by_forward_kinematics_and_the_solver_is_named(scenario):
     for command, code in (("check", 1), ("run", 1)):
         out = harness(

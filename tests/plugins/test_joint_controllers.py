@@ -45,6 +45,7 @@ def digest(folder, *options):
     return out.split("digest ")[1].split()[0]
 
 
+@pytest.mark.nightly
 def test_a_controller_follows_with_noise_and_its_run_repeats(scenario):
     first = digest(scenario)
     assert digest(scenario) == first

@@ -49,6 +49,7 @@ def use(folder, old, new):
     (folder / "post.scenario.yaml").write_text(WALL.replace(old, new), encoding="utf-8")
 
 
+@pytest.mark.nightly
 def test_a_planner_s_path_is_timed_verified_executed_and_recorded(wall):
     out = harness(wall, "run", "post.scenario.yaml", *PLANNERS)
     (file,) = wall.glob("reports/**/run.json")

@@ -246,7 +246,7 @@ def checked(scenario):
     return done.stdout, 1000 * int(done.stdout.rpartition("peak ")[2])
 
 
-@pytest.mark.nightly(but=["arm.xacro"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("file", [*FILES, "assets/t.obj"])
 def test_a_file_of_a_hundred_megabytes_is_refused_in_little_memory(tmp_path, file):
     scenario = write(tmp_path, file if file in FILES else "arm.xml", FILES.get(file, MJCF))

@@ -192,6 +192,7 @@ def test_a_welded_grasp_says_so_in_its_verdicts(tmp_path):
     assert all("welded to the hand by `mode: weld`" in v.reason for v in result.verdicts)
 
 
+@pytest.mark.nightly
 def test_what_was_welded_falls_when_it_is_detached(tmp_path):
     """A weld that outlived its attachment would let it hover, and `released` pass."""
     result, _ = run(
@@ -329,7 +330,7 @@ def test_what_the_hand_overlaps_at_the_start_is_a_note_although_it_opens_first(
 STANDING_AT = "{frame: base_link, xyz: [0.28, -0.1, 0.055]"
 
 
-@pytest.mark.nightly(but=["box: {size: [4 cm, 4 cm, 12 cm]}--4-2"])
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("shape", "stated", "turns", "taken"),
     [

@@ -26,7 +26,7 @@ def harness(*words, cwd):
     )  # fmt: skip
 
 
-@pytest.mark.nightly(but=["eventually: {upright: cube}-1"])
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(("expected", "code"), [(WARNED, 1), (PLAIN, 0)])
 def test_a_warning_fails_a_strict_run_and_no_other(expected, code, tmp_path):
     (tmp_path / "still.scenario.yaml").write_text(STILL.replace("EXPECT", expected))

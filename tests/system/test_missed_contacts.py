@@ -20,6 +20,7 @@ expect:
 """
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(("timestep", "place", "status", "warnings"), [
     (0.02, "0.7039, 0.4510, 0.8031", "passed", ["contact may be missed"]),
     (0.001, "0.7039, 0.4510, 0.8031", "failed", []),

@@ -95,6 +95,7 @@ def test_an_installed_package_is_not_the_checkout(harness, installed):
     assert Path(done.stdout.strip()).is_relative_to(installed)
 
 
+@pytest.mark.nightly
 def test_an_installed_package_finds_robots_worlds_and_scenarios(harness):
     robots = {"ur3e", "ur5e", "open_manipulator_x", "rh_p12_rn_a"}
     assert robots <= set(names(harness("list", "robots")))

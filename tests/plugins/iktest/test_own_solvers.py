@@ -13,7 +13,7 @@ from harness.ports.goals import PoseGoal
 from harness.robot_tools.robot_source import RobotSource, load_source
 
 
-@pytest.mark.nightly(but=["open_manipulator_x"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("robot", ["open_manipulator_x", "ur3e", "ur5e"])
 def test_closed_forms_keep_every_property_and_find_every_way(robot):
     check_ik(own_solver(RobotSource(robot)), robot, branches=True, examples=40)

@@ -98,6 +98,7 @@ def test_ten_thousand_points_are_followed(tmp_path):
         assert node.send(follow(*points)).status is Status.SUCCEEDED
 
 
+@pytest.mark.nightly
 def test_a_goal_goes_on_when_its_client_dies(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
     with bridge(scenario(tmp_path, HOLD)) as (node, _):

@@ -300,6 +300,7 @@ def test_undo_takes_the_step_out_of_the_text_and_the_state(studio):
     assert np.array_equal(studio.cell.joint_positions(), start)
 
 
+@pytest.mark.nightly
 def test_what_is_seen_is_proposed_with_names_and_poses(studio):
     def seen():
         found = reply(studio, "expect_seen")["proposals"]

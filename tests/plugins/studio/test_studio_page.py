@@ -105,7 +105,7 @@ def test_a_slider_moves_the_joint(opened, served):
     opened.wait("Math.abs(parseFloat(document.querySelector('.joint output').innerText)) < 0.5")
 
 
-@pytest.mark.nightly(but=["#record"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("focus", ['input[aria-label="joint1"]', "#record"])
 def test_keys_move_the_gripper_while_a_slider_or_a_box_to_tick_has_the_focus(browser, serve, focus):
     """Sliders have it after each drag; then a recorded step and the whole scenario run."""

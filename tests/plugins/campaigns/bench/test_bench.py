@@ -65,6 +65,7 @@ def test_every_planner_tries_every_searched_motion_from_every_seed(motions):
             assert trial.clearance > 0
 
 
+@pytest.mark.nightly
 def test_the_numbers_are_the_same_every_time_but_for_the_times(file, motions):
     again = document(collect(file, PLANNERS, [1, 2, 3], lambda _: None), PLANNERS, [1, 2, 3])
     once = document(motions, PLANNERS, [1, 2, 3])
