@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.ports.scene import Touch
 from harness.recording.signals import Signals
 
 LONGEST_RUN = 600.0
@@ -180,6 +181,25 @@ class Simulator(Protocol):
 
     def unweld(self, name: str) -> None:
         """Undo `weld`."""
+        ...
+
+
+class RecordingSimulator(Simulator, Protocol):
+    """A simulator, or a robot, that a whole case runs on and that records it."""
+
+    @property
+    def timestep(self) -> float:
+        """The time between two samples [s]."""
+        ...
+
+    @property
+    def overlaps_at_start(self) -> Sequence[Touch]:
+        """Pairs of bodies that overlap at the start, deepest first."""
+        ...
+
+    @property
+    def unrecorded(self) -> tuple[str, ...]:
+        """Names of `Signals`' fields that are not recorded."""
         ...
 
     def finish(self) -> Signals:

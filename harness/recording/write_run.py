@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -36,19 +37,25 @@ APART = ("seed", "steps", "findings", "versions", "signals", "resolved", "meshes
 """Fields of a run that have a place of their own in its folder."""
 
 
-def write_run(
-    folder: Path,
-    stored: StoredRun,
-    extra: Callable[[Path], None] | None = None,
-    complete: Callable[[], StoredRun] | None = None,
-) -> None:
-    """Write a run's folder under a temporary name next to it, then put it in its place.
+def write_run(folder: Path, stored: StoredRun) -> None:
+    """Write a run's folder, which then holds nothing else.
+
+    Raises:
+        HarnessError: The disk is full, the place is not writable, or is no place for a run.
+    """
+    with run_folder(folder, stored.run) as target:
+        write_document(target, stored)
+
+
+@contextmanager
+def run_folder(folder: Path, run: Run) -> Generator[Path]:
+    """A new folder next to a run's, which takes its place when the block ends without an error.
+
+    The block writes the document, and other files. Meanwhile the signals are written.
 
     Args:
         folder: Its final name; an older run there is replaced, anything else is not touched.
-        stored: The judged run that is written.
-        extra: Adds more files to the folder it is given, before anyone sees it.
-        complete: Returns the same run with what is drawn of it, while its signals are written.
+        run: The run with its signals and trajectories.
 
     Raises:
         HarnessError: The disk is full, the place is not writable, or is no place for a run.
@@ -58,19 +65,10 @@ def write_run(
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         temporary = _fresh_sibling(folder, "writing")
-        arrays = arrays_of(stored.run.signals) | _trajectories(stored.run)
+        arrays = arrays_of(run.signals) | _trajectories(run)
         with ThreadPoolExecutor(1) as pool:  # compression runs next to Python
             compressed = pool.submit(write_npz, temporary / SIGNALS, arrays)
-            whole = stored if complete is None else complete()
-            run, document = whole.run, _document(whole)
-            document[CHECKSUM] = checksum(document, run.resolved)
-            text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-            (temporary / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
-            (temporary / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
-            write_npz(temporary / VISUALS, _mesh_arrays(run))
-            write_files(temporary, run.files)
-            if extra is not None:
-                extra(temporary)
+            yield temporary
             compressed.result()
         _put_in_place(temporary, folder)
     except OSError as error:
@@ -81,6 +79,17 @@ def write_run(
     finally:
         if temporary is not None:
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def write_document(folder: Path, stored: StoredRun) -> None:
+    """Write everything of a run but its signals into its folder."""
+    run, document = stored.run, _document(stored)
+    document[CHECKSUM] = checksum(document, run.resolved)
+    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+    (folder / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
+    (folder / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
+    write_npz(folder / VISUALS, _mesh_arrays(run))
+    write_files(folder, run.files)
 
 
 def _document(stored: StoredRun) -> dict[str, Any]:

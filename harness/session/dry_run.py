@@ -20,7 +20,6 @@ from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
 from harness.ports.motions import FreeMotion, JointMotion
 from harness.ports.simulation import ExpectedGrasp, GripperResult
-from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
@@ -152,9 +151,6 @@ class DrySimulator:
 
     def unweld(self, name: str) -> None:
         del name
-
-    def finish(self) -> Signals:
-        raise RuntimeError("nothing is recorded without physics")
 
 
 class DryPlanner:

@@ -96,9 +96,9 @@ class Pictures:
             if background is not None:
                 background.close()
 
-    def captured(self, run: Run, activity: Activity) -> Run:
-        """The run with the pictures that verdicts read."""
-        return _with_captures(run, self._captures, activity)
+    def captured(self, activity: Activity) -> Captures:
+        """The pictures that verdicts read; after `begin`, all pictures of the cameras."""
+        return ((), {}) if self._captures is None else self._captures.result(activity)
 
     def begin(self) -> None:
         """Begin to draw what is kept, before this process has threads: then it is not forked."""
@@ -108,21 +108,10 @@ class Pictures:
             run = self._run
             self._drawings = self._begin_drawings(lambda: _shown(run), run)
 
-    def drawn(self, run: Run, activity: Activity) -> tuple[Run, Drawings]:
-        """The run as it is kept, with all pictures of its cameras; and its drawings."""
-        if self._request.only_failed:
-            run = _with_captures(run, self._captures, activity)
+    def drawn(self, activity: Activity) -> Drawings:
+        """What is drawn of a run that is kept."""
         assert self._drawings is not None, "begin() begins it"
-        drawings = self._drawings.result(activity)
-        run = replace(
-            run,
-            steps=_with_picture_names(run.steps) if self._request.stills else run.steps,
-            findings=(*run.findings, *drawings.findings),
-            meshes=drawings.meshes,
-            videos=drawings.videos,
-            files={**run.files, **drawings.files},
-        )
-        return run, drawings
+        return self._drawings.result(activity)
 
     def _begin_captures(self, *, is_kept: bool) -> Background[Captures] | None:
         """The pictures that verdicts read; where the run is kept, those of steps too."""
@@ -139,13 +128,6 @@ class Pictures:
     ) -> Background[Drawings]:
         draw = partial(_drawings, self._prepared, get_shown, run)
         return Background(partial(draw, are_steps_drawn=self._request.stills))
-
-
-def _with_captures(run: Run, captures: Background[Captures] | None, activity: Activity) -> Run:
-    if captures is None:
-        return run
-    records, files = captures.result(activity)
-    return replace(run, captures=records, files=files)
 
 
 def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
@@ -217,10 +199,10 @@ def _drawings(
 
 
 def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, bytes]:
-    """The pictures that `_with_picture_names` names."""
+    """The pictures that `with_picture_names` names."""
     steps = [
         (step, picture)
-        for step in _with_picture_names(run.steps)
+        for step in with_picture_names(run.steps)
         if (picture := recorded_explanation(step.explanation).picture) is not None
     ]
     if not steps:
@@ -235,7 +217,7 @@ def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, byt
     return files
 
 
-def _with_picture_names(steps: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
+def with_picture_names(steps: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     """The steps with the file of its picture in each explanation that has a state to draw.
 
     Only the first `MOST_EXPLAINED` of them have one.

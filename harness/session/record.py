@@ -1,22 +1,10 @@
-"""The run's record: the robot as verdicts and reports need it, versions, signals."""
+"""The robot as verdicts and reports need it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from harness.core.versions import library_versions
-from harness.language.reading.resolve import resolved_text
 from harness.ports.kinematics import Kinematics
-from harness.ports.scene import Touch
 from harness.recording.robot_record import GripperRecord, JointRecord, LinkPlacement, RobotRecord
-from harness.recording.run import Run
-from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
-from harness.session.execute import Execution
-from harness.session.observation.fault_effects import with_receipts
-from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
-from harness.session.prepare import Prepared
-from harness.session.run_request import RunRequest
 
 
 def robot_record(description: RobotDescription, kinematics: Kinematics) -> RobotRecord:
@@ -85,57 +73,4 @@ def _gripper_record(description: RobotDescription) -> GripperRecord | None:
         closed_position=gripper.closed_position,
         widths=tuple((float(q), float(width)) for q, width in gripper.widths),
         palm_link=gripper.palm_link,
-    )
-
-
-def resolved_scenario(request: RunRequest, prepared: Prepared) -> str:
-    """The scenario as a report has it: every value written out, with the seeds of its steps."""
-    program = prepared.program
-    seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
-    return resolved_text(prepared.loaded, seeds, folder=request.report_dir)
-
-
-def executed_run(
-    request: RunRequest,
-    prepared: Prepared,
-    execution: Execution,
-    signals: Signals,
-    overlaps: Sequence[Touch],
-) -> Run:
-    """What was executed and recorded, without what is observed on it and what only a report has.
-
-    Args:
-        request: The request of the case.
-        prepared: The scenario, ready to be executed.
-        execution: What its steps did.
-        signals: What the physics recorded, with distances.
-        overlaps: Bodies that overlap at the start.
-    """
-    program = prepared.program
-    robot = robot_record(program.description, prepared.ports.kinematics)
-    steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
-    return Run(
-        scenario=program.title,
-        file=str(request.file),
-        case=request.case,
-        seed=program.seed,
-        robot=robot,
-        objects=execution.objects,
-        attachments=execution.attachments,
-        steps=steps,
-        signals=signals,
-        gravity=program.world.gravity,
-        timestep=program.world.timestep,
-        allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
-        findings=(
-            *prepared.about_file,
-            *notes_of_files(prepared.notes),
-            *overlap_findings(overlaps),
-            *findings_of(steps),
-            *faults,
-        ),
-        source=prepared.loaded.text,
-        versions=library_versions(),
-        ended_early=execution.ended_early,
-        cameras=tuple(program.cameras.values()),
     )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack, closing
-from dataclasses import replace
+from contextlib import closing
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -15,20 +15,18 @@ from harness.judging.judge import judge
 from harness.ports.scene import Touch
 from harness.recording.digest import digest
 from harness.recording.files import write_files
-from harness.recording.run import Run
 from harness.recording.stored_run import PAGE, StoredRun
-from harness.recording.write_run import write_run
+from harness.recording.write_run import run_folder, write_document
 from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
 from harness.session.execute import ProgramExecution
-from harness.session.external import ExternalSession, MakeSession, NoPrograms
-from harness.session.observation.observe import explained_run, observed_run, with_believed_poses
+from harness.session.external import MakeSession, NoPrograms
 from harness.session.observation.tracking import never_held
-from harness.session.pictures import Drawings, Pictures
+from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
-from harness.session.record import executed_run, resolved_scenario
+from harness.session.run_builder import RunBuilder
 from harness.session.run_request import RunRequest
 from harness.session.start import Start, overlap_note, start_case
 from harness.session.timing import Clock
@@ -54,165 +52,131 @@ def run_case(
             begun = start(request, clock)
     except SpecError as error:
         return _invalid(request, error)
-    prepared, overlaps, draw = begun.prepared, begun.simulator.overlaps_at_start, begun.draw
+    prepared = begun.prepared
     progress = Progress(notify, prepared.program)
     progress.compiled()
     try:
-        with ExitStack() as stack:
-            pictures = stack.enter_context(closing(Pictures(request, prepared)))
-            session = make_session(prepared, begun.simulator)
-            executed = _executed(request, begun, clock, progress, session)
-            refusal = session.refusal()
-            del begun, session  # the simulator is the largest object; the run holds its recording
-            pictures.executed(executed)
+        with closing(Pictures(request, prepared)) as pictures:
+            case = _Case(request, prepared, clock, progress, pictures)
+            builder, refusal = case.execute(begun, make_session)
+            overlaps, draw = begun.simulator.overlaps_at_start, begun.draw
+            del begun  # the simulator is the largest object; the builder holds its recording
             free_memory()
-            judged = _judged(request, executed, prepared, pictures, clock, progress)
-            if refusal and judged.outcome != "passed":
-                judged = replace(judged, outcome="error")
-            result = _result(request, prepared, judged, overlaps, draw, refusal)
+            with remembered_facts():
+                case.observe(builder)
+                judged = case.judge(builder, refusal)
+                result = case.result(judged, overlaps, draw, refusal)
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
-            with clock.part("judge"):
-                run = replace(judged.run, resolved=resolved_scenario(request, prepared))
-                judged = replace(judged, run=explained_run(prepared, run))
-            return _reported(request, request.report_dir, judged, result, pictures, clock, progress)
+            return case.report(request.report_dir, builder, judged, result)
     except HarnessError as error:
         return _broken(request, prepared, clock, error)
 
 
-def _executed(
-    request: RunRequest,
-    start: Start,
-    clock: Clock,
-    progress: Progress,
-    session: ExternalSession,
-) -> Run:
-    """Plan and simulate the steps, and record what happens."""
-    prepared, simulator, _ = start
-    progress.activity("setting up planning and physics")
+@dataclass(frozen=True)
+class _Case:
+    """The stages of a case that was started, in their order."""
 
-    with clock.part("execute"):
-        program_execution = ProgramExecution(
-            prepared.program,
-            prepared.ports,
-            simulator,
-            partial(progress.step, simulator),
-            external=session,
+    request: RunRequest
+    prepared: Prepared
+    clock: Clock
+    progress: Progress
+    pictures: Pictures
+
+    def execute(self, start: Start, make_session: MakeSession) -> tuple[RunBuilder, str]:
+        """Plan and simulate the steps; the record, and why external programs are not judged."""
+        prepared, simulator, _ = start
+        session = make_session(prepared, simulator)
+        self.progress.activity("setting up planning and physics")
+        with self.clock.part("plan"):  # what is not physics in execution
+            on_step = partial(self.progress.step, simulator)
+            execution = ProgramExecution(
+                prepared.program, prepared.ports, simulator, on_step, external=session
+            )
+            execution.run(prepared.program.steps)
+            done = execution.finish()
+        builder = RunBuilder(self.request, prepared, done, simulator, session.commands)
+        self.pictures.executed(builder.record)
+        return builder, session.refusal()
+
+    def observe(self, builder: RunBuilder) -> None:
+        """Measure what was recorded, and take the pictures that verdicts read."""
+        self.progress.activity("measuring distances")
+        with self.clock.part("judge"):
+            builder.observe()
+            if self.request.report_dir is not None:
+                builder.explain()
+        with self.clock.part("render"):
+            builder.captures = self.pictures.captured(self.progress.activity)
+
+    def judge(self, builder: RunBuilder, refusal: str) -> StoredRun:
+        """The run with its verdicts; a strict request fails with a warning."""
+        self.progress.activity("judging")
+        with self.clock.part("judge"):
+            run = builder.build()
+            verdicts = judge(run, self.prepared.expectations)
+            is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
+            if self.request.strict and verdict_warnings(str(self.request.file), verdicts):
+                is_good = False
+            outcome = "passed" if is_good else "error" if refusal else "failed"
+            return StoredRun(run, verdicts, outcome, digest(run, verdicts), self.clock.seconds)
+
+    def result(
+        self, judged: StoredRun, overlaps: Sequence[Touch], draw: int, refusal: str
+    ) -> CaseResult:
+        """The outcome of a judged case of which no report is written yet."""
+        request, program, run = self.request, self.prepared.program, judged.run
+        warned = verdict_warnings(str(request.file), judged.verdicts)
+        message = "\n".join(warned) if request.strict else ""
+        return CaseResult(
+            file=str(request.file),
+            case=request.case,
+            title=program.title,
+            outcome=judged.outcome,
+            digest=judged.digest,
+            seed=program.seed,
+            sim_time=run.duration,
+            steps=tuple(StepLine.of(step) for step in run.steps),
+            verdicts=judged.verdicts,
+            message=refusal if judged.outcome == "error" else message,
+            notes=(*warned, *_notes(self.prepared, overlaps), *never_held(run)),
+            overlap=-overlaps[0].distance if overlaps else 0.0,
+            redraws=draw,
+            values=request.redraw.redrawn(draw).values if request.redraw and draw else {},
+            wall_times=dict(judged.wall_times),
         )
-        program_execution.run(prepared.program.steps)
-        execution = program_execution.finish()
-    # what is not physics in execution is planning
-    executed = clock.seconds.pop("execute")
-    clock.seconds["plan"] = max(0.0, executed - clock.seconds.get("simulate", 0.0))
-    signals = with_believed_poses(prepared, execution, simulator.finish())
-    run = executed_run(request, prepared, execution, signals, simulator.overlaps_at_start)
-    return replace(
-        run,
-        commands=session.commands,
-        timestep=simulator.timestep,
-        unrecorded=simulator.unrecorded,
-    )
 
+    def report(
+        self, folder: Path, builder: RunBuilder, judged: StoredRun, result: CaseResult
+    ) -> CaseResult:
+        """The result of a case with its report, which is written here.
 
-@remembered_facts()
-def _judged(
-    request: RunRequest,
-    executed: Run,
-    prepared: Prepared,
-    pictures: Pictures,
-    clock: Clock,
-    progress: Progress,
-) -> StoredRun:
-    """The observed run with its verdicts; a strict request fails with a warning."""
-    progress.activity("measuring distances")
-    with clock.part("judge"):
-        run = observed_run(prepared, executed)
-    with clock.part("render"):
-        run = pictures.captured(run, progress.activity)
-    progress.activity("judging")
-    with clock.part("judge"):
-        verdicts = judge(run, prepared.expectations)
-        is_good = not run.ended_early and all(verdict.status == "passed" for verdict in verdicts)
-        if request.strict and verdict_warnings(str(request.file), verdicts):
-            is_good = False
-        outcome = "passed" if is_good else "failed"
-        return StoredRun(run, verdicts, outcome, digest(run, verdicts), clock.seconds)
-
-
-def _result(
-    request: RunRequest,
-    prepared: Prepared,
-    judged: StoredRun,
-    overlaps: Sequence[Touch],
-    draw: int,
-    refusal: str,
-) -> CaseResult:
-    """The outcome of a judged case of which no report is written yet."""
-    warned = verdict_warnings(str(request.file), judged.verdicts)
-    message = "\n".join(warned) if request.strict else ""
-    return CaseResult(
-        file=str(request.file),
-        case=request.case,
-        title=prepared.program.title,
-        outcome=judged.outcome,
-        digest=judged.digest,
-        seed=prepared.program.seed,
-        sim_time=judged.run.duration,
-        steps=tuple(StepLine.of(step) for step in judged.run.steps),
-        verdicts=judged.verdicts,
-        message=refusal if judged.outcome == "error" else message,
-        notes=(*warned, *_notes(prepared, overlaps), *never_held(judged.run)),
-        overlap=-overlaps[0].distance if overlaps else 0.0,
-        redraws=draw,
-        values=request.redraw.redrawn(draw).values if request.redraw is not None and draw else {},
-        wall_times=dict(judged.wall_times),
-    )
-
-
-def _reported(
-    request: RunRequest,
-    folder: Path,
-    judged: StoredRun,
-    result: CaseResult,
-    pictures: Pictures,
-    clock: Clock,
-    progress: Progress,
-) -> CaseResult:
-    """The result of a case with its report, which is written here.
-
-    Raises:
-        HarnessError: The folder cannot be written, or a reporter fails.
-    """
-    progress.activity("writing the report")
-    pictures.begin()
-    drawings, rendered = Drawings(), clock.seconds.get("render", 0.0)
-    names = (*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters)
-    reports = Reports(names)
-
-    def complete() -> StoredRun:
-        nonlocal judged, drawings
-        reports.begin(judged)
-        with clock.part("render"):
-            run, drawings = pictures.drawn(judged.run, progress.activity)
-        judged = replace(judged, run=run)
-        return judged
-
-    def add(target: Path) -> None:
-        write_files(target, drawings.images)
-        reports.write(target, judged, progress.activity)
-
-    with clock.part("write"):
-        write_run(folder, judged, add, complete)
-    clock.seconds["write"] -= clock.seconds["render"] - rendered  # what was waited for
-    progress.written(judged, str(folder))
-    return replace(
-        result,
-        report_dir=str(folder),
-        page=str(folder / PAGE) if request.page else "",
-        notes=(*result.notes, drawings.note) if drawings.note else result.notes,
-        wall_times=clock.seconds,
-    )
+        Raises:
+            HarnessError: The folder cannot be written, or a reporter fails.
+        """
+        request, clock, activity = self.request, self.clock, self.progress.activity
+        activity("writing the report")
+        self.pictures.begin()
+        reports = Reports((*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters))
+        with clock.part("write"), run_folder(folder, judged.run) as target:
+            reports.begin(judged)
+            with clock.part("render"):
+                if request.only_failed:
+                    builder.captures = self.pictures.captured(activity)
+                builder.drawings = drawings = self.pictures.drawn(activity)
+            stored = replace(judged, run=builder.build())
+            write_document(target, stored)
+            write_files(target, drawings.images)
+            reports.write(target, stored, activity)
+        self.progress.written(judged, str(folder))
+        return replace(
+            result,
+            report_dir=str(folder),
+            page=str(folder / PAGE) if request.page else "",
+            notes=(*result.notes, drawings.note) if drawings.note else result.notes,
+            wall_times=clock.seconds,
+        )
 
 
 def _notes(prepared: Prepared, overlaps: Sequence[Touch]) -> tuple[str, ...]:

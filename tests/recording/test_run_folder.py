@@ -31,7 +31,7 @@ from harness.recording.run import Finding
 from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import StoredRun
-from harness.recording.write_run import write_run
+from harness.recording.write_run import run_folder, write_run
 from tests.judging.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
 
 EXPECTED = [
@@ -123,11 +123,11 @@ def full_run():
     )
 
 
-def written(folder, run=None, **options):
+def written(folder, run=None):
     run = run or full_run()
     verdicts = judge(run, EXPECTED)
     stored = StoredRun(run, verdicts, "failed", digest(run, verdicts), {"plan": 0.25})
-    write_run(folder, stored, **options)
+    write_run(folder, stored)
     return run, verdicts
 
 
@@ -218,13 +218,10 @@ def test_a_newer_run_replaces_an_older_one_with_nothing_left_next_to_it(tmp_path
 def test_extra_files_are_there_when_the_folder_appears(tmp_path):
     folder = tmp_path / "deep" / "run"
 
-    def draw(target):
+    with run_folder(folder, full_run()) as target:
         assert not folder.exists()
         (target / "images").mkdir()
         (target / "images" / "a.png").write_bytes(b"x")
-
-    run = full_run()
-    write_run(folder, unjudged(run), extra=draw)
     assert (folder / "images" / "a.png").read_bytes() == b"x"
 
 
@@ -234,13 +231,14 @@ def test_extra_files_are_there_when_the_folder_appears(tmp_path):
 def test_when_writing_breaks_off_the_older_run_stays_and_nothing_half_written(tmp_path, trouble):
     written(tmp_path / "run")
 
-    def breaks(target):
-        (target / "half").write_text("x")
-        raise trouble
+    def breaks():
+        with run_folder(tmp_path / "run", full_run()) as target:
+            (target / "half").write_text("x")
+            raise trouble
 
     expected = HarnessError if isinstance(trouble, OSError) else KeyboardInterrupt
     with pytest.raises(expected) as caught:
-        write_run(tmp_path / "run", unjudged(full_run()), extra=breaks)
+        breaks()
     if expected is HarnessError:
         assert "No space left on device" in str(caught.value)
         assert "--report-dir" in str(caught.value)

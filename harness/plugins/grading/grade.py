@@ -20,7 +20,7 @@ from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
-from harness.recording.write_run import write_run
+from harness.recording.write_run import run_folder, write_document
 from harness.reporting.reporter import Reports
 from harness.session.prepare import Prepared, prepare
 from harness.session.record import robot_record
@@ -166,7 +166,9 @@ def _write_page(run: Run, grade: Grade, folder: Path) -> None:
     verdicts = tuple(row.verdict for row in grade.rows)
     outcome = "passed" if grade.is_full else "failed"
     stored = StoredRun(run, verdicts, outcome, digest(run, verdicts), {})
-    write_run(folder, stored, lambda target: Reports(["html"]).write(target, stored))
+    with run_folder(folder, run) as target:
+        write_document(target, stored)
+        Reports(["html"]).write(target, stored)
 
 
 def _withheld(

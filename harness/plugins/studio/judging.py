@@ -17,9 +17,8 @@ from harness.plugins.studio.verdict_messages import NO_VERDICTS, verdicts_messag
 from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.verdict import Verdict
-from harness.session.observation.observe import observed_run, with_believed_poses
 from harness.session.pictures import Pictures
-from harness.session.record import executed_run
+from harness.session.run_builder import RunBuilder
 from harness.session.run_request import RunRequest
 
 FINAL_FAILURES = ("always", "never")
@@ -57,11 +56,12 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
         prepared = replace(prepared, expectations=cell.prepared_as(document).expectations)
     request = RunRequest(cell.files.path, text=cell.document.text)
     execution = cell.execution.finish()
-    signals = with_believed_poses(prepared, execution, cell.simulator.finish())
-    run = executed_run(request, prepared, execution, signals, cell.simulator.overlaps_at_start)
+    builder = RunBuilder(request, prepared, execution, cell.simulator)
     with closing(Pictures(request, prepared)) as pictures:
-        pictures.executed(run)
-        run = pictures.captured(observed_run(prepared, run), unobserved)
+        pictures.executed(builder.record)
+        builder.observe()
+        builder.captures = pictures.captured(unobserved)
+    run = builder.build()
     verdicts = judge(run, prepared.expectations)
     is_over = cell.steps_done >= cell.document.step_count or bool(execution.ended_early)
     is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)

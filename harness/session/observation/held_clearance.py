@@ -9,7 +9,6 @@ import numpy as np
 from harness.core.pose_arrays import IDENTITY
 from harness.judging.contacts import attached
 from harness.judging.distances import in_grip
-from harness.judging.facts import remembered_facts
 from harness.judging.support import carried_by_hand
 from harness.judging.temporal import bridged, episodes
 from harness.recording.run import AttachmentRecord, Run
@@ -17,36 +16,39 @@ from harness.recording.signals import Signals
 from harness.session.observation.clearance import CoalClearance
 
 
-@remembered_facts()
-def with_held_distances(run: Run, observer: CoalClearance) -> Signals:
-    """The signals of a run with distances of objects in the hand that are not attached.
+def with_held_distances(run: Run, signals: Signals, observer: CoalClearance) -> Signals:
+    """Signals with distances of objects in the hand that are not attached.
 
     What the hand grips has no distance to the robot.
+
+    Args:
+        run: The run as it was recorded.
+        signals: Its signals with the distances of other bodies.
+        observer: Measures distances.
     """
-    run = replace(run, signals=_without_gripped(run))
+    signals = _without_gripped(run, signals)
     holds = [] if "contact_forces" in run.unrecorded else _holds(run)
     if not holds:
-        return run.signals
+        return signals
     held = {hold.object for hold in holds}
     pairs = {(name, other.name) for name in held for other in run.objects if other.name != name}
-    cutoff = run.signals.clearance_cutoff
-    found = observer.observe(run.signals, run.objects, holds, cutoff, only=pairs)
-    distances = dict(run.signals.clearances)
+    found = observer.observe(signals, run.objects, holds, signals.clearance_cutoff, only=pairs)
+    distances = dict(signals.clearances)
     for pair, values in found.clearances.items():
         known = distances.get(pair, np.full(len(values), np.nan))
         distances[pair] = np.where(np.isnan(known), values, known)
-    return replace(run.signals, clearances=distances)
+    return replace(signals, clearances=distances)
 
 
-def _without_gripped(run: Run) -> Signals:
-    """The signals of a run without distances of the robot to what its hand grips."""
-    distances, links = dict(run.signals.clearances), dict(run.signals.clearance_links)
+def _without_gripped(run: Run, signals: Signals) -> Signals:
+    """The signals without distances of the robot to what its hand grips."""
+    distances, links = dict(signals.clearances), dict(signals.clearance_links)
     names = {record.name for record in run.objects if record.in_simulation}
     for first, name in distances:
         if first == "robot" and name in names and (mask := in_grip(run, name)).any():
             distances[first, name] = np.where(mask, np.nan, distances[first, name])
             links[first, name] = np.where(mask, -1, links[first, name])
-    return replace(run.signals, clearances=distances, clearance_links=links)
+    return replace(signals, clearances=distances, clearance_links=links)
 
 
 def _holds(run: Run) -> list[AttachmentRecord]:

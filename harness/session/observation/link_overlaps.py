@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.kinematics import LinkPoses
 from harness.core.types import FloatArray, IntArray, Pair
 from harness.planning.model.robot_model import RobotModel
-from harness.recording.run import Finding, Run
+from harness.recording.run import Finding
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
 from harness.session.observation.body_tracks import (
@@ -115,12 +115,12 @@ def _shape_pairs(
     return pairs_between([one], other, cutoff)
 
 
-def link_overlap_findings(run: Run) -> tuple[Finding, ...]:
+def link_overlap_findings(signals: Signals) -> tuple[Finding, ...]:
     """Links that were inside each other, and that the SRDF excludes from collision checking."""
     found: list[Finding] = []
-    for (first, second), depth in run.signals.link_overlaps.items():
+    for (first, second), depth in signals.link_overlaps.items():
         deepest = int(np.argmax(depth))
-        time = float(run.signals.times[deepest])
+        time = float(signals.times[deepest])
         found.append(
             Finding(
                 "link_overlap",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,16 +33,19 @@ DIFFERENT = 1e-3
 Distances = Callable[[Motion, Collection[Pair]], Mapping[Pair, FloatArray]]
 
 
-def plan_against_physics(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
+def plan_against_physics(
+    run: Run, signals: Signals, planned: Signals, distances: Distances
+) -> tuple[Finding, ...]:
     """What differed between belief and physics, and by how much, in every run.
 
     Args:
-        run: The run, with its clearances observed.
-        planned: The run's signals `as_commanded`.
+        run: The run as it was recorded.
+        signals: Its signals with distances.
+        planned: Its signals `as_commanded`.
         distances: Measures the clearances of some pairs at every sample it is given.
     """
     held = [found for record in run.attachments if (found := held_finding(run, record)) is not None]
-    near = _clearances(run, planned, distances)
+    near = _clearances(run.steps, signals, planned, distances)
     return (*held, *_tracking(run), *near, *_allowed_contacts(run))
 
 
@@ -144,11 +147,12 @@ def _tracking(run: Run) -> tuple[Finding, ...]:
     )
 
 
-def _clearances(run: Run, planned: Signals, distances: Distances) -> tuple[Finding, ...]:
+def _clearances(
+    steps: Sequence[StepRecord], signals: Signals, planned: Signals, distances: Distances
+) -> tuple[Finding, ...]:
     """Clearance where the arm came nearest in each motion, against that of the set points there."""
-    signals = run.signals
     near = {pair: values for pair, values in signals.clearances.items() if pair[0] == "robot"}
-    moves = [(step, row) for step in run.steps if (row := _nearest(step, near)) is not None]
+    moves = [(step, row) for step in steps if (row := _nearest(step, near)) is not None]
     if not moves:
         return ()
     rows = np.array([row for _, (row, _) in moves], dtype=np.int64)

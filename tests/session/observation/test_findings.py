@@ -103,7 +103,7 @@ def test_objects_without_pictures_of_their_own_and_planes_do_not_differ():
 def test_links_inside_each_other_are_reported_where_they_are_deepest():
     depth = np.array([0.0, 0.0021, 0.0123, 0.001])
     signals = replace(make_run(4).signals, link_overlaps={("a", "b"): depth, ("a", "c"): depth / 2})
-    found = link_overlap_findings(replace(make_run(4), signals=signals))
+    found = link_overlap_findings(signals)
     assert [each.values["pair"] for each in found] == [["a", "b"], ["a", "c"]]
     assert [each.values["depth"] for each in found] == [0.0123, 0.00615]
     assert [each.time for each in found] == pytest.approx([0.02, 0.02])

@@ -29,7 +29,7 @@ def none_nearer(_):
 
 
 def findings(run, kind, distances=none_nearer):
-    every = plan_against_physics(run, run.signals, distances)
+    every = plan_against_physics(run, run.signals, run.signals, distances)
     SAID.extend(map(finding_text, every))
     return [each for each in every if each.kind == kind]
 

@@ -1,0 +1,131 @@
+"""Gathers what becomes known of a case, and makes its `Run`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from harness.core.versions import library_versions
+from harness.language.reading.resolve import resolved_text
+from harness.ports.simulation import RecordingSimulator
+from harness.recording.commands import CommandRecord
+from harness.recording.run import Finding, Run
+from harness.recording.signals import ContactRecord, Signals
+from harness.session.execute import Execution
+from harness.session.observation.beliefs import believed_poses
+from harness.session.observation.contacts import contact_records
+from harness.session.observation.fault_effects import with_receipts
+from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
+from harness.session.observation.observe import observed_signals, report_findings
+from harness.session.pictures import Captures, Drawings, with_picture_names
+from harness.session.prepare import Prepared
+from harness.session.record import robot_record
+from harness.session.run_request import RunRequest
+
+
+class RunBuilder:
+    """Gathers what becomes known of a case, and makes its `Run`.
+
+    Attributes:
+        record: What was executed and recorded; observers and cameras read it.
+        captures: The pictures that the scenario's cameras took.
+        drawings: What is drawn for a report alone, after the verdicts.
+    """
+
+    def __init__(
+        self,
+        request: RunRequest,
+        prepared: Prepared,
+        execution: Execution,
+        simulator: RecordingSimulator,
+        commands: Sequence[CommandRecord] = (),
+    ) -> None:
+        """Take over what was executed and recorded.
+
+        Args:
+            request: The request of the case.
+            prepared: The scenario that was executed.
+            execution: What its steps did.
+            simulator: The simulator with its recording.
+            commands: What external programs commanded.
+        """
+        self._request, self._prepared = request, prepared
+        self.record = _recorded(request, prepared, execution, simulator, commands)
+        self.captures: Captures = ((), {})
+        self.drawings: Drawings | None = None
+        self._signals: Signals = self.record.signals
+        self._findings: tuple[Finding, ...] = ()
+        self._contacts: tuple[ContactRecord, ...] = ()
+        self._resolved = ""
+
+    def observe(self) -> None:
+        """Measure distances, as verdicts and the digest need them."""
+        self._signals = observed_signals(self._prepared, self.record)
+
+    def explain(self) -> None:
+        """Find what only a report shows besides pictures."""
+        prepared, program = self._prepared, self._prepared.program
+        self._findings = report_findings(prepared, self.record, self._signals)
+        self._contacts = contact_records(self.record)
+        seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
+        folder = self._request.report_dir
+        self._resolved = resolved_text(prepared.loaded, seeds, folder=folder)
+
+    def build(self) -> Run:
+        """The run of what is known; only drawings may follow."""
+        record, (captures, files) = self.record, self.captures
+        drawn = self.drawings or Drawings()
+        names_pictures = self.drawings is not None and self._request.stills
+        return replace(
+            record,
+            signals=self._signals,
+            steps=with_picture_names(record.steps) if names_pictures else record.steps,
+            findings=(*record.findings, *self._findings, *drawn.findings),
+            contacts=self._contacts,
+            resolved=self._resolved,
+            captures=captures,
+            meshes=drawn.meshes,
+            videos=drawn.videos,
+            files={**files, **drawn.files},
+        )
+
+
+def _recorded(
+    request: RunRequest,
+    prepared: Prepared,
+    execution: Execution,
+    simulator: RecordingSimulator,
+    commands: Sequence[CommandRecord],
+) -> Run:
+    program, kinematics, recorded = prepared.program, prepared.ports.kinematics, simulator.finish()
+    believed = believed_poses(execution.beliefs, recorded.joint_positions, kinematics)
+    signals = replace(recorded, object_poses={**recorded.object_poses, **believed})
+    robot = robot_record(program.description, kinematics)
+    steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
+    return Run(
+        scenario=program.title,
+        file=str(request.file),
+        case=request.case,
+        seed=program.seed,
+        robot=robot,
+        objects=execution.objects,
+        attachments=execution.attachments,
+        steps=steps,
+        signals=signals,
+        gravity=program.world.gravity,
+        timestep=simulator.timestep,
+        allowed_contacts=tuple(sorted(program.description.allowed_collisions)),
+        findings=(
+            *prepared.about_file,
+            *notes_of_files(prepared.notes),
+            *overlap_findings(simulator.overlaps_at_start),
+            *findings_of(steps),
+            *faults,
+        ),
+        source=prepared.loaded.text,
+        versions=library_versions(),
+        ended_early=execution.ended_early,
+        unrecorded=simulator.unrecorded,
+        cameras=tuple(program.cameras.values()),
+        commands=tuple(commands),
+    )
