@@ -52,9 +52,11 @@ def check_file(
     path: Path, *, overrides: Mapping[str, str] | None = None, seed: int | None = None
 ) -> CheckResult:
     """Read, compile, and look for goals that are out of reach or in collision."""
+    from harness.simulation.mujoco_simulator import MujocoSimulator  # loads MuJoCo
+
     try:
         prepared = prepare(path, overrides, seed)
-        overlaps = start_physics(prepared).overlaps_at_start
+        overlaps = start_physics(prepared, MujocoSimulator).overlaps_at_start
     except SpecError as error:
         return CheckResult(path.name, problems=tuple(error.problems))
     problems = _problems_of_choices(prepared.loaded, path, overrides, seed)

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from harness.core.errors import StepFailed
 from harness.ports.external import ExternalControl, ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
-from harness.session.prepare import Prepared
-
-if TYPE_CHECKING:
-    from harness.session.timed_simulator import TimedSimulator
 
 
 class ExternalSession(ExternalControl, Protocol):
@@ -27,16 +22,10 @@ class ExternalSession(ExternalControl, Protocol):
         ...
 
 
-MakeSession = Callable[[Prepared, "TimedSimulator"], ExternalSession]
-"""Makes the session for a scenario at its start."""
-
-
 class NoPrograms:
     """The session of a run without external programs."""
 
     commands: tuple[CommandRecord, ...] = ()
-
-    def __init__(self, *_start: object) -> None: ...
 
     def hand_over(self, request: ExternalRequest) -> ExternalResult:
         """Refuse.

@@ -13,6 +13,7 @@ from harness.core.memory import free_memory
 from harness.judging.facts import remembered_facts
 from harness.judging.judge import judge
 from harness.ports.scene import Touch
+from harness.ports.simulation import RecordingSimulator
 from harness.recording.digest import digest
 from harness.recording.files import write_files
 from harness.recording.stored_run import PAGE, StoredRun
@@ -21,29 +22,26 @@ from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
 from harness.session.execute import ProgramExecution
-from harness.session.external import MakeSession, NoPrograms
 from harness.session.observation.tracking import never_held
 from harness.session.pictures import Pictures
 from harness.session.prepare import Prepared
 from harness.session.progress import Notify, Progress
 from harness.session.run_builder import RunBuilder
 from harness.session.run_request import RunRequest
-from harness.session.start import Start, overlap_note, start_case
+from harness.session.start import Start, overlap_note, start_simulated
 from harness.session.timing import Clock
 
 
 def run_case(
     request: RunRequest,
     notify: Notify = lambda _: None,
-    make_session: MakeSession = NoPrograms,
-    start: Callable[[RunRequest, Clock], Start] = start_case,
+    start: Callable[[RunRequest, Clock], Start[RecordingSimulator]] = start_simulated,
 ) -> CaseResult:
     """Load, compile, execute, observe, judge and report one case.
 
     Args:
         request: The case, and what is written of it.
         notify: Called with the case's progress.
-        make_session: Makes the session of the programs to which a step hands the robot over.
         start: Prepares the case, with the simulator or a robot in its place.
     """
     clock = Clock()
@@ -58,7 +56,7 @@ def run_case(
     try:
         with closing(Pictures(request, prepared)) as pictures:
             case = _Case(request, prepared, clock, progress, pictures)
-            builder, refusal = case.execute(begun, make_session)
+            builder, refusal = case.execute(begun)
             overlaps, draw = begun.simulator.overlaps_at_start, begun.draw
             del begun  # the simulator is the largest object; the builder holds its recording
             free_memory()
@@ -84,10 +82,9 @@ class _Case:
     progress: Progress
     pictures: Pictures
 
-    def execute(self, start: Start, make_session: MakeSession) -> tuple[RunBuilder, str]:
+    def execute(self, start: Start[RecordingSimulator]) -> tuple[RunBuilder, str]:
         """Plan and simulate the steps; the record, and why external programs are not judged."""
-        prepared, simulator, _ = start
-        session = make_session(prepared, simulator)
+        prepared, simulator, session = self.prepared, start.simulator, start.open_session()
         self.progress.activity("setting up planning and physics")
         with self.clock.part("plan"):  # what is not physics in execution
             on_step = partial(self.progress.step, simulator)

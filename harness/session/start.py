@@ -2,39 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
 from harness.core.errors import ModelRefused, Problem, RobotError, SpecError
 from harness.ports.scene import Touch
+from harness.ports.simulation import RecordingSimulator
+from harness.session.external import ExternalSession, NoPrograms
 from harness.session.observation.findings import overlap_text
 from harness.session.prepare import Prepared, prepare
 from harness.session.run_request import RunRequest
 from harness.session.timing import Clock
 
 if TYPE_CHECKING:
-    from harness.session.timed_simulator import TimedSimulator
+    from harness.simulation.mujoco_simulator import MujocoSimulator
+
+S_co = TypeVar("S_co", bound=RecordingSimulator, covariant=True)
+M = TypeVar("M", bound="MujocoSimulator")
 
 MOST_DRAWS = 100
 """Draws of a sample, the first included, until no objects overlap."""
 
 
-class Start(NamedTuple):
+@dataclass(frozen=True)
+class Start(Generic[S_co]):
     """A scenario that is about to be executed.
 
     Attributes:
-        simulator: The simulator at the start state.
+        simulator: The simulator at the start state, or a robot.
         draw: Number of the sample's draw; 0 for the first.
+        open_session: Makes the session of the programs to which a step hands the robot over.
     """
 
     prepared: Prepared
-    simulator: TimedSimulator
-    draw: int
+    simulator: S_co
+    draw: int = 0
+    open_session: Callable[[], ExternalSession] = NoPrograms
 
 
-def start_case(request: RunRequest, clock: Clock) -> Start:
+def start_simulated(request: RunRequest, clock: Clock) -> Start[MujocoSimulator]:
+    """Prepare a case in the physics; see `start_case`."""
+    from harness.simulation.mujoco_simulator import MujocoSimulator
+
+    return start_case(request, clock, MujocoSimulator)
+
+
+def start_case(request: RunRequest, clock: Clock, kind: type[M]) -> Start[M]:
     """Prepare a case; where the request says so, draw it again until no objects overlap.
 
     Raises:
@@ -44,7 +61,7 @@ def start_case(request: RunRequest, clock: Clock) -> Start:
     for draw in range(MOST_DRAWS):
         again = request.redraw.redrawn(draw) if request.redraw is not None and draw else request
         prepared = prepare(request.file, again.overrides, request.seed, request.text)
-        simulator = start_physics(prepared, clock, prepared.observed_links)
+        simulator = start_physics(prepared, kind, clock, prepared.observed_links)
         if request.redraw is None or not simulator.overlaps_at_start:
             return Start(prepared, simulator, draw)
         last = [_no_free_draw(prepared, simulator.overlaps_at_start[0])]
@@ -53,36 +70,34 @@ def start_case(request: RunRequest, clock: Clock) -> Start:
 
 def start_physics(
     prepared: Prepared,
+    kind: type[M],
     clock: Clock | None = None,
     frames: Sequence[str] = (),
-    kind: type[TimedSimulator] | None = None,
-) -> TimedSimulator:
+) -> M:
     """Build the physics and record its start state.
 
     Args:
         prepared: The scenario, ready to be executed.
+        kind: The class of the simulator.
         clock: Takes the wall time of what moves; None where it is not reported.
         frames: Links whose poses are recorded besides the TCP's.
-        kind: The class of the simulator.
 
     Raises:
         SpecError: The physics cannot be built, at the object or the robot that prevents it.
     """
-    from harness.session.timed_simulator import TimedSimulator  # loads MuJoCo
-
     program = prepared.program
     try:
         with np.errstate(
             over="ignore", invalid="ignore"
         ):  # a start with infinite forces is refused
-            return (kind or TimedSimulator)(
-                clock or Clock(),
+            return kind(
                 program.description,
                 [obj for obj in program.all_objects() if obj.in_simulation],
                 [obj.name for obj in program.world.objects if obj.in_simulation],
                 gravity=program.world.gravity,
                 timestep=program.world.timestep,
                 frames=frames,
+                moving=partial((clock or Clock()).part, "simulate"),
             )
     except ModelRefused as refused:
         raise SpecError([_problem(prepared, refused)]) from refused

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 import mujoco
 import numpy as np
@@ -68,6 +69,7 @@ class MujocoSimulator:
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.8),
         timestep: float = 0.001,
         frames: Sequence[str] = (),
+        moving: Callable[[], AbstractContextManager[None]] = nullcontext,
     ) -> None:
         """Build the model and record its start state as sample 0.
 
@@ -78,6 +80,7 @@ class MujocoSimulator:
             gravity: The gravitational acceleration [m/s^2].
             timestep: The physics step [s].
             frames: Links whose poses are recorded in addition to the TCP's.
+            moving: Makes a context in which the physics advances, which measures its wall time.
 
         Raises:
             ModelRefused: MuJoCo cannot simulate one of the bodies, or the joint controller fails
@@ -88,6 +91,7 @@ class MujocoSimulator:
         )
         self.description = description
         self._timestep = timestep
+        self._moving = moving
         self._model = self.physics.model
         self._data = mujoco.MjData(self._model)
         self._data.qpos[self.physics.qpos] = description.start_positions()
@@ -370,12 +374,13 @@ class MujocoSimulator:
             controls: Inputs of the motors at these; a controller that measures computes its own.
         """
         cycle = self._drive.cycle
-        if cycle is None:
-            self._step(points, controls)
-            return
-        for begin in range(0, len(points) - 1, cycle):
-            part = points.part(begin, min(begin + cycle, len(points) - 1))
-            self._step(part, self._drive.inputs(part, self.faults.measured_noise(1)[-1]))
+        with self._moving():
+            if cycle is None:
+                self._step(points, controls)
+                return
+            for begin in range(0, len(points) - 1, cycle):
+                part = points.part(begin, min(begin + cycle, len(points) - 1))
+                self._step(part, self._drive.inputs(part, self.faults.measured_noise(1)[-1]))
 
     def _step(self, points: SetPoints, controls: FloatArray) -> None:
         arrived = self.faults.distorted(controls, self._drive.position_share)

@@ -25,7 +25,7 @@ RUN_MODULES = (
     "harness.planning.ik.solvers.ur",
     "harness.planning.search.pipelines.ompl",
     "harness.session.run_case",
-    "harness.session.timed_simulator",
+    "harness.simulation.mujoco_simulator",
     "harness.simulation.controllers.position_servo",
     "harness.session.observation.clearance",
     "harness.session.observation.link_overlaps",

@@ -12,11 +12,12 @@ from harness.plugins.ros.live import BridgeRequest, LiveControl
 from harness.plugins.ros.rtps.graph import Graph
 from harness.ports.simulation import LONGEST_RUN
 from harness.reporting.result import CaseResult
-from harness.session.prepare import Prepared
 from harness.session.progress import Notify
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
-from harness.session.timed_simulator import TimedSimulator
+from harness.session.start import Start, start_simulated
+from harness.session.timing import Clock
+from harness.simulation.mujoco_simulator import MujocoSimulator
 
 NODE = "bridge"
 DISCOVERY = 0.5
@@ -41,14 +42,19 @@ def run_bridge(request: BridgeRequest, notify: Notify = lambda _: None) -> Bridg
     """
     made: list[LiveControl] = []
 
-    def session(prepared: Prepared, simulator: TimedSimulator) -> LiveControl:
-        made.append(LiveControl(prepared, simulator, graph, request))
-        return made[0]
+    def start(run: RunRequest, clock: Clock) -> Start[MujocoSimulator]:
+        start = start_simulated(run, clock)
+
+        def session() -> LiveControl:
+            made.append(LiveControl(start.prepared, start.simulator, graph, request))
+            return made[0]
+
+        return replace(start, open_session=session)
 
     graph = Graph(request.domain, node=NODE, is_local=request.is_local)
     with closing(graph):
         _refuse_other_robot(graph, request.domain)
-        case = run_case(request.run, notify, session)
+        case = run_case(request.run, notify, start)
     if not made:
         return BridgeResult(case)
     remarks = made[0].remarks(has_passed=case.outcome == "passed")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +26,8 @@ from harness.session.prepare import Prepared
 from harness.session.record import robot_record
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
+from harness.session.start import Start, start_simulated
+from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 
 GRACE = 1.0
@@ -160,7 +164,10 @@ def replay(folder: Path, report_dir: Path | None = None) -> CaseResult:
         HarnessError: There is no run, or its commands do not fit.
     """
     commands = read_run(folder).run.commands
-    return run_case(
-        RunRequest(folder / RESOLVED, report_dir=report_dir),
-        make_session=lambda prepared, simulator: ReplayControl(prepared, simulator, commands),
-    )
+
+    def start(request: RunRequest, clock: Clock) -> Start[MujocoSimulator]:
+        start = start_simulated(request, clock)
+        session = partial(ReplayControl, start.prepared, start.simulator, commands)
+        return replace(start, open_session=session)
+
+    return run_case(RunRequest(folder / RESOLVED, report_dir=report_dir), start=start)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time as wall
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NoReturn, cast
+from typing import NoReturn
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from harness.plugins.ros.interfaces import COMMAND, FOLLOW, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
 from harness.plugins.ros.names import actions
 from harness.plugins.ros.rtps.graph import Graph
-from harness.ports.simulation import ExpectedGrasp, GripperResult
+from harness.ports.simulation import ExpectedGrasp, Faults, GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import UNPUBLISHED, Signals
 from harness.reporting.result import CaseResult
@@ -29,9 +29,6 @@ from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from harness.session.start import Start
 from harness.session.timing import Clock
-
-if TYPE_CHECKING:
-    from harness.session.timed_simulator import TimedSimulator
 
 MEASURED = ("position", "effort", "stalled", "reached_goal")
 """What the result of GripperCommand says."""
@@ -69,9 +66,9 @@ def run_on_robot(
         StepFailed: COMMUNICATION_FAILURE; the robot cannot be reached.
     """
 
-    def start(request: RunRequest, _: Clock) -> Start:
+    def start(request: RunRequest, _: Clock) -> Start[RemoteArm]:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
-        return Start(prepared, cast("TimedSimulator", connect(prepared)), 0)
+        return Start(prepared, connect(prepared))
 
     return run_case(request, notify, start=start)
 
@@ -199,7 +196,11 @@ class RemoteArm:
             raise StepFailed("TIMED_OUT", f"the robot still moves after {timeout:g} s")
         return True
 
-    faults = property(_refuses("faults are injected into simulated robots alone"))
+    @property
+    def faults(self) -> Faults:
+        """Nothing can be broken in a real robot."""
+        raise StepFailed("ABORT", "faults are injected into simulated robots alone")
+
     start_gripper = _refuses("arm and gripper of a ROS 2 robot do not move in parallel here")
     add_object = _refuses("an object would have to appear in the real cell; add it `in: planning`")
     remove_object = _refuses("an object cannot be taken out of the real cell by a program")

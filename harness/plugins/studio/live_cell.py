@@ -336,8 +336,7 @@ class LiveCell:
 
     def _build(self, document: Document, prepared: Prepared | None = None) -> None:
         prepared = prepared or self.prepared_as(document)
-        simulator = start_physics(prepared, frames=prepared.observed_links, kind=LiveSimulator)
-        assert isinstance(simulator, LiveSimulator)
+        simulator = start_physics(prepared, LiveSimulator, frames=prepared.observed_links)
         self.document, self.prepared, self.simulator = document, prepared, simulator
         self._keys = document.step_keys()
         self._has_same_links = True

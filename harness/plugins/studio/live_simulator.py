@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
-from harness.session.timed_simulator import TimedSimulator
+from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints
 from harness.simulation.step_state import refresh, set_step_state, step_state, wake
 
@@ -23,7 +23,7 @@ Pace = Callable[[int], bool]
 """Called after some samples; waits as long as they last, and says whether to go on."""
 
 
-class LiveSimulator(TimedSimulator):
+class LiveSimulator(MujocoSimulator):
     """The simulator of a run; its samples are the same, however fast they are shown.
 
     Between steps of a program the physics may also go on without a record, while the set points of

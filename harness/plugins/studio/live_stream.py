@@ -17,6 +17,7 @@ from harness.reporting.result import ProgressEvent
 from harness.robot.description import RobotDescription
 
 if TYPE_CHECKING:  # whoever shows a case needs no planner
+    from harness.plugins.studio.live_simulator import LiveSimulator
     from harness.session.progress import Notify
     from harness.session.run_request import RunRequest
     from harness.session.start import Start
@@ -72,7 +73,7 @@ class LiveStream:
     def __init__(self, address: str) -> None:
         """Connect to a Unix socket."""
         self._connection: Connection | None = None
-        self._start: Start | None = None
+        self._start: Start[LiveSimulator] | None = None
         self._due = 0.0
         with suppress(OSError):
             self._connection = Client(address, "AF_UNIX")
@@ -82,21 +83,22 @@ class LiveStream:
         if self._connection is not None:
             self._connection.close()
 
-    def start_case(self, request: RunRequest, clock: Clock) -> Start:
+    def start_case(self, request: RunRequest, clock: Clock) -> Start[LiveSimulator]:
         """Prepare a case as a run does, and show it from now on.
 
         Raises:
             SpecError: The file has mistakes.
         """
+        from harness.plugins.studio.live_simulator import LiveSimulator
         from harness.session.start import start_case
 
-        self._start = start = start_case(request, clock)
+        self._start = start = start_case(request, clock, LiveSimulator)
         program = start.prepared.program
         name = f"{request.file.name} [{request.case}]" if request.case else request.file.name
         objects = tuple(program.all_objects())
         robot = pickle.dumps(program.description)
         self._send(LiveCase(name, robot, objects, len(program.steps)))
-        start.simulator.watch = self._show
+        start.simulator.pace = self._show
         self._show()
         return start
 
@@ -112,14 +114,15 @@ class LiveStream:
 
         return heard
 
-    def _show(self) -> None:
-        """Send a frame, if one is due and can be sent without waiting."""
+    def _show(self, _samples: int = 0) -> bool:
+        """Send a frame, if one is due and can be sent without waiting; the motion goes on."""
         now = time.monotonic()
         if self._start is None or self._connection is None or now < self._due:
-            return
+            return True
         self._due = now + FRAME
         if select.select([], [self._connection], [], 0)[1]:
             self._send(_frame(self._start))
+        return True
 
     def _send(self, message: LiveCase | LiveFrame | ProgressEvent) -> None:
         if self._connection is not None:
@@ -129,7 +132,7 @@ class LiveStream:
                 self._connection = None
 
 
-def _frame(start: Start) -> LiveFrame:
+def _frame(start: Start[LiveSimulator]) -> LiveFrame:
     simulator, scene = start.simulator, start.prepared.ports.scene
     positions = simulator.joint_positions()
     objects = dict(simulator.objects_now())

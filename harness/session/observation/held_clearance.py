@@ -24,7 +24,7 @@ def with_held_distances(run: Run, signals: Signals, observer: CoalClearance) -> 
     Args:
         run: The run as it was recorded.
         signals: Its signals with the distances of other bodies.
-        observer: Measures distances.
+        observer: Measures the distances of bodies.
     """
     signals = _without_gripped(run, signals)
     holds = [] if "contact_forces" in run.unrecorded else _holds(run)

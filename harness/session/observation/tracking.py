@@ -41,7 +41,7 @@ def plan_against_physics(
     Args:
         run: The run as it was recorded.
         signals: Its signals with distances.
-        planned: Its signals `as_commanded`.
+        planned: The signals of the run `as_commanded`.
         distances: Measures the clearances of some pairs at every sample it is given.
     """
     held = [found for record in run.attachments if (found := held_finding(run, record)) is not None]
