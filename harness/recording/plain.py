@@ -10,7 +10,7 @@ import math
 import types
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
@@ -20,6 +20,7 @@ from harness.core.details import Details
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Sphere
 from harness.core.spatial import SE3
 
+NotFinite = Literal["null", "strings"]
 GEOMETRIES = {kind.__name__.lower(): kind for kind in (Box, Capsule, Cylinder, Mesh, Plane, Sphere)}
 NOT_NUMBERS = {"NaN": math.nan, "Infinity": math.inf, "-Infinity": -math.inf}
 SCALARS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
@@ -27,38 +28,43 @@ QUOTED = 60
 """Characters of a value that an error quotes."""
 
 
-def to_plain(value: Any) -> Any:
+def to_plain(value: Any, *, not_finite: NotFinite = "strings") -> Any:
     """Dictionaries, lists, strings and numbers for any record.
+
+    Args:
+        value: The record.
+        not_finite: Whether numbers that are not finite are null, or strings such as `NaN`.
 
     Raises:
         TypeError: Something has no plain form.
     """
+    plain = partial(to_plain, not_finite=not_finite)
     match value:
         case None | str() | bool() | int():
             return value
         case float():
-            return _plain_float(value)
+            return _plain_float(value, not_finite)
         case np.generic():
-            return to_plain(value.item())
+            return plain(value.item())
         case np.ndarray():
-            return to_plain(cast("Any", value).tolist())
+            return plain(cast("Any", value).tolist())
         case SE3():
-            return {"rotation": to_plain(value.rotation), "xyz": to_plain(value.translation)}
+            return {"rotation": plain(value.rotation), "xyz": plain(value.translation)}
         case Path():
             return str(value)
         case Mapping():
             mapping = cast("Mapping[Any, Any]", value)
-            return {str(key): to_plain(item) for key, item in mapping.items()}
+            return {str(key): plain(item) for key, item in mapping.items()}
         case list() | tuple():
-            return [to_plain(item) for item in cast("list[Any]", value)]
+            return [plain(item) for item in cast("list[Any]", value)]
         case set() | frozenset():
-            return [to_plain(item) for item in sorted(cast("set[Any]", value))]
+            return [plain(item) for item in sorted(cast("set[Any]", value))]
         case Details():
-            return to_plain(value.plain())
+            return plain(value.plain())
         case _ if is_dataclass(value):
-            plain = {entry.name: to_plain(getattr(value, entry.name)) for entry in fields(value)}
+            content = {entry.name: plain(getattr(value, entry.name)) for entry in fields(value)}
             kind = type(value).__name__.lower()
-            return {"kind": kind, **plain} if kind in GEOMETRIES else plain
+            return {"kind": kind, **content} if kind in GEOMETRIES else content
         case _:
             raise TypeError(f"{type(value).__name__} has no plain form: {value!r}")
 
@@ -200,9 +206,11 @@ def _one_of(plain: Any, kinds: tuple[Any, ...], key: str) -> Any:
     return _record(plain, GEOMETRIES[name], key)
 
 
-def _plain_float(value: float) -> float | str:
+def _plain_float(value: float, not_finite: NotFinite) -> float | str | None:
     if math.isfinite(value):
         return value
+    if not_finite == "null":
+        return None
     return "NaN" if math.isnan(value) else ("Infinity" if value > 0 else "-Infinity")
 
 

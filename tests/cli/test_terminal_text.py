@@ -8,7 +8,7 @@ import pytest
 from harness.core.errors import Problem
 from harness.core.printable import terminal_text
 from harness.recording.verdict import Measure, Verdict
-from harness.reporting.json_text import json_text
+from harness.reporting.json_text import compact_json, json_text
 from harness.reporting.result import CaseResult, ProgressEvent, StepLine
 from harness.reporting.terminal import (
     Style,
@@ -178,8 +178,18 @@ def test_repeats_report_whether_the_digests_are_the_same():
     assert differ == "no 3 runs, 3 digests: 1 x ab; 1 x cd; 1 x no digest (error)"
 
 
-def test_json_is_strict_where_numbers_are_not_finite():
-    document = {"results": [result(verdicts=(Verdict("x", "passed", margin=math.inf),))]}
-    read = json.loads(json_text(document), parse_constant=None)
-    assert read["results"][0]["verdicts"][0]["margin"] is None
-    assert read["results"][0]["title"] == "Pick"
+@pytest.mark.parametrize("title", ["Pick", "a name of no encoding: \\udc80"])
+def test_json_is_strict_where_numbers_are_not_finite(title):
+    verdicts = (Verdict("x", "passed", margin=math.inf), Verdict("y", "failed", margin=-math.inf))
+    document = {"results": [replace(result(verdicts=verdicts), title=title)]}
+
+    def margins(text):
+        read = json.loads(text)["results"][0]
+        assert read["title"] == title
+        return [verdict["margin"] for verdict in read["verdicts"]]
+
+    assert margins(json_text(document)) == [None, None]
+    assert margins(compact_json(document)) == [None, None]
+    strings = compact_json(document, not_finite="strings")
+    assert margins(strings) == ["Infinity", "-Infinity"]
+    assert "\\n" not in strings
