@@ -12,8 +12,9 @@ from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
+from harness.core.pose_arrays import rotations_about
 from harness.core.quantity import distinct
-from harness.core.spatial import SE3, rotation_from_quat_wxyz
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.execution_failures import WidthFailure
@@ -200,7 +201,7 @@ def _from_above(
     """The gripper pointing down, its pads along a level direction, then turned [rad]."""
     approach, closing = gripper_axes(cell)
     rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
-    return [SE3(turn_about(UP, turn) @ rotation, point) for turn in turns]
+    return [SE3(rotations_about(UP, turn) @ rotation, point) for turn in turns]
 
 
 def grasps_at_pitches(
@@ -392,13 +393,3 @@ def _align(
     in_tcp = np.column_stack([approach, closing, np.cross(approach, closing)])
     in_world = np.column_stack([target_approach, side, np.cross(target_approach, side)])
     return in_world @ in_tcp.T
-
-
-def matrix_pitch(rotation: FloatArray) -> float:
-    """Angle of a frame's x axis below the horizontal [rad]."""
-    return -math.asin(float(np.clip(rotation[2, 0], -1.0, 1.0)))
-
-
-def turn_about(axis: FloatArray, angle: float) -> FloatArray:
-    """Rotation about a unit axis by an angle [rad], shape (3, 3)."""
-    return rotation_from_quat_wxyz([math.cos(angle / 2), *(math.sin(angle / 2) * axis)])

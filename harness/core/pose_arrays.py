@@ -102,11 +102,12 @@ def angle_between(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))
 
 
-def rotations_about(axis: FloatArray, angles: FloatArray) -> FloatArray:
-    """Rotation matrices about a unit axis, shape (N, 3, 3): Rodrigues' formula."""
+def rotations_about(axis: FloatArray, angles: FloatArray | float) -> FloatArray:
+    """Rotation matrices about a unit axis by angles (...,) [rad], shape (..., 3, 3): Rodrigues."""
+    angles = np.asarray(angles, dtype=float)
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, cosine = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
+    sine, cosine = np.sin(angles)[..., None, None], np.cos(angles)[..., None, None]
     return np.eye(3) + sine * K + (1.0 - cosine) * (K @ K)
 
 

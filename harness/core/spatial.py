@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.core.pose_arrays import rotations_of
 from harness.core.types import FloatArray
 
 Vector = Sequence[float] | FloatArray
@@ -35,14 +36,7 @@ def rotation_from_rpy(rpy: Vector) -> FloatArray:
 def rotation_from_quat_wxyz(quat_wxyz: Vector) -> FloatArray:
     """Rotation matrix of a quaternion, which is normalised first, shape (3, 3)."""
     quat = np.asarray(quat_wxyz, dtype=float)
-    w, x, y, z = quat / np.linalg.norm(quat)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    return rotations_of(quat[None] / np.linalg.norm(quat))[0]
 
 
 def quat_wxyz_from_rotation(rotation: FloatArray) -> FloatArray:

@@ -14,14 +14,15 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
 from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
-from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch, matrix_pitch, turn_about
+from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.cell.supports import places_on
 from harness.core.details import Detail
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.geometry import Plane
-from harness.core.spatial import SE3
+from harness.core.pose_arrays import rotations_about
+from harness.core.spatial import SE3, pitch_of
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
 from harness.language.base import Name
@@ -297,7 +298,7 @@ def _equal_poses(name: str, stated: SE3, step: Place, cell: Cell) -> list[SE3]:
     count = equal_turns((*obj.shapes, *obj.visuals), stated.rotation) or TURNS_OF_ROUND
     turns = sorted(range(count), key=lambda turn: min(turn, count - turn))
     return [
-        SE3(turn_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)
+        SE3(rotations_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)
         for turn in turns
     ]
 
@@ -321,7 +322,7 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
     if arm_has_six_joints(cell.description, step.group):
         return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
     if is_grasped_by_pitch(cell, group_of(cell, step.group)):
-        pitch = matrix_pitch(tcp.rotation)
+        pitch = pitch_of(tcp.rotation)
         goal_at = partial(PositionGoal, cell.description.tcp_link, pitch=pitch)
         x, y, z = _tcp_position(target.translation, tcp_to_object, goal_at, step, cell)
         return TcpGoal(Position(xyz=(float(x), float(y), float(z))), pitch)
@@ -329,7 +330,7 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
 
     def turned(position: FloatArray) -> PoseGoal:
         headings = [math.atan2(*(at - axis)[1::-1]) for at in (tcp.translation, position)]
-        rotation = turn_about(UP, headings[1] - headings[0]) @ tcp.rotation
+        rotation = rotations_about(UP, headings[1] - headings[0]) @ tcp.rotation
         pose = SE3(rotation, position)
         return PoseGoal(cell.description.tcp_link, pose, orientation_tolerance=MAX_TURN)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_angle
+from harness.core.pose_arrays import compose, turn_between
 from harness.core.types import FloatArray, Pair
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Run
@@ -145,7 +145,7 @@ def turns(run: Run) -> Group:
 
 def _turned(quats: FloatArray, first: FloatArray) -> FloatArray:
     """Angle of orientations from one of them [deg]."""
-    return np.rad2deg(rotation_angle(quat_product(conjugate(first), quats)))
+    return np.rad2deg(turn_between(first, quats))
 
 
 def frame_travel(run: Run) -> Group:

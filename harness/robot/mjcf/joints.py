@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from harness.core.errors import Problem, SpecError
-from harness.core.spatial import SE3, rotation_from_quat_wxyz
-from harness.core.types import FloatArray
+from harness.core.pose_arrays import rotations_about
+from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Mimic, fixed_joint
 from harness.robot.mjcf.linkages import linkage_mimics
@@ -63,7 +63,11 @@ def _joint(
     slides = int(model.jnt_type[number]) == SLIDE
     axis, zero = np.array(model.jnt_axis[number]), float(model.qpos0[model.jnt_qposadr[number]])
     if zero:
-        back = SE3(np.eye(3), -zero * axis) if slides else SE3(_turn(axis, -zero), np.zeros(3))
+        back = (
+            SE3(np.eye(3), -zero * axis)
+            if slides
+            else SE3(rotations_about(axis, -zero), np.zeros(3))
+        )
         pose = pose @ back
     lower, upper = -np.inf, np.inf
     if model.jnt_limited[number]:
@@ -190,8 +194,3 @@ def _widened(joint: Joint, ranges: Mapping[str, tuple[float, float]]) -> Joint:
 def mjcf_pose(position: Any, quat_wxyz: Any) -> SE3:
     """A pose from MuJoCo's arrays."""
     return SE3.from_xyz_quat(np.array(position, dtype=float), np.array(quat_wxyz, dtype=float))
-
-
-def _turn(axis: FloatArray, angle: float) -> FloatArray:
-    half = 0.5 * angle
-    return rotation_from_quat_wxyz(np.array([np.cos(half), *(np.sin(half) * axis)]))

@@ -142,7 +142,7 @@ def _turned_and_rounded(
         place[:2] = even[:2]
     heights = {"own": place[2], "even": even[2], "zero": 0.0, "pivot": pivot[2]}
     place[2] = heights[rounding.height]
-    rotation = rotations_about(UP, np.array([turn]))[0] @ pose.rotation
+    rotation = rotations_about(UP, turn) @ pose.rotation
     if rounding.is_turned and task == "pose":
         rotation = _along_axes(rotation)
     elif rounding.is_turned:
@@ -165,5 +165,5 @@ def _along_axes(rotation: FloatArray) -> FloatArray:
 def _headed(rotation: FloatArray, pitch: float) -> FloatArray:
     """The rotation with the heading of another one's x axis and a pitch [rad]."""
     heading = np.arctan2(rotation[1, 0], rotation[0, 0])
-    about_z = rotations_about(UP, np.array([heading]))[0]
-    return about_z @ rotations_about(np.array([0.0, 1.0, 0.0]), np.array([pitch]))[0]
+    about_z = rotations_about(UP, heading)
+    return about_z @ rotations_about(np.array([0.0, 1.0, 0.0]), pitch)
