@@ -9,7 +9,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.planning.cartesian.line_goals import pitched
-from harness.planning.cartesian.splines import uniform_spline
+from harness.planning.timing.joint_spline import CubicSpline
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import LinearMotion, RelativeMotion
@@ -119,9 +119,9 @@ def test_four_joints_keep_position_and_pitch_on_a_line():
 
 def test_the_spline_follows_a_smooth_curve_with_its_derivatives():
     grid = np.linspace(0, 1, 31)
-    spline = uniform_spline(np.column_stack([np.sin(3 * grid), np.cos(2 * grid)]))
+    spline = CubicSpline.even(np.column_stack([np.sin(3 * grid), np.cos(2 * grid)]))
     fine = np.linspace(0, 1, 301)
-    value, slope, bend = spline(fine)
+    value, slope, bend = spline.evaluate(fine)
     assert np.allclose(value[:, 0], np.sin(3 * fine), atol=1e-6)
     assert np.allclose(slope[:, 0], 3 * np.cos(3 * fine), atol=1e-3)
     assert np.allclose(bend[5:-5, 0], -9 * np.sin(3 * fine)[5:-5], atol=3e-2)

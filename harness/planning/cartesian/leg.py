@@ -15,11 +15,11 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.cartesian.linear_path import POINT
 from harness.planning.cartesian.link_timing import LinkRates
-from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.cartesian.tracing import SOLVED, LinkPath, link_goal
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
+from harness.planning.timing.joint_spline import CubicSpline
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import BlendFailure
 
@@ -57,7 +57,7 @@ class Leg:
         self.link, self.path, self.rates, self.name = link, path, rates, name
         self.positions = positions
         self._space = checker.space
-        self._spline = uniform_spline(positions)
+        self._spline = CubicSpline.even(positions)
 
     @classmethod
     def straight(cls, link: str, checker: MotionChecker, end: FloatArray, start: FloatArray) -> Leg:
@@ -76,7 +76,7 @@ class Leg:
 
     def at(self, parameters: FloatArray) -> FloatArray:
         """Group positions at parameters (N,), shape (N, dof)."""
-        return self._spline(np.asarray(parameters, dtype=float))[0]
+        return self._spline.evaluate(np.asarray(parameters, dtype=float))[0]
 
     def pose(self, parameter: float) -> SE3:
         """T_world_link at a parameter."""

@@ -11,8 +11,8 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.cartesian.tracing import LinkPath, Trace
+from harness.planning.timing.joint_spline import CubicSpline
 from harness.planning.timing.limits import (
     Limits,
     TimingError,
@@ -107,7 +107,7 @@ def time_on_path(
         TimingError: The limits cannot be kept.
     """
     rate, change = rates.on(path)
-    spline = uniform_spline(traced.positions)
+    spline = CubicSpline.even(traced.positions).evaluate
     for _ in range(2):  # gentler ramps and a lower middle, before everything is slowed down
         profile = Trapezoid.fastest(1.0, rate, change)
         _, velocities, accelerations = _along(spline, profile)(time_grid(profile.duration)[:-1])

@@ -14,11 +14,11 @@ from harness.core.errors import ErrorCode
 from harness.core.spatial import SE3, pitch_of
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.splines import uniform_spline
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkGoal, LinkTask, TiltGoal
 from harness.planning.ik.task import TILT_JOINTS, WHOLE_POSE_JOINTS
+from harness.planning.timing.joint_spline import CubicSpline
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motions import JumpThreshold
 from harness.recording.motion_failures import TraceFailure
@@ -202,8 +202,8 @@ def _attempt(
 
 def _off_between(path: LinkPath, traced: Trace, checker: MotionChecker) -> FloatArray:
     """How far a spline through a trace leaves the way between neighbouring poses [m], (K - 1,)."""
-    middles = np.arange(len(traced.positions) - 1) + 0.5
-    between = uniform_spline(traced.positions)(middles / (len(traced.positions) - 1))[0]
+    middles = (np.arange(len(traced.positions) - 1) + 0.5) / (len(traced.positions) - 1)
+    between = CubicSpline.even(traced.positions).evaluate(middles)[0]
     space = checker.space
     return np.array(
         [

@@ -37,6 +37,11 @@ class CubicSpline:
         cubic, square = bend / width, (secant - slope[:-1]) / width - bend
         return cls(knots, (cubic, square, slope[:-1], samples[:-1]))
 
+    @classmethod
+    def even(cls, samples: FloatArray) -> CubicSpline:
+        """The spline through samples (N, dof) at even parameters from 0 to 1."""
+        return cls.through(np.linspace(0.0, 1.0, len(samples)), samples)
+
     def evaluate(self, parameter: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Values and their first two derivatives, (M, dof) each, at parameters (M,)."""
         last = len(self.knots) - 2
