@@ -32,7 +32,7 @@ def to_plain(value: Any, *, not_finite: NotFinite = "strings") -> Any:
     """Dictionaries, lists, strings and numbers for any record.
 
     Args:
-        value: The record.
+        value: The record to convert into plain data.
         not_finite: Whether numbers that are not finite are null, or strings such as `NaN`.
 
     Raises:
