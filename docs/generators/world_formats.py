@@ -1,10 +1,10 @@
-"""The page on worlds of other programs: elements that are read, ignored and refused."""
+"""The page on worlds of other programs: elements that are read, and how."""
 
 from __future__ import annotations
 
 from harness.plugins.formats.mjcf.elements import LEFT_OUT
 from harness.plugins.formats.mjcf.shapes import SHAPES
-from harness.plugins.formats.sdf.elements import WORDS
+from harness.plugins.formats.sdf.elements import READ
 from harness.plugins.formats.sdf.model_path import VARIABLES
 
 HEAD = """# World file formats
@@ -61,9 +61,20 @@ valid for SDFormat and are treated differently:
 
 WORDS_HEAD = """## Elements of SDF
 
-SDF 1.4 to 1.11. *Read* elements have an effect. *Ignored* elements lead to a note, unless they
-state the default (`static` false, gravity on). *Refused* elements are errors. Any other element
-leads to a note that it is not known."""
+SDF 1.4 to 1.11. The elements of this table have an effect. Every other element leads to a note
+with its name, unless it states what holds anyway (`self_collide` false, `gravity` true). In a
+collision another shape than these is an error; in a visual it is not drawn, with a note.
+
+- Gravity is in m/s^2, a mass in kg, an inertia in kg m^2 about the axes of its `pose`, a density
+  (with `auto`) in kg/m^3, `horizontal_fov` in rad up to 2.9, `update_rate` in Hz up to 120.
+- An ellipsoid is 1,280 triangles, up to 0.5 % inside it; a cone is a pyramid of 32 sides. A plane
+  is solid below its surface. A mesh is its convex parts.
+- A contact takes the smaller `mu` of its two shapes. Torsional friction is `coefficient` times
+  3 pi/16 of `patch_radius` [m]; with 0 it is that of a small soft patch.
+- A colour is `diffuse`, else `ambient`, else that of a plain colour's `script` of Gazebo.
+- Of several `physics` elements the default one is read, else the first; of `state` the poses of
+  models in the first. Pictures are 8 to 2048 pixels wide and high, of format `R8G8B8` or `L8`.
+- A movable joint is held in its initial position; a world's joint joins models to one object."""
 
 
 MJCF = """## MuJoCo scenes
@@ -160,11 +171,8 @@ def formats_page() -> str:
 
 
 def sdf_table() -> str:
-    """The elements of SDF as a Markdown table."""
-    rows = ["| in | element | here | |", "| --- | --- | --- | --- |"]
-    for kind, words in WORDS.items():
-        rows += [
-            f"| `{kind}` | `{tag}` | {word.treatment} | {word.meaning} |"
-            for tag, word in words.items()
-        ]
+    """The elements of SDF that are read as a Markdown table."""
+    rows = ["| in | read |", "| --- | --- |"]
+    for kind, words in READ.items():
+        rows.append(f"| `{kind}` | {', '.join(f'`{tag}`' for tag in words)} |")
     return "\n".join(rows)

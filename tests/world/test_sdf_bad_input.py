@@ -59,7 +59,7 @@ BOMB = "<!DOCTYPE b [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
             "<size> of a <box> is above 0, not 1 1 0",
         ),
         (text_with("geometry", "\n<sphere/>"), 12, "<sphere> lacks its <radius>"),
-        (text_with("geometry", "\n<ball/>"), 12, "the shape <ball> is not known"),
+        (text_with("geometry", "\n<ball/>"), 12, "a collision cannot be a <ball>"),
         (
             text_with("geometry", "\n<mesh><uri>none.stl</uri></mesh>"),
             12,

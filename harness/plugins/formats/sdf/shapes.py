@@ -17,7 +17,7 @@ from harness.core.spatial import SE3
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import FrictionSpec, MeshSpec, ShapeSpec
-from harness.plugins.formats.sdf.elements import WORDS, note_unread_elements
+from harness.plugins.formats.sdf.elements import READ, note_unread_elements
 from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath
 from harness.plugins.formats.sdf.round_meshes import cone, ellipsoid
 from harness.plugins.formats.sdf.values import number, numbers_of, positive, text_of
@@ -41,7 +41,7 @@ PLAIN_COLORS: Mapping[str, Rgba] = {
 }
 """Diffuse colours of material scripts called `Gazebo/...`: gazebo.material of Gazebo classic 11."""
 
-SHAPES = tuple(tag for tag, word in WORDS["geometry"].items() if word.treatment == "read")
+SHAPES = READ["geometry"]
 """What a collision can be."""
 
 DEFAULT_TORSIONAL = FrictionSpec().torsional
@@ -69,7 +69,7 @@ class ShapeReader:
         geometry = self._geometry(element)
         if geometry.tag == "empty":
             return None
-        if WORDS["geometry"][geometry.tag].treatment == "refused":
+        if geometry.tag not in SHAPES:
             hint = f"shapes: {', '.join(SHAPES)}"
             geometry.refuse(f"a collision cannot be a <{geometry.tag}>", hint)
         shape = self._shape(element, geometry, folder, pose, friction=self._friction(element))
@@ -82,7 +82,7 @@ class ShapeReader:
         note_unread_elements(element, "visual", self.notes)
         geometry = self._geometry(element)
         color = self._color(element)
-        if WORDS["geometry"][geometry.tag].treatment == "refused":
+        if geometry.tag not in SHAPES:
             self.notes.add(geometry.place, f"a <{geometry.tag}> of a visual is not drawn")
             return None
         if geometry.tag == "empty":
@@ -99,11 +99,7 @@ class ShapeReader:
         geometry = element.find("geometry")
         if geometry is None or not geometry.children:
             element.refuse(f"a <{element.tag}> has a <geometry> with one shape")
-        shape = geometry.children[0]
-        if shape.tag not in WORDS["geometry"]:
-            known = ", ".join(WORDS["geometry"])
-            shape.refuse(f"the shape <{shape.tag}> is not known", f"shapes: {known}")
-        return shape
+        return geometry.children[0]
 
     def _shape(
         self, element: XmlElement, geometry: XmlElement, folder: Path, pose: SE3, **more: Any
