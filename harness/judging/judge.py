@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from harness.judging.expectation import Expectation
-from harness.judging.expectation_text import describe
 from harness.judging.facts import remembered_facts
-from harness.judging.placed import PlacedExpectation
+from harness.judging.placed import PlacedExpectation, describe
 from harness.judging.recorded import guard_unrecorded
 from harness.judging.window import NotObservable, NotReached, refuse_changed_later
 from harness.recording.run import Run

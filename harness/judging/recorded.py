@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, NoReturn, cast
 
@@ -32,43 +31,18 @@ class Unreadable:
     def __init__(self, error: Exception) -> None:
         object.__setattr__(self, "_error", error)
 
-    def _refuse(self) -> NoReturn:
+    def _refuse(self, *_: object) -> NoReturn:
         raise object.__getattribute__(self, "_error")
 
     def __getattribute__(self, name: str) -> Any:
-        if name in ("__class__", "_refuse"):
+        if name == "__class__":
             return object.__getattribute__(self, name)
-        return self._refuse()
+        raise object.__getattribute__(self, "_error")
 
-    def __iter__(self) -> Iterator[Any]:
-        self._refuse()
-
-    def __len__(self) -> int:
-        self._refuse()
-
-    def __bool__(self) -> bool:
-        self._refuse()
-
-    def __contains__(self, _: object) -> bool:
-        self._refuse()
-
-    def __getitem__(self, _: object) -> Any:
-        self._refuse()
-
-    def __reversed__(self) -> Iterator[Any]:
-        self._refuse()
-
-    def __add__(self, _: object) -> Any:
-        self._refuse()
-
-    def __radd__(self, _: object) -> Any:
-        self._refuse()
-
-    def __eq__(self, _: object) -> bool:
-        self._refuse()
-
-    def __hash__(self) -> int:
-        self._refuse()
+    # Operators look their methods up in the class.
+    __iter__ = __len__ = __bool__ = __contains__ = __getitem__ = __reversed__ = _refuse
+    __add__ = __radd__ = _refuse
+    __eq__ = __hash__ = _refuse  # pyright: ignore[reportAssignmentType]
 
 
 class _Guarded:

@@ -10,8 +10,7 @@ import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging import temporal
-from harness.judging.margins import MarginSignal
-from harness.judging.orientation import against
+from harness.judging.margins import MarginSignal, against
 from harness.judging.temporal import Decision, TooShort, later, longest_hold, with_future
 from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, NotReached, Window

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
-from harness.judging.expectation_text import describe
+from harness.judging.placed import describe
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices

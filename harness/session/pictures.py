@@ -13,7 +13,7 @@ from harness.cameras.viewpoint import OVERVIEW_STATES
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
-from harness.judging.looks import looks_of_expectations
+from harness.judging.pictures import looks_of_expectations
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
 from harness.recording.robot_record import MeshRecord

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from harness.judging.expectation_text import describe
 from harness.judging.judge import judge
-from harness.judging.placed import PlacedExpectation
+from harness.judging.placed import PlacedExpectation, describe
 from harness.language.reading.load import LoadedScenario, load_scenario
 from harness.language.step import Block
 from harness.recording.stored_run import RESOLVED, StoredRun

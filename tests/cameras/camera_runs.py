@@ -11,7 +11,7 @@ from harness.core.camera import Camera
 from harness.core.geometry import Shape, Sphere
 from harness.core.spatial import SE3
 from harness.judging.judge import judge
-from harness.judging.looks import looks_of_expectations
+from harness.judging.pictures import looks_of_expectations
 from harness.judging.placed import PlacedExpectation
 from harness.language.cameras import looking_at
 from harness.language.markers import MarkerSpec

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.judging.expectation_text import describe
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
@@ -30,7 +29,7 @@ from harness.judging.observations import (
     merged,
     restricted,
 )
-from harness.judging.placed import PlacedExpectation
+from harness.judging.placed import PlacedExpectation, describe
 from harness.language.poses import Pose
 from harness.plugins.formulas.expectations.formula import Formula
 from tests.judging.synthetic_run import attachment, heights, lift_run, make_run

@@ -9,7 +9,7 @@ import pytest
 
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.sees import Sees
-from harness.judging.looks import looks_of_expectations, period
+from harness.judging.pictures import looks_of_expectations, period
 from harness.judging.placed import PlacedExpectation
 from harness.judging.window import NotObservable, window_of
 from harness.recording.signals import CaptureRecord

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.judging.orientation import against, holds
+from harness.judging.margins import against, holds
 from harness.recording.verdict import Measure
 
 numbers = st.floats(-10, 10).map(lambda value: round(value, 3))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.sees import HUES, HueRange
-from harness.judging.pixels import blob_pixels
+from harness.judging.pictures import blob_pixels
 
 STATED = {
     "red": [*range(340, 360), *range(18)],

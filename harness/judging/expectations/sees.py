@@ -13,10 +13,9 @@ from pydantic import Field, model_validator
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
 from harness.judging.expectation import Predicate
-from harness.judging.looks import WATCH_RATE, period
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations, PictureRequest
-from harness.judging.pixels import blob_pixels, label_pixels, marker_pixels
+from harness.judging.pictures import WATCH_RATE, blob_pixels, label_pixels, marker_pixels, period
 from harness.judging.window import NotObservable, Window
 from harness.judging.words import HARDLY_OBSERVED
 from harness.language.base import Angle, Count, Fraction, Name, Share, SpecModel
