@@ -22,7 +22,6 @@ class ComparedQuantity:
         value: Value of a trial in that unit; NaN if the trial has none.
         digits: The number of decimals shown.
         solved_only: Whether failed trials have no value.
-        may_be_log: Whether a plot may use a logarithmic axis.
     """
 
     key: str
@@ -30,7 +29,6 @@ class ComparedQuantity:
     value: Callable[[Trial], float]
     digits: int
     solved_only: bool = True
-    may_be_log: bool = False
 
 
 QUANTITIES = (
