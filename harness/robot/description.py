@@ -31,11 +31,14 @@ class Inertial:
         mass: The mass in kilograms [kg].
         center_of_mass: Centre of mass in the link frame [m], shape (3,).
         inertia: Inertia about the centre of mass, in link axes [kg m^2], shape (3, 3).
+        stated_moments: The principal moments in the file, ascending, where no body has these
+            [kg m^2], shape (3,); `inertia` is corrected then.
     """
 
     mass: float
     center_of_mass: FloatArray
     inertia: FloatArray
+    stated_moments: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

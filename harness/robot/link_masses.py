@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.solids import TRIANGLE_SLACK
 from harness.robot.description import Inertial, Link, RobotDescription
-from harness.robot.urdf.links import NO_BODY
+from harness.robot.urdf.links import corrected_note
 
 LONGEST_GYRATION = 2.0
 """Radius of gyration that no link of an arm exceeds [m]."""
@@ -22,13 +22,12 @@ FEATHER = 1e-3
 
 def mass_problems(description: RobotDescription) -> list[str]:
     """Physically impossible mass properties, one line per link."""
-    heavy = [
-        link.name for link in description.links if link.inertial and link.inertial.mass > FEATHER
-    ]
     corrected = [
-        note
-        for note in description.notes
-        if NO_BODY in note and any(note.startswith(f"link '{name}':") for name in heavy)
+        corrected_note(link.name, inertial.stated_moments, np.array(principal_moments(inertial)))
+        for link in description.links
+        if (inertial := link.inertial) is not None
+        and inertial.stated_moments is not None
+        and inertial.mass > FEATHER
     ]
     return corrected + [
         f"link '{link.name}': {problem}"

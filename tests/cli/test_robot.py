@@ -93,6 +93,20 @@ LYING = INERTIAL.replace('izz="0.002"', 'izz="0.05"')
 UNIT = INERTIAL.replace('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="1" iyy="1" izz="1"')
 
 
+@pytest.mark.parametrize("link", ["lower", "wrist"])
+@pytest.mark.parametrize(
+    ("stated", "moments"),
+    [('izz="0.05"', "0.01, 0.01, 0.05"), ('izz="-1e-06"', "-1e-06, 0.01, 0.01")],
+)
+def test_a_corrected_inertia_is_reported_once(link, stated, moments, folder, capsys):
+    other = INERTIAL.replace('izz="0.002"', stated)
+    assert f'"{link}">{INERTIAL}' in URDF
+    write_arm(folder, URDF.replace(f'"{link}">{INERTIAL}', f'"{link}">{other}'), SRDF)
+    _, page = check(capsys, "arm.urdf", "--srdf", "arm.srdf", "--samples", "5")
+    said = f"link '{link}': no body has the principal moments of inertia {moments} kg m^2"
+    assert page.count(said) == 1
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

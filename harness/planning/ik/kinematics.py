@@ -251,19 +251,12 @@ def into_limits(
 
 def meets_tolerance(goal: LinkGoal, pose: SE3) -> bool:
     """Whether a link pose is within the goal's tolerances."""
-    if isinstance(goal, PoseGoal):
-        shift, angle = goal.pose.distance_to(pose)
-        if shift > goal.position_tolerance:
-            return False
-        if goal.axis_tolerances is None:
-            return angle <= goal.orientation_tolerance
-        turns = turns_from(goal.pose.rotation, pose.rotation[None], goal.axis_tolerances)
-        return is_within(turns[0], goal.axis_tolerances)
-    shift = float(np.linalg.norm(goal.position - pose.translation))
+    shift, turn = distance_to_goal(goal, pose)
     if shift > goal.position_tolerance:
         return False
-    if goal.pitch is None:
-        return True
-    down = -pose.rotation[2, 0]
-    off = abs(np.arcsin(np.clip(down, -1, 1)) - np.arcsin(np.sin(goal.pitch)))
-    return bool(off <= goal.pitch_tolerance)
+    if isinstance(goal, PositionGoal):
+        return goal.pitch is None or turn <= goal.pitch_tolerance
+    if goal.axis_tolerances is None:
+        return turn <= goal.orientation_tolerance
+    turns = turns_from(goal.pose.rotation, pose.rotation[None], goal.axis_tolerances)
+    return is_within(turns[0], goal.axis_tolerances)

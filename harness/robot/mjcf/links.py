@@ -28,18 +28,18 @@ RADIUS = 0.01
 def body_link(spec: Any, model: Any, folder: Path, body: int, name: str, notes: list[str]) -> Link:
     """A body with its mass, its collision geoms and its visual geoms."""
     mass = float(model.body_mass[body])
-    inertial = None
+    inertial = stated = None
     if mass > 0:
         R = rotation_from_quat_wxyz(model.body_iquat[body])
         moments = np.array(model.body_inertia[body], dtype=float)
         if moments.min() <= 0.0:  # MuJoCo accepts it for a body that a joint moves with others
             order = np.argsort(moments)
-            raised = moments.copy()
-            raised[order] = possible_moments(moments[order], mass)
-            notes.append(corrected_note(name, moments, raised))
-            moments = raised
+            stated = moments[order]
+            moments[order] = possible_moments(stated, mass)
+            notes.append(corrected_note(name, stated, moments[order]))
         tensor = R @ np.diag(moments) @ R.T
-        inertial = Inertial(mass, np.array(model.body_ipos[body]), 0.5 * (tensor + tensor.T))
+        tensor = 0.5 * (tensor + tensor.T)
+        inertial = Inertial(mass, np.array(model.body_ipos[body]), tensor, stated)
     visuals: list[Shape] = []
     collisions: list[Shape] = []
     first = int(model.body_geomadr[body])

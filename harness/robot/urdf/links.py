@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -22,9 +22,6 @@ DEFAULT_RGBA: Rgba = (0.6, 0.6, 0.6, 1.0)
 SMALLEST_RADIUS = 0.005
 """Radius of the solid sphere whose inertia is a lower bound of a link's inertia [m]."""
 
-NO_BODY = "no body has the principal moments of inertia"
-"""Beginning of the note on a corrected tensor."""
-
 
 def possible_moments(moments: np.ndarray, mass: float) -> np.ndarray:
     """Principal moments, ascending, raised to those of a body of a mass, shape (3,) [kg m^2]."""
@@ -41,7 +38,7 @@ def possible_moments(moments: np.ndarray, mass: float) -> np.ndarray:
 def corrected_note(link: str, moments: np.ndarray, raised: np.ndarray) -> str:
     """The note on a link whose moments were raised."""
     return (
-        f"link '{link}': {NO_BODY} "
+        f"link '{link}': no body has the principal moments of inertia "
         f"{', '.join(f'{value:.3g}' for value in moments)} kg m^2; taken as "
         f"{', '.join(f'{value:.3g}' for value in raised)}"
     )
@@ -130,25 +127,23 @@ class LinkReader:
         inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         if not np.array_equal(placed.rotation, np.eye(3)):
             inertia = placed.rotation @ inertia @ placed.rotation.T
-        return Inertial(mass, placed.translation, self._of_a_body(inertia, mass, tensor, link))
+        return self._of_a_body(Inertial(mass, placed.translation, inertia), tensor, link)
 
-    def _of_a_body(
-        self, inertia: np.ndarray, mass: float, tensor: XmlElement, link: str
-    ) -> np.ndarray:
-        """The tensor, corrected to a physically possible one; one of zeros stays."""
-        if not inertia.any():
-            return inertia
-        moments, axes = np.linalg.eigh(inertia)
+    def _of_a_body(self, stated: Inertial, tensor: XmlElement, link: str) -> Inertial:
+        """The properties with a physically possible tensor; one of zeros stays."""
+        if not stated.inertia.any():
+            return stated
+        moments, axes = np.linalg.eigh(stated.inertia)
         if moments[0] < -1e-3 * abs(moments).max():
             tensor.refuse(
                 f"link '{link}' has a negative moment of inertia, {moments[0]:.3g} kg m^2",
                 "the tensor is about the centre of mass and positive definite",
             )
-        raised = possible_moments(moments, mass)
+        raised = possible_moments(moments, stated.mass)
         if np.array_equal(raised, moments):
-            return inertia
+            return stated
         self.notes.append(corrected_note(link, moments, raised))
-        return axes @ np.diag(raised) @ axes.T
+        return replace(stated, inertia=axes @ np.diag(raised) @ axes.T, stated_moments=moments)
 
     def _shape(self, element: XmlElement, link: str) -> Shape | None:
         geometry = element.find("geometry")
