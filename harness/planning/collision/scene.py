@@ -28,6 +28,7 @@ from harness.ports.scene import Touch
 from harness.recording.execution_failures import ObjectFailure
 from harness.robot.description import RobotDescription
 from harness.robot.solids import box_corners, coal_geometry, nearest_point
+from harness.robot.srdf.srdf import link_pair
 
 ROBOT = "robot"
 """Stands for every link of the robot in allowed pairs."""
@@ -47,9 +48,9 @@ class CoalScene:
         self._rigid: dict[str, tuple[SceneObject, RigidShapes]] = {}
         self._links = link_shapes(description)
         self._allowed: set[tuple[str, str]] = {
-            _sorted(*pair) for pair in description.allowed_collisions
+            link_pair(*pair) for pair in description.allowed_collisions
         }
-        self._allowed |= {_sorted(joint.parent, joint.child) for joint in description.joints}
+        self._allowed |= {link_pair(joint.parent, joint.child) for joint in description.joints}
         self._extra: set[tuple[str, str]] = set()
         self._unpadded: frozenset[tuple[str, str]] = frozenset()
         self._model: CollisionModel | None = None
@@ -113,7 +114,7 @@ class CoalScene:
     def set_allowed(self, pairs: Sequence[tuple[str, str]], *, allowed: bool) -> None:
         """Allow (or check again) collisions of pairs of links or objects; `robot`: all links."""
         for pair in pairs:
-            key = _sorted(*pair)
+            key = link_pair(*pair)
             if allowed:
                 self._extra.add(key)
             else:
@@ -122,7 +123,7 @@ class CoalScene:
 
     def set_unpadded(self, pairs: Sequence[tuple[str, str]]) -> None:
         """Apply no padding to these pairs of a link and an object, and to no others."""
-        self._unpadded = frozenset(_sorted(*pair) for pair in pairs)
+        self._unpadded = frozenset(link_pair(*pair) for pair in pairs)
         self._model = None
 
     def snapshot(self) -> SceneState:
@@ -303,7 +304,3 @@ def _among(bodies: Sequence[Body], pairs: Iterable[tuple[str, str]]) -> BoolArra
     found = np.zeros((len(bodies), len(bodies)), dtype=bool)
     found[first, second] = found[second, first] = True
     return found
-
-
-def _sorted(first: str, second: str) -> tuple[str, str]:
-    return (first, second) if first <= second else (second, first)

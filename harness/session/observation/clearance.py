@@ -15,6 +15,7 @@ from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
+from harness.robot.srdf.srdf import link_pair
 from harness.session.observation.body_tracks import (
     BodyTrack,
     MovingBody,
@@ -149,8 +150,7 @@ class _Robot:
         """Whether the distance of two links says something: both move, and neither is allowed."""
         if self._model.parent_joint(first) == self._model.parent_joint(second):
             return False
-        key = (first, second) if first <= second else (second, first)
-        if key in self.description.allowed_collisions:
+        if link_pair(first, second) in self.description.allowed_collisions:
             return False
         return not any(
             {joint.parent, joint.child} == {first, second} for joint in self.description.joints
