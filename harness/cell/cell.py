@@ -68,10 +68,6 @@ class StepNotes:
     result: Details = field(default_factory=Details)
 
 
-def _cannot_nest(_: Sequence[ProgramStep]) -> None:
-    raise RuntimeError("no program is being executed")
-
-
 @dataclass
 class Cell:
     """Everything that steps work with: robot, planning, physics, and the state of the scene."""
@@ -82,6 +78,7 @@ class Cell:
     planner: MotionPlanner
     simulator: Simulator
     later_objects: Mapping[str, WorldObject]
+    run_steps: Callable[[Sequence[ProgramStep]], None]
     presence: dict[str, Presence] = field(default_factory=dict[str, Presence])
     attachments: list[AttachmentRecord] = field(default_factory=list[AttachmentRecord])
     held: list[str] = field(default_factory=list[str])
@@ -92,7 +89,6 @@ class Cell:
     notes: StepNotes = field(default_factory=StepNotes)
     step: ProgramStep | None = None
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
-    run_steps: Callable[[Sequence[ProgramStep]], None] = _cannot_nest
     external: ExternalControl | None = None
     faults: dict[str, int] = field(default_factory=dict[str, int])
     """The faults that were injected, in words, and the line of each in the file."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -17,6 +17,10 @@ from harness.language.files.source import Loc
 from harness.language.planning import Planning
 from harness.language.plugin_field import PluginField
 from harness.language.world import ObjectSpec
+
+if TYPE_CHECKING:  # of what steps work with, which is built on the language
+    from harness.cell.cell import Cell
+    from harness.cell.scope import At
 
 TAG = "do"
 """In the shape of the models, the key of a step's verb."""
@@ -120,19 +124,18 @@ class Step(SpecModel):
         """The step's content in a few words."""
         return ""
 
-    def check(self, at: Any) -> None:
+    def check(self, at: At) -> None:
         """Report what is wrong with the step, then change the scope as the step will.
 
         Args:
-            at: `harness.cell.scope.At`: what exists at this point of the file, and the step's
-                place in it.
+            at: What exists at this point of the file, and the step's place in it.
         """
 
-    def execute(self, cell: Any) -> None:
+    def execute(self, cell: Cell) -> None:
         """Do what the step says; `harness check` calls this with a cell that moves nothing.
 
         Args:
-            cell: `harness.cell.cell.Cell`: robot, planning scene, planner and simulator.
+            cell: The robot, the planning scene, the planner and the simulator.
 
         Raises:
             StepFailed: The step cannot be carried out.

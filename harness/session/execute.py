@@ -151,6 +151,7 @@ class ProgramExecution:
             planner=ports.planner,
             simulator=simulator,
             later_objects=program.later_objects,
+            run_steps=lambda steps: self._runner.run(steps),
             cameras=program.cameras,
             external=external,
         )
@@ -160,7 +161,6 @@ class ProgramExecution:
             if obj.in_planning:
                 ports.scene.add_object(obj, obj.pose)
         self._runner = _Runner(self.cell, on_step, keep_going, program.world.timestep)
-        self.cell.run_steps = self._runner.run
 
     @property
     def records(self) -> list[StepRecord]:

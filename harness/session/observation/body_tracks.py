@@ -1,6 +1,9 @@
 """Poses of the bodies of a recorded run at every sample, and how far they move."""
 
-# pyright: reportAttributeAccessIssue=false
+# coal has no type stubs
+# pyright: reportAttributeAccessIssue=false, reportMissingTypeStubs=false
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
+# pyright: reportUnknownArgumentType=false, reportUnknownParameterType=false
 
 from __future__ import annotations
 

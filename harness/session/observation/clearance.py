@@ -223,7 +223,7 @@ class _Measurement:
 
     def _robot_to_object(self, record: ObjectRecord, track: BodyTrack, there: BoolArray) -> None:
         def bodies() -> Iterator[Bodies]:
-            standing = self._description.static_links if record.is_static else frozenset()
+            standing = self._description.static_links if record.is_static else frozenset[str]()
             shapes = tracked_shapes(record.name, record.shapes)
             other = MovingBody(shapes, track, self._found.stretches_of(there))
             links = self._bodies.items()

@@ -92,7 +92,7 @@ def _pairs_apart_by_design(
     zero = description.with_mimics(np.clip(np.zeros(len(lower)), lower, upper))
     still = LinkPoses(description.joints, zero[None])
     hand = description.gripper
-    moved_by_hand = set() if hand is None else {*hand.links, hand.palm_link}
+    moved_by_hand = set[str]() if hand is None else {*hand.links, hand.palm_link}
     found: dict[Pair, float] = {}
     for first, second in sorted(description.allowed_collisions):
         is_rigid = robot.parent_joint(first) == robot.parent_joint(second)

@@ -1,6 +1,9 @@
 """The smallest distance among many pairs of shapes over time, measured only where it can matter."""
 
-# pyright: reportAttributeAccessIssue=false
+# coal has no type stubs
+# pyright: reportAttributeAccessIssue=false, reportMissingTypeStubs=false
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
+# pyright: reportUnknownArgumentType=false, reportUnknownParameterType=false
 
 from __future__ import annotations
 

@@ -102,7 +102,9 @@ def largest_dip(dips: Mapping[tuple[str, str], FloatArray]) -> FloatArray:
 
 def inside_of(samples: IntArray, chosen: BoolArray) -> IntArray:
     """Every sample from one measured sample to the next, in the chosen intervals."""
-    parts = [np.arange(samples[k], samples[k + 1] + 1) for k in np.flatnonzero(chosen).tolist()]
+    begins = np.flatnonzero(chosen)
+    ends = zip(samples[begins].tolist(), samples[begins + 1].tolist(), strict=True)
+    parts = [np.arange(first, last + 1, dtype=np.int64) for first, last in ends]
     return np.concatenate([*parts, np.zeros(0, dtype=np.int64)]).astype(np.int64)
 
 
@@ -120,7 +122,7 @@ def parts_of(samples: IntArray, dips: FloatArray, count: int) -> tuple[IntArray,
     fits = [np.minimum(needed, limit).sum() <= most for limit in limits]
     counts = np.clip(needed, 1, limits[int(np.argmax(fits))]).astype(int)
     owners = np.repeat(samples, counts)
-    shares = [np.arange(1, count + 1) / (count + 1) for count in counts.tolist()]
+    shares: list[FloatArray] = [np.arange(1, n + 1) / (n + 1) for n in counts.tolist()]
     return owners, np.concatenate(shares)
 
 

@@ -85,18 +85,14 @@ def held_finding(run: Run, record: AttachmentRecord) -> Finding | None:
     if not len(rows):
         return None
     worst = int(rows[np.nanargmax(drift[rows])])
-    values = {
-        "object": name,
-        "drift": float(drift[worst]),
-        "turn": float(np.nanmax(turn[rows])),
-        "held": True,
-    }
-    moved = f"{amount(values['drift'], 'm')}, {amount(values['turn'], 'rad')}"
+    moved, turned = float(drift[worst]), float(np.nanmax(turn[rows]))
+    values = {"object": name, "drift": moved, "turn": turned, "held": True}
     last = float(times[gripped[-1]]) if len(gripped) else record.start_time
-    if values["drift"] > LOST and float(times[rows[-1]]) - last > GRIP_GAP:
+    if moved > LOST and float(times[rows[-1]]) - last > GRIP_GAP:
         message = f"the planner believed that it held {name}; the physics lost it at {last:.2f} s"
         return Finding("held", message, last, values={**values, "held": False, "lost_at": last})
-    message = f"{name} moved {moved} in the hand against where the planner carried it"
+    distance = f"{amount(moved, 'm')}, {amount(turned, 'rad')}"
+    message = f"{name} moved {distance} in the hand against where the planner carried it"
     return Finding("held", message, float(times[worst]), values=values)
 
 
