@@ -36,7 +36,8 @@ def layers(container: str) -> list[list[str]]:
 def purpose(name: str) -> str:
     """The first sentence of the docstring of a package or module."""
     path = ROOT / name.replace(".", "/")
-    file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    package = path / "__init__.py"
+    file = package if package.is_file() else path.with_suffix(".py")
     text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     return " ".join(text.split("\n\n")[0].split()).rstrip(".")
 
