@@ -56,7 +56,7 @@ pip install -e '.[ik-packages]' && python -m docs.generators.ik_packages
 ```
 
 A third of the targets are at singularities or close to them, and another third have joints at their
-limits; in `reaches` and `answers` it is a quarter each, and another quarter are at round values. This
+limits; in `reaches` and `answers` it is a quarter each, and another quarter is at round values. It
 is harder for numeric solvers than random poses, and a finding is not a verdict on a
 package; its section states what the solver is designed for. The numbers are cases that show a flaw,
 of all cases tried. The times are from one machine with other load. Examples are shrunk towards the
