@@ -32,12 +32,8 @@ class ComparedQuantity:
 
 
 QUANTITIES = (
-    ComparedQuantity(
-        "state_checks", "state checks", lambda t: float(t.state_checks), 0, False, True
-    ),
-    ComparedQuantity(
-        "planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1, True, True
-    ),
+    ComparedQuantity("state_checks", "state checks", lambda t: float(t.state_checks), 0, False),
+    ComparedQuantity("planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1),
     ComparedQuantity("path_length", "path length [rad]", lambda t: t.path_length, 2),
     ComparedQuantity("smoothness", "smoothness [rad²]", lambda t: t.smoothness, 4),
     ComparedQuantity("clearance", "clearance [mm]", lambda t: 1e3 * t.clearance, 1),
