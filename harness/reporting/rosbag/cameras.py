@@ -78,11 +78,11 @@ def compressed_image(content: bytes, camera: Camera, header: Any) -> Any:
 
 
 def _raw(content: bytes, camera: Camera, header: Any) -> Any:
-    flag = cv2.IMREAD_GRAYSCALE if camera.is_grey else cv2.IMREAD_COLOR_RGB
+    flag = cv2.IMREAD_GRAYSCALE if camera.is_grey else cv2.IMREAD_COLOR
     picture = cv2.imdecode(np.frombuffer(content, np.uint8), flag)
     if picture is None:
         raise ValueError(f"a picture of {camera.name} cannot be decoded")
-    return image(np.asarray(picture), header)
+    return image(picture if camera.is_grey else picture[:, :, ::-1], header)
 
 
 def _depth(run: Run, capture: CaptureRecord, header: Any) -> Any:
