@@ -136,7 +136,7 @@ def test_a_key_that_is_missing_in_run_json_is_named(base, run, key):
     [
         ("run.json", b'{"format": "armharness-run/1",\n "steps": [}', "run.json:2:12: damaged run"),
         ("run.json", b"\xff\xfe", "byte 0 is no UTF-8"),
-        ("run.json", b"[" * 100_000, "recursion"),
+        ("run.json", b"[" * 100_000, "nested too deeply"),
         ("run.json", b"[1]", "expected a mapping"),
         ("signals.npz", b"PK", "not a zip file"),
         ("signals.npz", None, "signals.npz: damaged run: this file is missing"),
