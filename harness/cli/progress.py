@@ -8,7 +8,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from harness.cli.output import Output, complain
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import (
+    Judged,
+    ProgressEvent,
+    StepFinished,
+    StepStarted,
+    Working,
+)
+from harness.reporting.result import CaseResult
 from harness.reporting.terminal import Style, case_line, step_done, step_running
 
 Moment = tuple[float, float]
@@ -55,20 +62,20 @@ class ProgressLines:
 
     def step(self, index: int, event: ProgressEvent) -> None:
         """Take note of a progress event of a running case."""
-        if event.kind == "step_started":
+        if isinstance(event, StepStarted):
             self._begun[index].append((event.wall_time, event.sim_time))
-        elif event.kind == "step_finished" and not self._is_brief:
+        elif isinstance(event, StepFinished) and not self._is_brief:
             self._begin(index)
             speed = self._speed(index, event)
             self._line(index, step_done(replace(event, speed=speed), self._style))
-        elif event.result is not None and len(self._cases) == 1:
+        elif isinstance(event, Judged) and len(self._cases) == 1:
             self._verdict(index, event.result)
-        if event.is_slow and not self._output.stream.isatty():
+        if not self._output.stream.isatty():
             slow_work_on_stderr(index, event)
-        if event.kind in ("step_started", "activity"):
+        if isinstance(event, StepStarted | Working):
             if not self._is_brief:
                 self._begin(index)
-            is_frequent = event.kind == "activity" and event.index > 0
+            is_frequent = isinstance(event, Working) and event.done > 0
             self._output.status(self._status(event, index), is_frequent=is_frequent)
 
     def result(self, index: int, result: CaseResult) -> None:
@@ -95,12 +102,12 @@ class ProgressLines:
             self._begin(index)
             self._line(index, f"  {line}")
 
-    def _status(self, event: ProgressEvent | None, index: int) -> Callable[[], str]:
+    def _status(self, event: StepStarted | Working | None, index: int) -> Callable[[], str]:
         """A function that gives the text of the status line at any later moment."""
         begin = now = self._clock()
-        if event is not None and event.kind == "activity":
-            if self._activities.get(index, ("", 0.0))[0] != event.step:
-                self._activities[index] = event.step, now
+        if isinstance(event, Working):
+            if self._activities.get(index, ("", 0.0))[0] != event.what:
+                self._activities[index] = event.what, now
             begin = self._activities[index][1]
 
         def text() -> str:
@@ -116,7 +123,7 @@ class ProgressLines:
         return f"  {done} of {total} runs done{left};"
 
     def _case_status(
-        self, event: ProgressEvent | None, index: int, begin: float, now: float
+        self, event: StepStarted | Working | None, index: int, begin: float, now: float
     ) -> str:
         """What a run is doing: since when, and since when as far as the event says."""
         time = self._clock()
@@ -125,13 +132,13 @@ class ProgressLines:
             return f"  starting{passed}"
         has_headline = not (self._is_brief or self._is_side_by_side)
         name = "    " if has_headline else f"  {self._cases[index]}:  "
-        if event.kind == "step_started":
+        if isinstance(event, StepStarted):
             return f"{name}{step_running(event, self._style).strip()}{passed}"
-        count = f", {event.index} of {event.total}" if event.total else ""
-        left = remaining(begin, now, time, event.index, event.total)
-        return f"{name}{event.step}{count}{passed}{left}"
+        count = f", {event.done} of {event.total}" if event.total else ""
+        left = remaining(begin, now, time, event.done, event.total)
+        return f"{name}{event.what}{count}{passed}{left}"
 
-    def _speed(self, index: int, event: ProgressEvent) -> float | None:
+    def _speed(self, index: int, event: StepFinished) -> float | None:
         """Simulated over wall seconds of a step, its planning included."""
         if not self._begun[index]:
             return None
@@ -154,8 +161,8 @@ class ProgressLines:
 
 def slow_work_on_stderr(_index: int, event: ProgressEvent) -> None:
     """Write what takes long on standard error, where there is no status line."""
-    if event.is_slow:
-        complain(event.step)
+    if isinstance(event, Working) and event.is_slow:
+        complain(event.what)
 
 
 def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:

@@ -4,43 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 from harness.core.errors import Problem
 from harness.recording.run import Outcome
 from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.verdict import Verdict
 from harness.reporting.explanation import explanation_lines
-
-
-@dataclass(frozen=True)
-class ProgressEvent:
-    """A progress event of a running case.
-
-    Attributes:
-        kind: `activity` is work on the report or the verdicts, which takes time after the steps.
-        index: The index of the step, from 0; of an activity, how many of its parts are done.
-        total: How many steps, or parts of the activity, there are; 0 where that is not known.
-        step: Its summary in one line; of an activity, what is being done.
-        status: The result, for `step_finished` and `judged`.
-        sim_time: Simulation time so far [s].
-        wall_time: The time on a monotonic clock [s]; shown, never judged.
-        speed: Simulated over wall seconds of the step that finished; None where it is not known.
-        result: The outcome of a case that is judged, before its report is written.
-        is_slow: Whether it is work that users should know of without a status line, too.
-    """
-
-    kind: Literal["compiled", "step_started", "step_finished", "activity", "judged", "written"]
-    index: int
-    total: int
-    step: str
-    status: str
-    sim_time: float
-    message: str
-    wall_time: float = 0.0
-    speed: float | None = None
-    result: CaseResult | None = None
-    is_slow: bool = False
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,8 @@ from typing import TextIO
 from harness.core.printable import ESC, counted, printable, printable_lines
 from harness.recording.step_record import is_nested
 from harness.recording.verdict import Measure, Verdict
-from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+from harness.reporting.progress_events import StepFinished, StepProgress, StepStarted
+from harness.reporting.result import CaseResult, StepLine
 
 OUTCOMES = ("error", "invalid", "failed", "passed")
 
@@ -76,13 +77,13 @@ class Style:
 PLAIN = Style()
 
 
-def step_running(event: ProgressEvent, style: Style = PLAIN) -> str:
+def step_running(event: StepStarted, style: Style = PLAIN) -> str:
     """The line of a step that is under way."""
     dots = " …" if style.has_signs else " ..."
     return f"    {_count(event)}  {printable(event.step)}{dots}  t={event.sim_time:.2f} s"
 
 
-def step_done(event: ProgressEvent, style: Style = PLAIN) -> str:
+def step_done(event: StepFinished, style: Style = PLAIN) -> str:
     """The line of a step that is over: sign, number, what it said, simulation time, failure.
 
     The speed is how many times faster than the real thing it was, where anything moved.
@@ -104,7 +105,7 @@ def speed_text(speed: float) -> str:
     return f"{speed:.0f}x real time" if speed >= 9.5 else f"{speed:.1f}x real time"
 
 
-def _count(event: ProgressEvent) -> str:
+def _count(event: StepProgress) -> str:
     width = len(str(event.total))
     if event.index < 0:
         return " " * (2 * width + 1)  # nested in the step above

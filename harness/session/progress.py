@@ -9,8 +9,16 @@ from dataclasses import dataclass
 from harness.cell.program import Program, ProgramStep
 from harness.ports.simulation import Simulator
 from harness.recording.step_record import StepRecord
-from harness.recording.stored_run import StoredRun
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import (
+    Compiled,
+    Judged,
+    ProgressEvent,
+    StepFinished,
+    StepStarted,
+    Working,
+    Written,
+)
+from harness.reporting.result import CaseResult
 from harness.session.execute import StepEvent
 
 Notify = Callable[[ProgressEvent], None]
@@ -30,43 +38,28 @@ class Progress:
 
     def compiled(self) -> None:
         """Report that the first step is about to begin."""
-        program = self.program
-        self.notify(ProgressEvent("compiled", 0, len(program.steps), program.title, "", 0.0, ""))
+        self.notify(Compiled())
 
     def activity(self, what: str, done: int = 0, total: int = 0) -> None:
         """Report work that is no step: see `harness.core.activity.Activity`."""
-        self.notify(ProgressEvent("activity", done, total, what, "", 0.0, ""))
+        self.notify(Working(what, done, total))
 
     def step(
-        self,
-        simulator: Simulator,
-        kind: StepEvent,
-        step: ProgramStep,
-        record: StepRecord | None,
+        self, simulator: Simulator, _: StepEvent, step: ProgramStep, record: StepRecord | None
     ) -> None:
         """Report that a step begins, or its result."""
         places = {each.path: index for index, each in enumerate(self.program.steps)}
-        event = ProgressEvent(
-            kind,
-            index=places.get(step.path, -1),
-            total=len(places),
-            step=step.summary,
-            status=record.status if record else "",
-            sim_time=simulator.time,
-            message=record.message if record else "",
-            wall_time=time.monotonic(),
-        )
-        self.notify(event)
+        place = places.get(step.path, -1), len(places)
+        at = step.summary, simulator.time, time.monotonic()
+        if record is None:
+            self.notify(StepStarted(*place, *at))
+        else:
+            self.notify(StepFinished(*place, *at, record.status, record.message))
 
     def judged(self, result: CaseResult) -> None:
         """Report the outcome, before the report is written."""
-        total = len(self.program.steps)
-        event = ProgressEvent(
-            "judged", total, total, "", result.outcome, result.sim_time, "", result=result
-        )
-        self.notify(event)
+        self.notify(Judged(result))
 
-    def written(self, stored: StoredRun, folder: str) -> None:
+    def written(self, folder: str) -> None:
         """Report where the run was written."""
-        seconds = stored.run.duration
-        self.notify(ProgressEvent("written", 0, 0, "", stored.outcome, seconds, folder))
+        self.notify(Written(folder))

@@ -166,7 +166,7 @@ class _Case:
             write_document(target, stored)
             write_files(target, drawings.images)
             reports.write(target, stored, activity)
-        self.progress.written(judged, str(folder))
+        self.progress.written(str(folder))
         return replace(
             result,
             report_dir=str(folder),

@@ -14,7 +14,15 @@ from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, SpecError
 from harness.core.interruption import is_interrupted
 from harness.core.slow_work import reported_to
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import (
+    Compiled,
+    Judged,
+    ProgressEvent,
+    StepFinished,
+    StepProgress,
+    Working,
+)
+from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.case_runner import case_runner
 from harness.suite.environment import prepare_process
@@ -54,7 +62,7 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
     from harness.core.inputs import inputs_read
 
     def slow(text: str) -> None:
-        notify(ProgressEvent("activity", 0, 0, text, "", 0.0, "", is_slow=True))
+        notify(Working(text, is_slow=True))
 
     with reported_to(slow):
         return replace(_run_job(job, notify), inputs=inputs_read())
@@ -256,13 +264,19 @@ def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
 
 def progress_text(event: ProgressEvent) -> str:
     """The progress of a case, in words."""
-    if event.kind in {"step_started", "step_finished"}:
-        number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
-        after = "after " if event.kind == "step_finished" else ""
-        return f"{after}step{number}: {event.step}"
-    if event.kind == "activity":
-        return event.step
-    return {"compiled": "the first step", "judged": "the report", "written": "the end"}[event.kind]
+    match event:
+        case StepProgress():
+            number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
+            after = "after " if isinstance(event, StepFinished) else ""
+            return f"{after}step{number}: {event.step}"
+        case Working():
+            return event.what
+        case Compiled():
+            return "the first step"
+        case Judged():
+            return "the report"
+        case _:
+            return "the end"
 
 
 def error_result(job: RunRequest, message: str) -> CaseResult:

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from harness.core.lazy import LazySequence
 from harness.recording.run import Outcome
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import ProgressEvent
+from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, with_starts
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.cases import Watcher, ignore_progress, run_here, run_isolated

@@ -8,7 +8,8 @@ import pytest
 
 from harness.cli.output import Output
 from harness.cli.progress import ProgressLines, remaining
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import Judged, StepFinished, StepStarted, Working
+from harness.reporting.result import CaseResult
 from harness.reporting.terminal import Style
 from tests.cli.run_in_terminal import run_in_terminal, screen_lines
 
@@ -33,7 +34,7 @@ class Terminal(io.StringIO):
 
 
 def event(kind, sim_time, wall_time, index=0):
-    return ProgressEvent(kind, index, 2, "pick", "passed", sim_time, "", wall_time)
+    return kind(index, 2, "pick", sim_time, wall_time)
 
 
 def reported(stream, *events):
@@ -48,10 +49,10 @@ def reported(stream, *events):
 def test_a_step_has_its_own_speed_also_around_steps_nested_in_it():
     lines = reported(
         Terminal(),
-        event("step_started", 10.0, 0.0),
-        event("step_started", 10.0, 1.0, -1),
-        event("step_finished", 12.0, 2.0, -1),
-        event("step_finished", 20.0, 4.0),
+        event(StepStarted, 10.0, 0.0),
+        event(StepStarted, 10.0, 1.0, -1),
+        event(StepFinished, 12.0, 2.0, -1),
+        event(StepFinished, 20.0, 4.0),
     )
     assert lines[1].endswith("pick  t=12.00 s  2.0x real time")
     assert lines[2].endswith("1/2  pick  t=20.00 s  2.5x real time")
@@ -61,9 +62,9 @@ def test_the_outcome_is_shown_before_the_report_is_written_and_once():
     passed = CaseResult("a", "", "Pick", "passed")
     stream = Terminal()
     lines = ProgressLines(Output(stream), ["a"], is_side_by_side=False, style=Style())
-    lines.step(0, replace(event("judged", 1.0, 0.1), result=passed))
+    lines.step(0, Judged(passed))
     assert "passed  Pick" in stream.getvalue()
-    lines.step(0, ProgressEvent("activity", 1, 2, "drawing", "", 0.0, ""))
+    lines.step(0, Working("drawing", 1, 2))
     lines.result(0, passed)
     assert stream.getvalue().count("passed  Pick") == 1
     lines.result(0, replace(passed, outcome="error"))
@@ -71,9 +72,7 @@ def test_the_outcome_is_shown_before_the_report_is_written_and_once():
 
 
 def test_piped_a_case_is_one_line():
-    lines = reported(
-        io.StringIO(), event("step_started", 0.0, 0.0), event("step_finished", 1.0, 0.1)
-    )
+    lines = reported(io.StringIO(), event(StepStarted, 0.0, 0.0), event(StepFinished, 1.0, 0.1))
     assert len(lines) == 1
     assert lines[0].startswith("a  passed  Pick")
 

@@ -9,7 +9,8 @@ from harness.core.errors import Problem
 from harness.core.printable import terminal_text
 from harness.recording.verdict import Measure, Verdict
 from harness.reporting.json_text import compact_json, json_text
-from harness.reporting.result import CaseResult, ProgressEvent, StepLine
+from harness.reporting.progress_events import StepFinished, StepStarted
+from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import (
     Style,
     case_line,
@@ -35,8 +36,7 @@ def result(outcome="passed", **more):
 
 
 def finished(status, message="", index=2, total=16):
-    kind = "step_finished"
-    return ProgressEvent(kind, index, total, "move_to mogi_home", status, 4.25, message)
+    return StepFinished(index, total, "move_to mogi_home", 4.25, 0.0, status, message)
 
 
 def test_colours_are_for_terminals_that_show_them(monkeypatch):
@@ -61,7 +61,10 @@ def test_a_step_is_one_line_with_number_time_and_cause():
     assert step_done(failed) == (
         "  no  3/16  move_to mogi_home  t=4.25 s  GOAL_IN_COLLISION: wrist_3 and Table"
     )
-    assert step_running(finished("")) == "     3/16  move_to mogi_home ...  t=4.25 s"
+    assert (
+        step_running(StepStarted(2, 16, "move_to mogi_home", 4.25))
+        == "     3/16  move_to mogi_home ...  t=4.25 s"
+    )
 
 
 def test_speed_is_reported_of_steps_and_cases_that_moved():

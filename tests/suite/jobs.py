@@ -9,11 +9,12 @@ import sys
 import time
 from pathlib import Path
 
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import StepStarted
+from harness.reporting.result import CaseResult
 
 
 def started(job):
-    return ProgressEvent("step_started", 2, 5, f"move_to {job.file.stem}", "", 1.0, "")
+    return StepStarted(2, 5, f"move_to {job.file.stem}", 1.0)
 
 
 def passes(job, notify):

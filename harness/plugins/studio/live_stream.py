@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.reporting.result import ProgressEvent
+from harness.reporting.progress_events import ProgressEvent, StepFinished
 from harness.robot.description import RobotDescription
 
 if TYPE_CHECKING:  # whoever shows a case needs no planner
@@ -106,7 +106,7 @@ class LiveStream:
         """A function that sends each event, and passes it on."""
 
         def heard(event: ProgressEvent) -> None:
-            if event.kind == "step_finished":
+            if isinstance(event, StepFinished):
                 self._due = 0.0
                 self._show()
             self._send(event)

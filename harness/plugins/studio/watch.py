@@ -19,7 +19,14 @@ from harness.plugins.studio.scene_view import SceneView
 from harness.plugins.studio.server import page_assets, start_server
 from harness.plugins.studio.session import FRAME, Message, RefusedError, Session
 from harness.plugins.studio.verdict_messages import NO_VERDICTS, verdicts_message
-from harness.reporting.result import CaseResult, ProgressEvent
+from harness.reporting.progress_events import (
+    Judged,
+    ProgressEvent,
+    StepFinished,
+    StepStarted,
+    Working,
+)
+from harness.reporting.result import CaseResult
 
 MOST_CASES = 40
 """Cases that can be chosen on the page: those that run, and the last that have ended."""
@@ -48,11 +55,17 @@ class WatchedCase:
 
     def hear(self, event: ProgressEvent) -> None:
         """Take note of an event."""
-        if event.kind == "step_finished" and event.index >= 0:
-            self.steps_done = event.index + 1
-        elif event.kind in ("step_started", "activity"):
-            self.doing = event.step
-        self.result = event.result or self.result
+        match event:
+            case StepFinished() if event.index >= 0:
+                self.steps_done = event.index + 1
+            case StepStarted():
+                self.doing = event.step
+            case Working():
+                self.doing = event.what
+            case Judged():
+                self.result = event.result
+            case _:
+                pass
 
     @property
     def status(self) -> str:

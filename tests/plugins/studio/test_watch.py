@@ -19,6 +19,7 @@ from tests.plugins.studio.test_studio_page import Page
 
 pytest.importorskip("viser")
 from harness.plugins.studio.watch import Watch
+from harness.reporting.progress_events import StepStarted
 
 TEXT = """\
 scenario: watched
@@ -60,7 +61,7 @@ def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
     was_seen = threading.Event()
 
     def hold_second_step(event):
-        if event.kind == "step_started" and event.index == 1:
+        if isinstance(event, StepStarted) and event.index == 1:
             was_seen.wait()
 
     context, closed = browser.new_context(), browser.new_context()

@@ -21,7 +21,7 @@ from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
     from harness.core.trajectory import JointTrajectory
-    from harness.reporting.result import ProgressEvent
+    from harness.reporting.progress_events import ProgressEvent
 
 AGREED = ("y", "yes")
 
@@ -110,7 +110,9 @@ class _Confirmation:
 
     def note(self, event: ProgressEvent) -> None:
         """Take note of the step that is on."""
-        if event.kind == "step_started":
+        from harness.reporting.progress_events import StepStarted
+
+        if isinstance(event, StepStarted):
             self._step = event.step
 
     def __call__(self, trajectory: JointTrajectory) -> bool:
