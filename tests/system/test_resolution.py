@@ -1,49 +1,52 @@
 """The required packages resolve on every platform, and with the libraries that users also have.
 
-pip reads the metadata of packages from its index; nothing is installed.
+uv reads the metadata of packages from the index; nothing is installed.
 """
 
-import json
+import os
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-ARM_LINUX = ("manylinux_2_28_aarch64", "manylinux_2_17_aarch64", "manylinux2014_aarch64")
-PLATFORMS = {"macOS on Apple silicon": ("macosx_15_0_arm64",), "Linux on ARM": ARM_LINUX}
+pytest.importorskip("uv", reason="the resolver is in the extra `test`")
 
-pytestmark = pytest.mark.nightly
+PROJECT = Path(__file__).parents[2] / "pyproject.toml"
+PLATFORMS = {"Apple silicon": "aarch64-apple-darwin", "Linux on ARM": "aarch64-manylinux_2_28"}
+
+pytestmark = [
+    pytest.mark.nightly,
+    pytest.mark.parametrize("python", ["3.11", "3.12", "3.13"]),
+]
 
 
-def resolved(*arguments):
-    """Versions that pip would install, by name."""
-    command = [sys.executable, "-m", "pip", "install", "--dry-run", "--ignore-installed"]
-    options = ["--quiet", "--report", "-", *arguments]
-    done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+def resolved(python, *options, constraint=""):
+    """Versions that would be installed, by name."""
+    command = [sys.executable, "-m", "uv", "pip", "compile", "--quiet", "--no-annotate"]
+    arguments = ["--python-version", python, *options, str(PROJECT), "-"]
+    environment = {**os.environ, "MACOSX_DEPLOYMENT_TARGET": "15.0"}
+    done = subprocess.run(
+        [*command, *arguments],
+        input=constraint, capture_output=True, text=True, check=False, env=environment,
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)["install"]
-    return {each["metadata"]["name"].lower(): each["metadata"]["version"] for each in found}
+    lines = [line for line in done.stdout.splitlines() if "==" in line]
+    return dict(line.split(" ")[0].split("==") for line in lines)
 
 
-@pytest.mark.parametrize("python", ["3.11", "3.12", "3.13"])
 @pytest.mark.parametrize("platform", PLATFORMS)
-def test_every_required_package_has_a_wheel(platform, python, tmp_path):
-    tags = [word for tag in PLATFORMS[platform] for word in ("--platform", tag)]
-    options = ["--only-binary=:all:", "--python-version", python, "--target", str(tmp_path)]
-    found = resolved(*options, *tags, *PROJECT["dependencies"])
+def test_every_required_package_has_a_wheel(platform, python):
+    found = resolved(python, "--only-binary", ":all:", "--python-platform", PLATFORMS[platform])
     assert {"mujoco", "ompl", "pin"} <= set(found)
 
 
 @pytest.mark.parametrize("library", ["lerobot", "vla-eval", "gymnasium", "robosuite"])
-def test_another_library_can_be_installed_too(library):
-    found = resolved(*PROJECT["dependencies"], library)
+def test_another_library_can_be_installed_too(library, python):
+    found = resolved(python, constraint=library)
     assert {"mujoco", "ompl", "pin", library} <= set(found)
 
 
-def test_the_newest_opencv_that_lerobot_accepts_is_accepted():
-    found = resolved(*PROJECT["dependencies"], "opencv-python-headless<4.14")
+def test_the_newest_opencv_that_lerobot_accepts_is_accepted(python):
+    found = resolved(python, constraint="opencv-python-headless<4.14")
     assert found["opencv-python-headless"].startswith("4.13.")
