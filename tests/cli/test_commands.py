@@ -288,7 +288,7 @@ def test_a_list_without_a_kind_has_one_line_for_each_kind(capsys):
     assert line.split()[3] == str(len(worlds))
 
 
-@pytest.mark.parametrize("extra", ["studio", "cluster"])
+@pytest.mark.parametrize("extra", ["studio", "parquet", "cluster"])
 def test_the_command_that_installs_an_extra_names_its_packages(extra):
     """The distribution itself is on no index."""
     words = shlex.split(install_command(extra))

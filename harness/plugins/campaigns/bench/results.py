@@ -1,4 +1,4 @@
-"""A comparison as a file, `results.json`."""
+"""A comparison as files: `results.json` and `benchmark.svg`."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import Any
 
 from harness.core.files import replaced, writing
 from harness.plugins.campaigns.bench.collect import MotionTrials
+from harness.plugins.campaigns.bench.plot import plot
 from harness.plugins.campaigns.bench.trial import Trial
 from harness.reporting.json_text import json_text
 
 FORMAT = "armharness-bench/1"
-RESULTS = "results.json"
+RESULTS, PICTURE = "results.json", "benchmark.svg"
 
 
 def document(
@@ -45,13 +46,21 @@ def document(
 def write_bench(
     folder: Path, motions: Sequence[MotionTrials], planners: Sequence[str], seeds: Sequence[int]
 ) -> None:
-    """Write the file into a folder, whole or not at all.
+    """Write both files into a folder, each whole or not at all.
 
     Raises:
-        HarnessError: The file cannot be written there.
+        HarnessError: The files cannot be written there.
     """
-    with writing(folder), replaced(folder / RESULTS) as file:
-        file.write(json_text(document(motions, planners, seeds)).encode())
+    searched = sum(motion.is_searched for motion in motions)
+    title = f"{searched} searched motions, {len(seeds)} seeds"
+    texts = {
+        RESULTS: json_text(document(motions, planners, seeds)),
+        PICTURE: plot(motions, planners, title),
+    }
+    with writing(folder):
+        for name, text in texts.items():
+            with replaced(folder / name) as file:
+                file.write(text.encode())
 
 
 def _without_time(trial: Trial) -> dict[str, Any]:

@@ -22,6 +22,7 @@ class ComparedQuantity:
         value: Value of a trial in that unit; NaN if the trial has none.
         digits: The number of decimals shown.
         solved_only: Whether failed trials have no value.
+        may_be_log: Whether a plot may use a logarithmic axis.
     """
 
     key: str
@@ -29,11 +30,16 @@ class ComparedQuantity:
     value: Callable[[Trial], float]
     digits: int
     solved_only: bool = True
+    may_be_log: bool = False
 
 
 QUANTITIES = (
-    ComparedQuantity("state_checks", "state checks", lambda t: float(t.state_checks), 0, False),
-    ComparedQuantity("planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1),
+    ComparedQuantity(
+        "state_checks", "state checks", lambda t: float(t.state_checks), 0, False, True
+    ),
+    ComparedQuantity(
+        "planning_time", "planning time [ms]", lambda t: 1e3 * t.planning_time, 1, True, True
+    ),
     ComparedQuantity("path_length", "path length [rad]", lambda t: t.path_length, 2),
     ComparedQuantity("smoothness", "smoothness [rad²]", lambda t: t.smoothness, 4),
     ComparedQuantity("clearance", "clearance [mm]", lambda t: 1e3 * t.clearance, 1),

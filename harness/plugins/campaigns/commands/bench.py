@@ -33,7 +33,7 @@ class BenchCommand(Command):
         add_json(command)
 
     def run(self, arguments: argparse.Namespace) -> int:
-        """Plan every free motion with every planner and seed; print and keep the numbers."""
+        """Plan every free motion with every planner and seed; print, plot, and keep the numbers."""
         from harness.planning.search.find_pipeline import planner_names, with_planner
         from harness.ports.motion_planning import PlanningOptions
 
@@ -61,7 +61,7 @@ def _bench(
     arguments: argparse.Namespace, files: list[Path], planners: list[str]
 ) -> tuple[int, object]:
     from harness.plugins.campaigns.bench.collect import MotionTrials, collect
-    from harness.plugins.campaigns.bench.results import RESULTS, document, write_bench
+    from harness.plugins.campaigns.bench.results import PICTURE, document, write_bench
     from harness.plugins.campaigns.bench.summary import failure_lines, motion_line, planner_table
 
     seeds = list(range(1, arguments.seeds + 1))
@@ -89,5 +89,5 @@ def _bench(
     if not arguments.no_report:
         folder = Path(arguments.report_dir) / "bench"
         write_bench(folder, motions, planners, seeds)
-        say(f"numbers: {folder / RESULTS}")
+        say(f"picture: {folder / PICTURE}", f"numbers: {folder / 'results.json'}")
     return code, document(motions, planners, seeds)

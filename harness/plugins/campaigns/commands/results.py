@@ -60,6 +60,8 @@ class ResultsCommand(Command):
         )
         add("--against", metavar="DIR", default="", help=text)
         add("--csv", metavar="FILE", default="", help="write the selected runs as CSV")
+        text = "write the selected runs as Parquet; needs the extra `parquet`"
+        add("--parquet", metavar="FILE", default="", help=text)
         add_json(command)
 
     def run(self, arguments: argparse.Namespace) -> int:
@@ -71,7 +73,7 @@ class ResultsCommand(Command):
         with open_campaign(Path(arguments.folder)) as database:
             if arguments.against:
                 return _compare(arguments, database)
-            if arguments.csv:
+            if arguments.csv or arguments.parquet:
                 return _export(arguments, database, query)
             if arguments.json:
                 say_json(_document(arguments, database, query))
@@ -82,9 +84,11 @@ class ResultsCommand(Command):
 
 
 def _export(arguments: argparse.Namespace, database: sqlite3.Connection, query: Query) -> int:
-    from harness.plugins.campaigns.queries.table import write_csv
+    from harness.plugins.campaigns.queries.table import write_csv, write_parquet
 
-    say(f"{write_csv(database, query, Path(arguments.csv))} runs written to {arguments.csv}")
+    for file, write in ((arguments.csv, write_csv), (arguments.parquet, write_parquet)):
+        if file:
+            say(f"{write(database, query, Path(file))} runs written to {file}")
     return 0
 
 

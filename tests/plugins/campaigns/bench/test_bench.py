@@ -1,6 +1,7 @@
 """Planners are compared on a scenario's own motions, the same every time but for the times."""
 
 import json
+import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
@@ -90,7 +91,7 @@ def test_a_trial_is_the_plan_of_a_run_with_the_same_seed(file, motions, tmp_path
     assert path_length(np.asarray(positions)) == pytest.approx(trial.path_length, rel=1e-6)
 
 
-def test_one_command_prints_and_keeps_the_numbers(file, tmp_path, capsys):
+def test_one_command_prints_plots_and_keeps_the_numbers(file, tmp_path, capsys):
     code = main(
         ["bench", str(file), "--planners=RRTConnect", "--seeds=2", f"--report-dir={tmp_path}"]
     )
@@ -102,6 +103,10 @@ def test_one_command_prints_and_keeps_the_numbers(file, tmp_path, capsys):
     kept = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert kept["format"] == "armharness-bench/1"
     assert len(kept["wall_times"]) == len(kept["motions"])
+    picture = ET.parse(folder / "benchmark.svg").getroot()
+    texts = [item.text for item in picture.iter("{http://www.w3.org/2000/svg}text")]
+    for name in ("success [%]", "state checks", "smoothness [rad²]", "clearance [mm]"):
+        assert name in texts
 
 
 @pytest.mark.parametrize(

@@ -265,3 +265,16 @@ def test_selected_runs_are_exported_as_csv(tmp_path, capsys):
     assert (row["name"], row["friction"], row["x"]) == ("sample2", "0.5", "1 cm")
     assert float(row["margin"]) == -0.01
     assert "1 runs written" in capsys.readouterr().out
+
+
+def test_selected_runs_are_exported_as_parquet(tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    folder = journal(
+        tmp_path / "a", [entry(1, 0.01, friction=0.2, x="2 cm"), entry(2, 0.3, friction=1)]
+    )
+    file = tmp_path / "runs.parquet"
+    assert main(["results", folder, "--parquet", str(file)]) == 0
+    table = parquet.read_table(file).to_pydict()
+    assert table["friction"] == [0.2, 1.0]
+    assert table["x"] == ["2 cm", None]
+    assert table["margin"] == [0.01, 0.3]
