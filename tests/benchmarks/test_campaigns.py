@@ -54,11 +54,14 @@ def parts_of(folder, count):
     streams = []
     for number in range(1, PARTS + 1):
         root = folder / f"{count}/{number}"
-        streams.append((Shard(number, PARTS), Stream(root)))
-        part = {"shard": {"number": number, "count": PARTS}, "root": str(root), "samples": count}
+        streams.append(Stream(root))
+        selection = {**record["selection"], "samples": count}
+        part = {"shard": {"number": number, "count": PARTS}, "root": str(root)}
+        part |= {"selection": selection}
         (root / "shard.json").write_text(json.dumps({**record, **part}))
-    for case in read_header(folder / "ball.scenario.yaml").variation.cases(None, count):
-        [stream] = [s for shard, s in streams if shard.holds(f"ball\0{case.name}")]
+    cases = read_header(folder / "ball.scenario.yaml").variation.cases(None, count)
+    for index, case in enumerate(cases):
+        stream = streams[Shard(1, PARTS).number_of(index) - 1]
         result = replace(entry.result, case=case.name, seed=int(case.overrides["seed"]))
         stream.append(StreamEntry(f"{entry.key}{case.name}", result, case.values).line)
     return [folder / f"{count}/{number}" for number in range(1, PARTS + 1)]
