@@ -12,11 +12,17 @@ from harness.core.files import is_file
 from harness.core.inputs import is_there
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import XmlElement, read_xml
-from harness.plugins.formats.world_formats.sdf import Sdf
 
-*VARIABLES, FUEL_CACHE = Sdf.variables
-"""Gazebo's environment variables: lists of folders of model folders, separated by colons, and the
-folder of what was downloaded from Fuel."""
+VARIABLES = (
+    "GZ_SIM_RESOURCE_PATH",
+    "IGN_GAZEBO_RESOURCE_PATH",
+    "SDF_PATH",
+    "GAZEBO_MODEL_PATH",
+)
+"""Gazebo's environment variables: lists of folders of model folders, separated by colons."""
+
+FUEL_CACHE = "GZ_FUEL_CACHE_PATH"
+"""Gazebo's environment variable: the folder of what was downloaded from Fuel."""
 
 FUEL = re.compile(r"https?://(?P<host>[^/]+)/(?:[\d.]+/)?(?P<owner>[^/]+)/models/(?P<name>[^/]+)")
 

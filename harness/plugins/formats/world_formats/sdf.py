@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
+from harness.plugins.formats.sdf.model_path import FUEL_CACHE, VARIABLES
 from harness.world.imported import ImportedWorld
 from harness.world.world_format import WorldFormat
 
@@ -15,13 +16,7 @@ class Sdf(WorldFormat):
 
     name: ClassVar[str] = "sdf"
     suffixes: ClassVar[tuple[str, ...]] = (".sdf", ".world")
-    variables: ClassVar[tuple[str, ...]] = (
-        "GZ_SIM_RESOURCE_PATH",
-        "IGN_GAZEBO_RESOURCE_PATH",
-        "SDF_PATH",
-        "GAZEBO_MODEL_PATH",
-        "GZ_FUEL_CACHE_PATH",
-    )
+    variables: ClassVar[tuple[str, ...]] = (*VARIABLES, FUEL_CACHE)
 
     def read(self, path: Path, folders: Sequence[Path]) -> ImportedWorld:
         """Read the world."""
