@@ -11,6 +11,7 @@ from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.state_words import stated_name
+from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.language.goals import ArcFields, CartesianLimitsSpec, GoalFields, GoalTolerance
 from harness.language.planning import PathConstraintsSpec as ConstraintsSpec
@@ -147,7 +148,16 @@ def link_limits(limits: CartesianLimitsSpec | None) -> LinkLimits:
 
 
 def _joint_positions(cell: Cell, group: str, positions: dict[str, float]) -> FloatArray:
+    """The positions of a group's joints; those that are not named stay.
+
+    Raises:
+        StepFailed: A joint is none of the group's, as only a step made in Python can have it.
+    """
     start = cell.planning_start()
     index = cell.description.joint_index
     names = cell.description.groups[group].joint_names
+    if others := [name for name in positions if name not in names]:
+        hint = did_you_mean(others[0], names, "joints")
+        reason = f"there is no joint '{others[0]}' of '{group}'; {hint}"
+        raise StepFailed("INVALID_GOAL_CONSTRAINTS", reason)
     return np.array([positions.get(name, float(start[index[name]])) for name in names])

@@ -95,7 +95,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return USAGE_EXIT_CODE
         json_only = only_json_on_stdout() if is_json else nullcontext()
         with _package_path(getattr(parsed, "package_folders", ())), json_only:
-            code = guarded(lambda: _begun(command.run, parsed), ticks=ticks)
+            code: object = guarded(lambda: _begun(command.run, parsed), ticks=ticks)
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon_stdout()  # the reader of a pipe has left
@@ -106,7 +106,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _abandon_stdout()
         complain(f"harness: {error}")
         return EXIT_CODES["error"]
-    return code
+    if isinstance(code, int):
+        return code
+    where = type(command).__module__
+    complain(f"harness: `{command.name}` of {where} returned {code!r}, which is no exit code")
+    return EXIT_CODES["error"]
 
 
 def _begun(run: Callable[[argparse.Namespace], int], parsed: argparse.Namespace) -> int:
@@ -223,7 +227,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     )
     known = registry("command")
     named = [word for word in words[:1] if word in known.built_in_names]
-    for name in named or known:
+    for name in named or _all_commands():
         command: Command = known[name]()
         text = command.summary()
         added = parsers.add_parser(
@@ -232,3 +236,18 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         added.set_defaults(implementation=command)
         added.add_options = command.add_options
     return parser
+
+
+def _all_commands() -> list[str]:
+    """The names of all commands; what is wrong with the plug-ins of a package is printed."""
+    from harness.cli.output import complain
+    from harness.core.registry import PluginError, broken_plugins, registry
+
+    known = registry("command")
+    try:
+        broken, names = broken_plugins(), list(known)
+    except PluginError as error:
+        broken, names = [str(error)], list(known.built_in_names)
+    for reason in broken:
+        complain(f"harness: {reason}")
+    return names

@@ -75,3 +75,30 @@ def test_a_plugin_that_cannot_be_imported_says_in_which_line(folder):
     (folder / "nod.py").write_text(NOD + "\nclass Other(Stepp):\n    pass\n")
     said = run(folder, code=2)
     assert f"name 'Stepp' is not defined (nod.py:{NOD.count(chr(10)) + 2})" in said
+
+
+TURN = """\
+from harness.steps import At, Cell, Ptp, Step
+
+
+class Turn(Step):
+    \"\"\"Turn a joint that the arm may not have.\"\"\"
+
+    verb = "turn"
+
+    def summary(self) -> str:
+        return "a turn"
+
+    def execute(self, cell: Cell) -> None:
+        cell.run_children([cell.child("turn", Ptp(joints={"%s": 0.01}), "ptp")])
+"""
+
+
+@pytest.mark.parametrize("joint", ["gripper_left_joint", "elbow"])
+def test_a_motion_made_by_a_step_names_joints_of_its_group(tmp_path, joint):
+    (tmp_path / "nod.py").write_text(TURN % joint)
+    (tmp_path / "nod.scenario.yaml").write_text(
+        "scenario: a turn\nrobot: open_manipulator_x\nsteps: [turn]\n"
+    )
+    shown = run(tmp_path, code=1)
+    assert f"INVALID_GOAL_CONSTRAINTS: there is no joint '{joint}' of 'arm'" in shown

@@ -101,8 +101,10 @@ def _packages() -> Rows:
     from importlib.util import find_spec
 
     from harness.core.extras import install_command
-    from harness.core.registry import BUILT_IN, BUNDLED, OWN_PACKAGE, noun, registry
+    from harness.core.registry import BUILT_IN, BUNDLED, OWN_PACKAGE, broken_plugins, noun, registry
 
+    for broken in broken_plugins():
+        complain(f"harness: {broken}")
     provided: dict[tuple[str, str], list[str]] = {}
     for kind in BUILT_IN:
         for name in registry(kind):
@@ -120,7 +122,7 @@ def _packages() -> Rows:
             extras = dict.fromkeys(e for package, e in needed.items() if find_spec(package) is None)
             lacks = ", ".join(f"without the extra `{extra}`" for extra in extras)
             for extra in extras:
-                complain(f"the extra `{extra}`: {install_command(extra)}")
+                complain(f"the extra `{extra}` is installed by: {install_command(extra)}")
         yield name, source, ", ".join(words), lacks
 
 

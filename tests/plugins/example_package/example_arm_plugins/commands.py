@@ -19,8 +19,8 @@ class TightestCommand(Command):
         """Print a line for each; exit code 1 if one of them failed."""
         from harness.recording.read_run import read_run
 
-        judged = [each for each in read_run(run_folder(arguments.run)).verdicts if each.unit]
-        judged.sort(key=lambda each: each.margin)
+        judged = list(read_run(run_folder(arguments.run)).verdicts)
+        judged.sort(key=lambda each: (each.status == "passed", each.margin))
         for each in judged[: arguments.count]:
-            say(f"{each.margin:g} {each.unit}  {each.expectation}")
-        return int(any(each.status == "failed" for each in judged[: arguments.count]))
+            say(f"{each.status}, {each.margin:g} {each.unit}: {each.expectation}")
+        return int(any(each.status != "passed" for each in judged))
