@@ -66,6 +66,11 @@ def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:
         state = states[stated_name(goal.named_target, states)]
         return JointGoal(_joint_positions(cell, group, dict(state.positions)))
     if goal.joints is not None:
+        names = cell.description.groups[group].joint_names
+        if others := [name for name in goal.joints if name not in names]:  # of a step in Python
+            hint = did_you_mean(others[0], names, "joints")
+            reason = f"there is no joint '{others[0]}' of '{group}'; {hint}"
+            raise StepFailed("INVALID_GOAL_CONSTRAINTS", reason)
         return JointGoal(_joint_positions(cell, group, goal.joints))
     if goal.pose is not None:
         return pose_goal(goal.pose, goal.link, goal.tolerance, cell)
@@ -148,16 +153,8 @@ def link_limits(limits: CartesianLimitsSpec | None) -> LinkLimits:
 
 
 def _joint_positions(cell: Cell, group: str, positions: dict[str, float]) -> FloatArray:
-    """The positions of a group's joints; those that are not named stay.
-
-    Raises:
-        StepFailed: A joint is none of the group's, as only a step made in Python can have it.
-    """
+    """The positions of a group's joints; those that are not named stay."""
     start = cell.planning_start()
     index = cell.description.joint_index
     names = cell.description.groups[group].joint_names
-    if others := [name for name in positions if name not in names]:
-        hint = did_you_mean(others[0], names, "joints")
-        reason = f"there is no joint '{others[0]}' of '{group}'; {hint}"
-        raise StepFailed("INVALID_GOAL_CONSTRAINTS", reason)
     return np.array([positions.get(name, float(start[index[name]])) for name in names])

@@ -139,14 +139,6 @@ class Registry(Mapping[str, P]):
         self[name]
         return self._plugins[name].package
 
-    def has_any_of(self, name: str) -> bool:
-        """Whether a plug-in was registered by a package or is defined in a module of this name."""
-        return any(
-            each.package == name
-            or f"{getattr(each.value, '__module__', '')}.".startswith(f"{name}.")
-            for each in self._plugins.values()
-        )
-
     def modules(self) -> set[str]:
         """The modules of the registered classes and functions that are not built in."""
         others = (each for each in self._plugins.values() if each.package != OWN_PACKAGE)
@@ -343,17 +335,12 @@ def load_plugin(module: str) -> None:
     Processes that are started later load it too.
 
     Raises:
-        PluginError: It cannot be imported, has no plug-ins, or another package provides one of
-            its names.
+        PluginError: It cannot be imported, or another package provides one of its names.
     """
     path = Path(module)
     if path.suffix == ".py":
         module = str(path.resolve())
     _load_module(module)
-    name = path.stem if path.suffix == ".py" else module
-    if not any(each.has_any_of(name) for each in _registries.values()):
-        reason = "it registers nothing"
-        raise PluginError(module, reason, "name the module that has the classes of the plug-ins")
     listed = _listed_plugins()
     if module not in listed:
         os.environ[VARIABLE] = os.pathsep.join([*listed, module])

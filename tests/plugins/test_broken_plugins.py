@@ -47,12 +47,3 @@ def test_a_command_without_an_exit_code_is_an_error_of_its_package(tmp_path):
     site = site_of(tmp_path / "site", HEAD + DOCSTRING + BODY.format("None"))
     shown = harness(tmp_path, "margins", site=site, code=3)
     assert "`margins` of acme_arm returned None, which is no exit code" in shown
-
-
-@pytest.mark.parametrize("code", ["", "from harness.steps import Step\n", "NUMBER = 3\n"])
-def test_a_module_without_plug_ins_is_refused(tmp_path, code):
-    (tmp_path / "empty_arm.py").write_text(code)
-    for name in ("empty_arm.py", "empty_arm"):
-        shown = harness(tmp_path, "list", "steps", "--plugin", name, site=tmp_path, code=2)
-        assert "it registers nothing" in shown
-        assert "Traceback" not in shown

@@ -66,7 +66,7 @@ def test_every_plug_in_of_the_package_is_used_in_one_run(site, tmp_path):
     rows = (file.parent / "verdicts.csv").read_text(encoding="utf-8").splitlines()
     assert rows[0].startswith("passed,0.")
     printed = harness(tmp_path, "tightest", file.parent, site=site)
-    assert printed.endswith("m: tcp_height, at least 50.0 mm\n")
+    assert printed.endswith("m  tcp_height, at least 50.0 mm (passed)\n")
 
 
 @pytest.mark.nightly

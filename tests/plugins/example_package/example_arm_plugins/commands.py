@@ -22,5 +22,5 @@ class TightestCommand(Command):
         judged = list(read_run(run_folder(arguments.run)).verdicts)
         judged.sort(key=lambda each: (each.status == "passed", each.margin))
         for each in judged[: arguments.count]:
-            say(f"{each.status}, {each.margin:g} {each.unit}: {each.expectation}")
+            say(f"{each.margin:g} {each.unit}  {each.expectation} ({each.status})")
         return int(any(each.status != "passed" for each in judged))
