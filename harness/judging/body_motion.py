@@ -67,7 +67,7 @@ class Balls:
         return (np.linalg.norm(ways, axis=1) + chord[:, None] * self.radii).max(axis=1)
 
     def moved_at_most(self, before: FloatArray, after: FloatArray) -> FloatArray:
-        """An upper bound of `moved` [m], shape (N,), for a tenth of its time."""
+        """An upper bound of `moved` [m], shape (N,), without a look at each centre."""
         outermost = float((np.linalg.norm(self.centers, axis=1) + self.radii).max())
         chord = 2 * np.sin(turn_between(before[:, 3:], after[:, 3:]) / 2)
         return np.linalg.norm(after[:, :3] - before[:, :3], axis=1) + chord * outermost
