@@ -72,17 +72,21 @@ def test_progress_of_a_running_case_is_heard(server):
     assert heard == [(0, "move_to a.scenario")]
 
 
-def test_results_come_as_cases_end_and_carry_their_index(server):
-    cases = [
-        RunRequest(Path("a"), seed=700),
-        RunRequest(Path("b"), seed=0),
-        RunRequest(Path("c"), seed=0),
-    ]
-    function = jobs.passes_after_its_seed_in_ms
+def test_results_come_as_cases_end_and_carry_their_index(server, tmp_path):
+    files = [tmp_path / name for name in "abc"]
+    cases = [RunRequest(file) for file in files]
+    function = jobs.passes_when_its_file_exists
+    for file in files[1:]:
+        file.touch()
+    side_by_side = []
+    for index, _ in run_isolated(cases, server, workers=2, function=function):
+        side_by_side.append(index)
+        if len(side_by_side) == 2:
+            files[0].touch()
     one_by_one = [index for index, _ in run_isolated(cases, server, function=function)]
-    side_by_side = [index for index, _ in run_isolated(cases, server, workers=2, function=function)]
+    assert sorted(side_by_side[:2]) == [1, 2]
+    assert side_by_side[2] == 0
     assert one_by_one == [0, 1, 2]
-    assert side_by_side == [1, 2, 0]
 
 
 def test_an_exception_is_an_error_with_its_traceback(server):
