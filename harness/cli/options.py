@@ -33,7 +33,6 @@ def read_options(arguments: argparse.Namespace, model: type[T], **given: Any) ->
     """A model with the arguments of the same names.
 
     Args:
-        arguments: The parsed arguments of the command.
         model: A dataclass, some of whose fields may be no arguments.
         given: Values of fields that take precedence over the arguments.
     """

@@ -171,7 +171,6 @@ def remaining(begin: float, last: float, now: float, done: int, total: int) -> s
     Args:
         begin: When the first part began [s].
         last: When the last of those that are done ended.
-        total: Parts, the done ones included.
     """
     if not done or done >= total or last - begin < ENOUGH_FOR_AN_ESTIMATE:
         return ""

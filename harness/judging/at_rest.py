@@ -33,12 +33,9 @@ def still_part(
     """A speed of the whole run that was at most `limit` in the last `STILL` seconds too.
 
     Args:
-        window: The window that is judged.
-        quantity: The speed that a verdict shows.
         speed: The speed at each sample of the run, shape (N,).
         limit: The largest speed that counts as rest.
         here: Samples at which its body is in the scene, as of `calm`.
-        more: Further fields of the part.
     """
     return Part(
         quantity,
@@ -75,11 +72,7 @@ def rest_is_known(window: Window, here: BoolArray) -> BoolArray:
     """Where the speeds of `STILL` seconds before are recorded, in the window or before it.
 
     Args:
-        window: The window that is judged.
         here: Where the object is present, for the whole run.
-
-    Raises:
-        NotReached: They are not at any sample.
     """
     judged = window.cut(observed_for(window.run, here, STILL))
     if window.cut(here).any() and not judged.any():

@@ -161,8 +161,6 @@ def body_speeds(
     step of the physics until a contact begins.
 
     Args:
-        run: The run, whose times count.
-        name: The name of the object.
         poses: T_world_body at each sample, NaN where it is absent or not known, shape (N, 7).
         here: Samples at which it is in the scene; by default those with a pose.
     """

@@ -184,8 +184,6 @@ def _limit_of(run: Run, held: str, contact: _Contact, force: FloatArray) -> Floa
     """Largest mean force of a contact of an object in the hand that is excused [N].
 
     Args:
-        run: The run with its recorded signals.
-        held: The name of the object.
         contact: The contact, of n samples.
         force: The mean force of the contact in the whole run [N], shape (N,).
 

@@ -77,8 +77,6 @@ def bodies_touching(run: Run, name: str, but: Collection[str] = ()) -> dict[str,
     Gaps of up to `DEBOUNCE` between two contacts are closed; nothing outlasts its last contact.
 
     Args:
-        run: The run with its recorded signals.
-        name: The name of the object.
         but: Bodies that are left out.
     """
     return {

@@ -83,8 +83,6 @@ def held_limit(run: Run, name: str, gripper_moves: BoolArray) -> FloatArray:
     """Largest mean force with which a held object presses another body [N], shape (N,).
 
     Args:
-        run: The run with its recorded signals.
-        name: The name of the held object.
         gripper_moves: Samples of steps that move the gripper, shape (N,).
     """
     grip = np.where(gripper_moves, grip_force(run), 0.0)
@@ -95,7 +93,6 @@ def leaving_limit(run: Run, samples: slice, force: FloatArray, limit: FloatArray
     """Largest mean force with which a held object presses what it leaves [N].
 
     Args:
-        run: The run with its recorded signals.
         samples: The samples of the contact.
         force: The mean force at these samples [N], shape (n,).
         limit: What `held_limit` says of these samples, shape (n,).

@@ -255,8 +255,6 @@ def moved_since(run: Run, name: str, before: IntArray) -> tuple[FloatArray, Floa
     counts where the fingers did not press it, or no direction was recorded.
 
     Args:
-        run: The run with its recorded signals.
-        name: The name of the object.
         before: The earlier sample of each sample, shape (N,).
     """
     now, points = _poses_in_hand(run, name)

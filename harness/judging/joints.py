@@ -100,14 +100,7 @@ def is_measured(recorded: FloatArray, joint: JointRecord, what: str) -> bool:
 def near(
     window: Window, targets: Mapping[str, float], tolerance: float, is_given: bool
 ) -> MarginSignal:
-    """The worst joint's distance from its position [rad or m].
-
-    Args:
-        window: Where it is judged.
-        targets: Position of each joint by its name.
-        tolerance: The tolerance of each joint.
-        is_given: Whether the file gives the tolerance.
-    """
+    """The worst joint's distance from its position [rad or m]."""
     parts: list[Part] = []
     for name in sorted(targets):
         column, joint = joint_column(window.run, name)

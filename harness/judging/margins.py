@@ -24,10 +24,8 @@ class Evidence:
     """What a sample shows.
 
     Attributes:
-        text: The evidence in words, with numbers, without the time.
         measures: The measures, the tightest first.
         margin: The margin in `unit`, where it says more than the signal's value; else None.
-        unit: The unit of `margin`.
         is_moment: Whether the text is about the sample, rather than of all the time judged.
         time: When what the text says was measured, where it was before the sample; else None [s].
     """
@@ -80,14 +78,10 @@ class Part:
     """One quantity of a predicate, against its limit.
 
     Attributes:
-        quantity: The name of the measured quantity.
         values: The measured values in `unit`, shape (n,).
-        limit: The limit of the value, in `unit`.
-        comparison: How values must stand to the limit.
         scale: What a margin is divided by before it is compared with other parts'; by default
             abs(limit).
         relevant: Samples at which the part counts; default all.
-        detail: The joint, link or pair that was measured.
         points: The two ends of a distance in the world: the required and the actual place, shape
             (n, 3) each.
         ceiling: The largest value that can be measured, in `unit`; inf where there is none. The
@@ -167,17 +161,7 @@ def measured(
     detail: str = "",
     name: str = "",
 ) -> Measure:
-    """The measure of a quantity, for a verdict.
-
-    Args:
-        quantity: The name of the measured quantity.
-        value: The value in the quantity's unit.
-        limit: The limit in the same unit.
-        comparison: How the value must stand to the limit.
-        time: The time of the sample [s].
-        detail: The joint, link or pair that was measured.
-        name: The name of the measure where it holds more than the quantity's.
-    """
+    """The measure of a quantity, for a verdict."""
     return Measure(
         name or quantity.name,
         value,
@@ -206,13 +190,10 @@ def all_of(
     verdict reports is the tightest part's, in that part's unit.
 
     Args:
-        window: Where it is judged.
-        parts: The parts; at least one.
         text: What to say of a sample, given its index and its tightest measure.
         present: Samples at which there is something to judge; NaN elsewhere.
         applies: Samples at which it is defined, as in `MarginSignal`.
         shown: How many measures a verdict shows.
-        is_moment: Whether the text is about the sample.
     """
     rows: FloatArray = np.stack([part.shares() for part in parts])
     values: FloatArray = rows.min(axis=0)  # NaN in any part is NaN

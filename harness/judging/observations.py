@@ -72,11 +72,7 @@ class ExpectationError(HarnessError):
 
 
 class UndeclaredObservation(ExpectationError):
-    """A predicate reads what its `observations` do not declare.
-
-    Attributes:
-        predicate: The name of its class.
-    """
+    """A predicate reads what its `observations` do not declare."""
 
     def __init__(self, predicate: str, what: str) -> None:
         self.predicate = predicate

@@ -80,7 +80,6 @@ def blob_pixels(
     """Pixels of the largest connected blob of a colour.
 
     Args:
-        file: The path of an image file.
         hues: From, to on the colour circle [deg].
         min_saturation: The smallest saturation, from 0 to 1.
         min_value: The smallest brightness, from 0 to 1.

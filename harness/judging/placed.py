@@ -24,7 +24,6 @@ class PlacedExpectation:
     """An expectation, the step that it is judged over, and its place in the file.
 
     Attributes:
-        spec: The model of the expectation.
         step: Id (or path) of the step it stands on; empty for the whole run.
         line: The line in the scenario file, from 1; 0 if unknown.
     """

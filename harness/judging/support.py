@@ -144,7 +144,6 @@ def carried(
     An object is borne by what takes half of its weight and of what presses it down.
 
     Args:
-        run: The run with its recorded signals.
         carriers: Bodies, and the samples at which they bear what lies on them.
         others: Objects, and the samples at which something may bear them.
 
@@ -175,7 +174,6 @@ def supports(run: Run, name: str, links: Collection[str] = ()) -> dict[str, Floa
 
     Args:
         run: The run with its recorded signals.
-        name: The name of the object.
         links: Links of the robot that count; by default none.
     """
     carrying: dict[str, FloatArray] = {}

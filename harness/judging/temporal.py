@@ -28,7 +28,6 @@ class Decision:
     Attributes:
         value: Signed so that the expectation holds where it is not negative (never: positive).
         index: The sample that decided it.
-        holds: Whether the expectation holds.
     """
 
     value: float
@@ -117,7 +116,6 @@ def longest_hold(values: FloatArray, times: FloatArray, *, is_first: bool = Fals
 
     Args:
         values: The margins of a predicate, shape (n,).
-        times: The times of the samples [s], shape (n,).
         is_first: Only the time that begins with the first sample counts.
     """
     spans = [
@@ -167,7 +165,6 @@ def eventually(
 
     Args:
         values: Margins, shape (n,), n > 0, without NaN.
-        times: The times of the samples [s], shape (n,).
         hold: Must be held so long without a break [s].
         within: Latest beginning after the first sample [s].
         progress: Chooses the deciding sample among equal margins, shape (n,); among spans of equal
@@ -249,7 +246,6 @@ def until(
     Args:
         first: Margins of what must hold before, shape (n,), n > 0, without NaN.
         second: Margins of what must come, shape (n,), without NaN.
-        times: The times of the samples [s], shape (n,).
         hold: The second must be held so long without a break [s].
         within: Latest beginning of the second after the first sample [s].
 

@@ -130,7 +130,6 @@ def refuse_changed_later(run: Run, step_id: str, names: Collection[str]) -> None
     them did, and belongs to each.
 
     Args:
-        run: The run with its steps.
         step_id: The id or the path of the step; empty for the whole run.
         names: The names of the objects that the expectation is about.
 

@@ -59,10 +59,7 @@ def terms_of(
 
     Args:
         word: The temporal word, or the `judged` word of a bare predicate.
-        fields: The temporal word, if there is one, and the predicate.
         step: The step where the expectation stands.
-        is_opposed: Whether the measures show a violation, as in `Terms`.
-        is_change: Whether something must come true, as in `Terms`.
 
     Raises:
         NotObservable: It names two steps.
@@ -101,7 +98,6 @@ class _Series:
 
     Attributes:
         values: The margin at each sample; NaN where it is not known, shape (n,).
-        times: The times of the samples [s], shape (n,).
         applies: Whether there is something to judge, shape (n,).
         progress: Chooses among equal margins, shape (n,).
     """
@@ -249,11 +245,7 @@ def _most_favourable(terms: Terms) -> float:
 def _refuse_unknown(
     terms: Terms, window: Window, unknown: BoolArray, series: _Series, chosen: IntArray
 ) -> None:
-    """Refuse a verdict that favourable values of the unknown samples would reverse.
-
-    Raises:
-        NotObservable: They would.
-    """
+    """Refuse a verdict that favourable values of the unknown samples would reverse."""
     favourable = np.where(unknown[chosen], _most_favourable(terms), series.values)
     if replace(series, values=favourable).reduce(terms).holds:
         first, last = np.flatnonzero(unknown)[[0, -1]]

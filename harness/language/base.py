@@ -31,11 +31,7 @@ SMALLEST_SIZE = 1e-9
 
 
 def refuse_beyond(value: Any) -> None:
-    """Refuse a field's value with a number beyond `LARGEST_NUMBER`.
-
-    Raises:
-        MistakeError: It has one.
-    """
+    """Refuse a field's value with a number beyond `LARGEST_NUMBER`."""
     match value:
         case float() if abs(value) > LARGEST_NUMBER:
             raise MistakeError(f"{value:g} is too large", f"at most {LARGEST_NUMBER:g} in SI units")

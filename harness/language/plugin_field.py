@@ -64,7 +64,6 @@ class PluginName:
         """Annotate a field.
 
         Args:
-            kind: A kind of plug-in.
             also: Words that are valid too, and name no plug-in.
             refused: Words that people write -> what is wrong with them, and what to write instead.
         """

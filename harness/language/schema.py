@@ -212,7 +212,6 @@ def _language(
     """Steps, predicates and expectations: one word, its content, and the keys next to it.
 
     Args:
-        definitions: The schema of each model by its name.
         names: The names of models whose class has another name there.
     """
 

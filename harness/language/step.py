@@ -151,12 +151,7 @@ class Step(SpecModel):
         return iter(())
 
     def blocks(self, loc: Loc, path: str) -> Iterator[Block]:
-        """Steps inside the step: a block for each time through.
-
-        Args:
-            loc: The step's place in the file.
-            path: The step's place in the expanded file.
-        """
+        """Steps inside the step: a block for each time through."""
         del loc, path
         return iter(())
 

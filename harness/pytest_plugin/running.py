@@ -66,11 +66,6 @@ SELF_EXPLANATORY_ERRORS = (ScenarioNotPassed, RateNotShown, ServerStartError)
 def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) -> None:
     """Run a case, or all samples of a case.
 
-    Args:
-        item: The pytest item, at the scenario's file.
-        case: Name of the case; for samples, the name that they share.
-        number: Position of the case in its file, from 0.
-
     Raises:
         ScenarioNotPassed: The case, or one of the samples, is invalid or did not pass.
         RateNotShown: The samples do not show the required success rate.

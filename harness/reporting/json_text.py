@@ -22,7 +22,6 @@ def compact_json(value: object, *, not_finite: NotFinite = "null") -> str:
     """A value as one line of strict JSON.
 
     Args:
-        value: Plain data and dataclasses.
         not_finite: Whether numbers that are not finite are null, or strings such as `NaN`.
     """
     return _strict_json(value, not_finite, None)

@@ -24,7 +24,6 @@ class StepProgress(ProgressEvent):
     Attributes:
         index: The index of the step, from 0; -1 for a step inside another one.
         total: The number of steps of the file.
-        step: Its summary in one line.
         sim_time: Simulation time so far [s].
         wall_time: The time on a monotonic clock [s]; shown, never judged.
     """
@@ -46,7 +45,6 @@ class StepFinished(StepProgress):
     """A step is over.
 
     Attributes:
-        status: The status of the step's record.
         message: Why it failed; empty where it did not.
         speed: Simulated over wall seconds of the step; None where it is not known.
     """

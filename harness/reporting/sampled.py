@@ -53,7 +53,6 @@ class SampledRate:
     """The rate of one parametrised case.
 
     Attributes:
-        file: The path as the user named it.
         group: Name of the parametrised case; empty when there is one.
         outcome: `passed` when the rate is confirmed.
     """

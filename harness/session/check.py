@@ -32,11 +32,9 @@ class CheckResult:
 
     Attributes:
         title: The scenario's; its file name when it cannot be read.
-        problems: Mistakes of the file.
         predicted: Steps that will fail though the file does not expect it, each at its line.
         explanations: The explanations of each of them, a line a stage; empty where there is nothing
             to add.
-        steps: How many steps there are.
         notes: What of the robot's and the world's files was left out or assumed.
     """
 

@@ -45,13 +45,6 @@ class Sources:
     """What compile works on, all of it loaded.
 
     Attributes:
-        scenario: What the file says.
-        lines: Where it says it.
-        base_dir: Folder of the scenario file.
-        world: The world it names.
-        world_dir: Folder of the world file.
-        description: The robot it names.
-        kinematics: The kinematics of that robot.
         check_planner: Normalises a planner's name and knows its parameters.
         checks_per_second: What a second of `planning_time` buys, in state checks.
         check_mesh: Raises RobotError for a mesh file that cannot be used.

@@ -114,8 +114,6 @@ class ProgramExecution:
 
     Attributes:
         program: What is executed; one that differs only in steps and expectations may replace it.
-        cell: What the steps work with.
-        records: The records of the steps so far, in the order of execution.
         ended_early: The failure that ended the execution; empty while there is none.
     """
 
@@ -132,7 +130,6 @@ class ProgramExecution:
         """Put the world's objects into the scene.
 
         Args:
-            program: The program that is executed.
             ports: The planning scene is empty; the world's objects are added here.
             simulator: The simulator at the start state, with every object of the program prepared
                 and the world's objects present.

@@ -27,10 +27,8 @@ def explain(
     """Robot, world, steps with their seeds, TCP poses and expansion, expectations.
 
     Args:
-        program: What will be executed.
         predicted: Step records of a dry run; composite steps come with what they expand to.
         tcp_poses: T_world_tcp at the start and end of each step, by its path.
-        describe: An expectation in one line.
     """
     lines = [program.title, "", *_robot(program.description), *_world(program.world), "steps"]
     lines += _steps(program, predicted, tcp_poses, describe)

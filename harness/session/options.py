@@ -30,9 +30,7 @@ def merged_options(
     """Options with every number known.
 
     Args:
-        scenario: The key `planning` of the scenario.
         step: The step's, which wins key by key.
-        seed: The seed of the scenario.
         path: Place of the step in the expanded file.
         checks_per_second: State checks that a second of `planning_time` buys.
         planner_name: Normalises a pipeline's `planner_id`; empty is the pipeline's default.
@@ -84,10 +82,6 @@ def check_planning(
     """Report a planner that there is not, what it does not take, two budgets.
 
     Args:
-        planning: The key `planning` of the scenario or of a step.
-        loc: The location of the key in the file.
-        problems: The list to which the problems are added.
-        check_planner: Checks the name and the parameters of a planner.
         scenario: What a step's goes before.
     """
     inherited = _inherited(scenario or Planning(), planning)

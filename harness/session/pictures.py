@@ -39,9 +39,6 @@ class Drawings:
     """What only people look at.
 
     Attributes:
-        videos: The videos of the scenario's cameras.
-        findings: Notes on the videos.
-        files: The files of the videos.
         meshes: The triangles that the page shows.
         images: Pictures of the steps, and of the states that explain failures.
         note: A line on limitations of the pictures; empty without limitations.
@@ -61,12 +58,7 @@ class Pictures:
     _run: Run
 
     def __init__(self, request: RunRequest, prepared: Prepared) -> None:
-        """Begin to set up the drawing of what is certain to be kept, before the run is executed.
-
-        Args:
-            request: The request of the case.
-            prepared: The scenario: its expectations, its videos, and the visuals of its bodies.
-        """
+        """Begin to set up the drawing of what is certain to be kept, before the run is executed."""
         self._request, self._prepared = request, prepared
         self._is_kept = request.report_dir is not None and not request.only_failed
         self._captures: Background[Captures] | None = None
@@ -77,11 +69,7 @@ class Pictures:
             self._drawings = drawings if drawings.is_apart else None
 
     def executed(self, run: Run) -> None:
-        """Begin to draw what the verdicts read, and what is certain to be kept.
-
-        Args:
-            run: What was executed and recorded.
-        """
+        """Begin to draw what the verdicts read, and what is certain to be kept."""
         self._run = run
         self._captures = self._begin_captures(is_kept=self._is_kept)
         if self._drawings is not None:
@@ -167,11 +155,7 @@ def _drawings(
     """Draw what people look at.
 
     Args:
-        prepared: The scenario with its program and videos.
         get_shown: Waits for what pictures of steps show.
-        run: The whole run, which videos show.
-        activity: Called with the progress of the drawing.
-        are_steps_drawn: Whether there are pictures of steps.
     """
     from harness.cameras.stills import StepRenderer
     from harness.session.observation.visuals import mesh_records

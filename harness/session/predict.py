@@ -42,7 +42,6 @@ def touches_at_start(program: Program, scene: PlanningScene) -> tuple[Touch, ...
     pushes the object away nevertheless.
 
     Args:
-        program: The program whose start state is checked.
         scene: An empty scene, which is empty again afterwards.
     """
     objects = [obj for obj in program.world.objects if obj.in_planning]

@@ -26,12 +26,7 @@ Notify = Callable[[ProgressEvent], None]
 
 @dataclass(frozen=True)
 class Progress:
-    """Reports how far a case is.
-
-    Attributes:
-        notify: Called with every event.
-        program: The program that is executed.
-    """
+    """Reports how far a case is."""
 
     notify: Notify
     program: Program

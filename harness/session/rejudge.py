@@ -20,8 +20,6 @@ def judge_stored(
     """Verdicts of a saved run; its own expectations keep their lines.
 
     Args:
-        stored: The run as it was read.
-        run_dir: The folder of the run.
         with_file: A scenario whose expectations are judged instead of the run's own.
 
     Raises:

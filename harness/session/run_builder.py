@@ -40,15 +40,7 @@ class RunBuilder:
         simulator: RecordingSimulator,
         commands: Sequence[CommandRecord] = (),
     ) -> None:
-        """Take over what was executed and recorded.
-
-        Args:
-            request: The request of the case.
-            prepared: The scenario that was executed.
-            execution: What its steps did.
-            simulator: The simulator with its recording.
-            commands: What external programs commanded.
-        """
+        """Take over what was executed and recorded."""
         self._request, self._prepared = request, prepared
         self.record = _recorded(request, prepared, execution, simulator, commands)
         self.captures: Captures = ((), {})

@@ -40,8 +40,6 @@ def run_case(
     """Load, compile, execute, observe, judge and report one case.
 
     Args:
-        request: The case, and what is written of it.
-        notify: Called with the case's progress.
         start: Prepares the case, with the simulator or a robot in its place.
     """
     clock = Clock()

@@ -42,14 +42,10 @@ class RunRequest:
     """One case of a scenario file, how it is run and what is written of it.
 
     Attributes:
-        file: The scenario file as the user names it.
         overrides: Dotted path in the file -> new value, as YAML text.
         seed: Seed that replaces the file's seed.
         report_dir: Folder of the report; None writes no report.
         stills: Whether the report gets a picture of every step.
-        page: Whether the report gets its page.
-        bag: Whether the report gets a rosbag2.
-        reporters: Names of other reporters that write into the report.
         case: Name of the case; empty when the file has one case.
         only_failed: Whether a report is written only where the case does not pass.
         text: Content that is read in place of the file's; None reads the file.

@@ -77,8 +77,6 @@ def start_physics(
     """Build the physics and record its start state.
 
     Args:
-        prepared: The scenario, ready to be executed.
-        kind: The class of the simulator.
         clock: Takes the wall time of what moves; None where it is not reported.
         frames: Links whose poses are recorded besides the TCP's.
 

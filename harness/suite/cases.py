@@ -144,9 +144,6 @@ def run_isolated(
     """Run every case in its own forked process, `workers` side by side.
 
     Args:
-        jobs: What to run, in this order.
-        server: The server that forks the processes.
-        workers: How many run at the same time.
         hard_cap: Wall seconds a case may take before it is ended as an error.
         watch: Hears (index, event) of running cases.
         function: What a child calls; importable there by its name.

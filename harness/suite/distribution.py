@@ -21,7 +21,6 @@ class Choice:
 
     Attributes:
         plain: The distribution as the file writes it.
-        values: The values that may be drawn.
     """
 
     plain: Mapping[str, Any]

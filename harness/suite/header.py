@@ -27,9 +27,7 @@ class ScenarioHeader:
 
     Attributes:
         title: Its `scenario`; the file's name where there is none.
-        tags: The `tags` of the file.
         line: The line of the title, from 1.
-        variation: The variation of the file.
         verifies: Requirements that it names.
         varied: The values that its cases follow from, options applied.
     """
@@ -119,7 +117,6 @@ def _cases(
     Args:
         written: The file's values, options not applied.
         root: The file's values, options applied.
-        overrides: Values that were given with `--set`.
     """
     if not CASE_KEYS & root.mapping().keys():
         return {}, ONE_CASE

@@ -24,9 +24,7 @@ class Installation:
     """What must be the same so that results can be compared, and kept.
 
     Attributes:
-        version: The version of the program.
         source: Hash of the program's source files, robots and worlds.
-        python: The version of Python.
         libraries: Versions of the libraries that results depend on, and of packages with plug-ins.
     """
 

@@ -59,11 +59,7 @@ def _clean(parent: Path, only: str | None = None) -> None:
 
 
 def remove_abandoned(prefix: str) -> None:
-    """Remove temporary folders, named by a prefix and a process number, of processes that are gone.
-
-    Args:
-        prefix: What stands before the number.
-    """
+    """Remove temporary folders, named by a prefix and a process ID, of processes that are gone."""
     for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
         pid = folder.name.removeprefix(prefix).partition("-")[0]
         if pid.isdigit() and not is_alive(int(pid)):

@@ -48,10 +48,7 @@ class FileCases:
 
     Attributes:
         file: The scenario file as the user names it.
-        header: The header of the file.
         folder: The folder of its reports; None writes no reports.
-        cases: The cases, selected or not.
-        request: How they are run.
     """
 
     file: Path
@@ -118,7 +115,6 @@ class Plan(LazySequence[PlannedCase]):
         """Remember which cases are selected.
 
         Args:
-            files: The files with all their cases.
             selected: Numbers of the selected cases among all cases of all files; None: all.
         """
         self.files = files

@@ -26,12 +26,7 @@ class Results(Mapping[int, CaseResult]):
     """
 
     def __init__(self, count: int, stream: Stream | None = None) -> None:
-        """Hold no results yet.
-
-        Args:
-            count: The number of runs.
-            stream: The file that has the results.
-        """
+        """Hold no results yet."""
         self.starts: dict[int, tuple[bool, int]] = {}
         self._stream = stream
         self._kept: dict[int, CaseResult] = {}

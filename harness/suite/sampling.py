@@ -65,7 +65,6 @@ class Tally:
     Attributes:
         passed: The number of `total` that passed.
         total: Samples that count; samples after an early stop do not.
-        is_decided: Whether the sequential test has ended the sampling.
     """
 
     def __init__(self, at_least: float | None, confidence: float, *, stop_early: bool) -> None:
@@ -73,7 +72,6 @@ class Tally:
 
         Args:
             at_least: Rate to be shown; None: every one must pass.
-            confidence: The confidence of the interval and of the sequential test.
             stop_early: Whether the sequential test may end the sampling.
         """
         self.passed, self.total = 0, 0
@@ -147,7 +145,6 @@ class Sampling:
         """Count nothing yet.
 
         Args:
-            plan: The cases, samples among them.
             is_part: Whether other parts of the suite hold samples of the same groups; then no rate
                 is decided here, and every sample is run.
         """

@@ -53,17 +53,7 @@ class Place:
 
 @dataclass(frozen=True)
 class ResultHead:
-    """The part of a result that is kept in memory, or read from a line without the rest.
-
-    Attributes:
-        file: The path as the user named it.
-        case: Empty when the file has one case.
-        outcome: The outcome of the case.
-        digest: The digest of the run; empty where nothing ran.
-        overlap: Depth of the deepest pair of bodies that overlap at the start [m].
-        redraws: How often the sample was drawn again.
-        report_dir: Folder of its report; empty when none was written.
-    """
+    """The part of a result that is kept in memory, or read from a line without the rest."""
 
     file: str
     case: str
@@ -90,11 +80,8 @@ class StreamEntry:
 
     Attributes:
         key: Fingerprint of what the result follows from.
-        result: The result of the case.
         values: What varies in the case, path -> value.
-        tags: The tags of its file.
         inputs: The digest of the files that the result follows from; an earlier line lists them.
-        format: The format of the line.
     """
 
     key: str
@@ -257,10 +244,7 @@ class Stream:
         """Keep a result.
 
         Args:
-            job: The case that was run.
-            result: The result of the case.
             values: What varies in the case, path -> value.
-            tags: The tags of its file.
 
         Raises:
             HarnessError: The disk is full.

@@ -62,9 +62,7 @@ class Variation:
         randomize: Path -> distribution; empty where nothing is random.
         samples: How many of each parametrised case; 0: no samples.
         at_least: Success rate to be shown; None: every sample must pass.
-        confidence: The confidence of the rate.
         stop_early: Whether a sequential test may end the sampling.
-        seed: The seed of the file.
         redraw_overlaps: Whether a sample is drawn again while objects overlap at the start.
         fixed: Values that options give in place of a case's own, path -> value.
     """
@@ -81,11 +79,7 @@ class Variation:
 
     @classmethod
     def of(cls, keys: CaseKeys) -> Variation:
-        """The variation that the keys of a scenario file say.
-
-        Args:
-            keys: The keys of the cases.
-        """
+        """The variation that the keys of a scenario file say."""
         from harness.language.reading.written import as_written
 
         rate = keys.expect_rate
@@ -166,7 +160,6 @@ class Redraw:
     """Draws a sample again.
 
     Attributes:
-        variation: The variation of its file.
         case: The parametrised case it is a sample of.
         index: The number of the sample.
         base: The seed of all samples.
@@ -192,7 +185,6 @@ class Cases(LazySequence[Case]):
         """Remember what the cases follow from.
 
         Args:
-            variation: The variation of the file.
             base: The seed of all samples.
             samples: The number of samples of each parametrised case; 0: none are drawn.
         """

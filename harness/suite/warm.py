@@ -68,7 +68,6 @@ class Ended:
     Attributes:
         result: What its function returned; None unless `code` is 0.
         code: 0; 1 when the function raised; minus a signal's number; None when the server died.
-        traceback: The traceback of what the function raised.
         log: The end of what the process and its libraries printed.
     """
 

@@ -146,9 +146,7 @@ def _inside(
     """How deep half of an object is inside bounds [m], and 1 where it is enclosed, (n,) each.
 
     Args:
-        container: The record of the container.
         bounds: The lower and upper corner of its outline in its frame [m].
-        content: The record of the object.
         poses: T_container_object, shape (n, 7).
 
     Raises:

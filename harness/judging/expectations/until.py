@@ -100,11 +100,7 @@ class Until(TemporalWord):
         hold: float | None,
         within: float | None,
     ) -> None:
-        """Refuse a verdict that favourable values of the unknown samples would reverse.
-
-        Raises:
-            NotObservable: They would.
-        """
+        """Refuse a verdict that favourable values of the unknown samples would reverse."""
         unknown = [margins.unknown() for margins in signals]
         best = [np.where(mask, np.inf, values) for mask, values in zip(unknown, low, strict=True)]
         decision, _ = temporal.until(best[0], best[1], window.times, hold, within)
@@ -161,7 +157,6 @@ def _low(margins: MarginSignal, skipped: float) -> FloatArray:
     """Margins with unknown samples counted against the expectation.
 
     Args:
-        margins: The margins of a predicate.
         skipped: What counts where the predicate does not apply: before an object is there, nothing
             is required of it, and nothing becomes true.
 

@@ -162,11 +162,7 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True)
 class SourceMap:
-    """Maps paths in the model to places in the file.
-
-    Attributes:
-        root: The file's values in the model's shape.
-    """
+    """Maps paths in the model to places in the file."""
 
     root: Located = field(repr=False)
 

@@ -36,7 +36,6 @@ class XmlElement:
 
     Attributes:
         tag: The tag with its prefix as written; namespaces are not resolved.
-        attributes: The attributes by name as written.
         place: The place of its start tag.
         text: All of its own character data.
     """
@@ -66,11 +65,7 @@ class XmlElement:
         return self.attributes.get(name, default)
 
     def need(self, name: str) -> str:
-        """An attribute that must be there.
-
-        Raises:
-            SpecError: It is not.
-        """
+        """An attribute that must be there."""
         if name not in self.attributes:
             self.refuse(f"<{self.tag}> lacks its attribute '{name}'")
         return self.attributes[name]

@@ -97,7 +97,6 @@ def parse_yaml(
     """The one document of a text; a mapping.
 
     Args:
-        source: The source that messages name.
         number: The number of a text after a tag of UNITS, or a ValueError; None: there are no tags.
         problems: Gets every duplicate key, tag and number that is not finite, so that the rest of
             the file can be read as well; None: they are raised.
@@ -126,7 +125,6 @@ def parse_ros_yaml(text: str, source: Source, number: Callable[[str], float]) ->
     Scalars and merge keys (`<<`) are those of YAML 1.1; of duplicate keys the last one counts.
 
     Args:
-        source: The source that messages name.
         number: The number of a text after a tag of UNITS, or a ValueError.
 
     Raises:

@@ -22,7 +22,6 @@ def yaml_text(root: Located, *, block_keys: Collection[str] = ()) -> str:
     """A mapping as YAML text: one line for what is short, else a line for each item.
 
     Args:
-        root: The mapping at the top.
         block_keys: Keys whose lists always have a line for each item.
     """
     node = _Nodes(block_keys).node(root)

@@ -73,11 +73,7 @@ def case_entries(root: Located, problems: list[Problem]) -> tuple[dict[str, Entr
 
 
 class _NotedParams(dict[str, Entry]):
-    """Parameters; those that are read are noted.
-
-    Attributes:
-        used: The names of the parameters that were read.
-    """
+    """Parameters; those that are read are noted."""
 
     def __init__(self, params: Mapping[str, Entry]) -> None:
         super().__init__(params)
@@ -93,8 +89,6 @@ def fixed_values(root: Located, keys: CaseKeys, options: list[Override]) -> dict
 
     Args:
         root: The file's values, options not applied.
-        keys: The keys of its cases.
-        options: Values that were given with `--set`.
     """
     varied = [*(keys.randomize or {}), *parametrized_paths(keys)]
     drawn = Located(DRAWN, root.place)

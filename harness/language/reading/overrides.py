@@ -32,7 +32,6 @@ class Override(NamedTuple):
     Attributes:
         path: Keys, indices from 0 and names of list items (objects, cameras, ids of steps), joined
             by dots.
-        value: The value that replaces it.
         place: Where mistakes in the path are reported.
     """
 

@@ -30,9 +30,7 @@ def partial_plugin(kind: str, tag: str, data: Any, words: set[str]) -> SpecModel
     stands in for it, or none, so that reading it raises AttributeError.
 
     Args:
-        kind: The kind of plug-in.
         tag: The key of its name in the shape of the models.
-        data: The part of the file in the shape of the models.
         words: The words of what cannot be read are added here.
 
     Returns:

@@ -102,12 +102,7 @@ class FileConditions:
 
 
 class Conditions:
-    """Conditions by the scenario file that they belong to.
-
-    Attributes:
-        path: The file that they are from.
-        digest: Hash of the file.
-    """
+    """Conditions by the scenario file that they belong to."""
 
     def __init__(self, path: Path) -> None:
         """Read a file of conditions.
@@ -165,7 +160,6 @@ class Conditions:
         """The cases of a scenario file.
 
         Args:
-            file: The scenario file that is run.
             is_alone: Whether it is the only one; then conditions of one other file are its own.
         """
         found = self._by_file.get(place_of(file).as_posix())

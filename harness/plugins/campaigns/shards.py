@@ -109,8 +109,6 @@ class PlannedFile:
 
     Attributes:
         file: The path as the user named it.
-        title: The title that the file states.
-        tags: The tags that the file states.
         verifies: Requirements that the file names.
         varied: The values in the file that its cases follow from.
     """
@@ -158,15 +156,7 @@ class ShardRecord:
 def record_of(
     files: Sequence[Path], request: SuiteRequest, shard: Shard, root: Path, conditions: str
 ) -> ShardRecord:
-    """What a part of a suite has to know of the whole suite.
-
-    Args:
-        files: Every scenario file of the suite.
-        request: The selection of the cases of the whole suite.
-        shard: The part of the suite that this machine runs.
-        root: The part's report folder.
-        conditions: Hash of the samples of `--conditions`; empty where the files draw them.
-    """
+    """What a part of a suite has to know of the whole suite."""
     planned = [
         PlannedFile(str(file), header.title, header.tags, header.verifies, header.varied)
         for file in files

@@ -17,10 +17,8 @@ def world_text(world: WorldSpec, folder: Path, comment: str = "") -> str:
     """YAML that loads to an equal world.
 
     Args:
-        world: The world to be written.
         folder: Folder of the file; paths of mesh files are relative to it. Those of this package
             are to be copied there.
-        comment: Comment at the top.
     """
     plain = world.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     moved = _from_folder(plain, folder)

@@ -27,7 +27,6 @@ def own_solver(robot: RobotSource, link: str = "") -> Callable[..., Any]:
     """The robot's solver as a function of a pose, a position and pitch, or a position.
 
     Args:
-        robot: The arm to be solved.
         link: The link that is placed; by default the TCP.
     """
     chain = Chain.of(load_source(robot), link=link)
@@ -43,11 +42,6 @@ def plugin_solver(name: str, robot: RobotSource, link: str = "") -> Callable[...
     """A registered solver as such a function; answers of third-party solvers are not filtered.
 
     The function raises UnusableIkResult where such a solver returns no joint positions.
-
-    Args:
-        name: The name of the solver.
-        robot: The arm to be solved.
-        link: The link that is placed; by default the TCP.
 
     Raises:
         RobotError: The solver is not made for the arm.

@@ -23,7 +23,6 @@ class Chain:
     """A planning group's joints from the world to a link; other joints are at their start position.
 
     Attributes:
-        description: The description of the robot.
         link: The link at the chain's end.
         joint_names: Joints of the group, from base to tip.
         lower: Smallest positions to draw, shape (dof,) [rad or m]: the joint's limit; -pi for a

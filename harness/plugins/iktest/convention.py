@@ -118,9 +118,6 @@ def with_fitted_zeros(
     a few zeros, on the answers that fit best.
 
     Args:
-        chain: The chain of the arm that is solved.
-        task: The task of the function.
-        convention: The units of the function.
         pairs: Targets and what the function answered.
     """
     if not pairs:

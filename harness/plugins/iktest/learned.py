@@ -45,11 +45,8 @@ class Learned:
         """What answers show.
 
         Args:
-            chain: The chain of the arm that is solved.
-            task: The task of the function.
             tolerances: The largest error of position [m] and orientation [rad].
             pairs: Targets and answers, converted by the convention.
-            convention: How the function counts.
         """
         poses = [(target.pose, chain.link_pose(answer)) for target, answer in pairs]
         errors = (miss(task, *each) for each in poses)

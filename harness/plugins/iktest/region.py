@@ -70,7 +70,6 @@ def separate_regions(
     example of each other one is outside of the region that holds home.
 
     Args:
-        chain: The chain of the arm that is solved.
         pairs: Targets and the answers to them.
         is_wrong: The answers that miss their targets, shape (N,).
 

@@ -93,8 +93,6 @@ class IkReport:
     """A function, tested.
 
     Attributes:
-        link: The link that the function placed.
-        joint_names: The joint names in the order of its answers.
         home: Where examples are shrunk to, shape (dof,).
         seconds: Wall time of all.
     """

@@ -44,7 +44,6 @@ def draw(
     """Visit what a strategy draws, until a visit returns False.
 
     Args:
-        count: The largest number of cases.
         number: The seed; `shrink_case` with the same one draws the same cases.
     """
 

@@ -47,8 +47,6 @@ class SolverTrial:
     """A function under test.
 
     Attributes:
-        position_tolerance: The largest position error of an answer [m].
-        orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         convention: How the function counts, as far as it is known; answers are converted from it.
         other_convention: The flaw that the convention is, in words; empty for the contract's.
         offset: Error that many answers share, once it is known.

@@ -124,9 +124,6 @@ def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _noti
 
     Args:
         name: The name as `find_function` takes it, that of a registered solver, or `own`.
-        robot: The arm, for solvers.
-        tip: The link that is placed, for solvers; empty for the TCP.
-        dof: The number of the arm's joints.
         address: The address of the caller's Unix socket.
     """
     link = socket.socket(socket.AF_UNIX)

@@ -168,7 +168,6 @@ class ClientGoal:
     Attributes:
         is_accepted: None before the server answered.
         status: How it ended; UNKNOWN before.
-        result: The result; None before the end.
     """
 
     identifier: str

@@ -64,12 +64,7 @@ def _rounded(value: Plain) -> Plain:
 
 
 class Document:
-    """A scenario's text, with the places of its steps and objects.
-
-    Attributes:
-        text: The text as it is written.
-        root: The values with their places.
-    """
+    """A scenario's text, with the places of its steps and objects."""
 
     def __init__(self, text: str, name: str = "scenario") -> None:
         """Read a text; messages call it by the name.

@@ -40,7 +40,6 @@ class Preview:
         tcp_path: Positions of the TCP along it, shape (N, 3).
         duration: The time it takes [s].
         length: The length of the path of the TCP [m].
-        planner: The name of the planner.
         record: The failed step; None where there is a motion.
     """
 
@@ -98,7 +97,6 @@ class GoalActions(LiveStudio):
         """Find the ways to a TCP pose, and show them as ghosts.
 
         Args:
-            pose: The requested pose T_world_tcp.
             explain: Whether to look for the nearest pose that can be reached.
             frame: The frame in which the page shows the pose.
         """

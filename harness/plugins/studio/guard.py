@@ -45,7 +45,6 @@ class Asset:
 
     Attributes:
         content: The bytes, compressed with gzip.
-        kind: The media type of the content.
         policy: The Content-Security-Policy; empty for what is no page.
     """
 

@@ -48,7 +48,6 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     They are what a run measures and judges: the same functions, on the same samples.
 
     Args:
-        cell: The live cell that is judged.
         document: A text with other expectations, which are judged in place of the cell's.
     """
     prepared = cell.prepared
@@ -106,7 +105,6 @@ class LiveVerdicts:
         """Judge the cell as it is now, unless an earlier state is still being judged.
 
         Args:
-            cell: The live cell that is judged.
             is_last: Whether no later state follows soon; earlier ones are then given up.
         """
         if is_last or not self._work.is_busy:

@@ -31,7 +31,6 @@ class Option:
     """A completion.
 
     Attributes:
-        text: The text that is inserted.
         kind: The kind of the text: `key` or `value`.
         help: The description of the key.
     """
@@ -75,7 +74,6 @@ def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
     Only what stands before the place is read, and of that not the lines with mistakes.
 
     Args:
-        text: The text of the scenario.
         line: The line from 0.
         column: The column from 0.
 

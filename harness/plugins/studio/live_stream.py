@@ -32,10 +32,8 @@ class LiveCase:
     """A case that begins.
 
     Attributes:
-        name: The name of the file and of the case.
         description: The pickled description of the robot, which is equal for equal robots.
         objects: Every object that is ever in the scene.
-        steps: The number of steps of the program.
     """
 
     name: str

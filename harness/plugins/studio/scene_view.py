@@ -164,7 +164,6 @@ class SceneView:
         """Draw another robot, without objects; an equal one stays as it is.
 
         Args:
-            description: The description of the robot.
             tcp_pose: Where a handle is put on the TCP; None: there is no handle.
         """
         robot = pickle.dumps(description)
@@ -278,7 +277,6 @@ class SceneView:
 
         Args:
             kind: What the handle moves.
-            pose: The pose of the handle.
             axes: The axes along which alone it moves; without any, it moves and turns freely.
         """
         vector = None if pose is None else pose.as_vector()

@@ -69,9 +69,7 @@ def start_server(host: str, port: int, guard: Guard, handler: Handler) -> viser.
     server with is replaced while it starts.
 
     Args:
-        host: The address to bind.
         port: The port; 0 for any that is free.
-        guard: The guard that answers requests.
         handler: Speaks with the studio's own page.
 
     Raises:

@@ -43,8 +43,6 @@ class Viewer:
 
     Attributes:
         name: The name by which the page comes back after a lost connection.
-        outbox: Messages to be sent.
-        loop: The event loop that sends them.
     """
 
     name: str

@@ -31,10 +31,7 @@ def pose_keys(description: RobotDescription, group: str, pose: SE3, frame: str) 
     """The goal keys of a TCP pose in a frame, which the arm's joints are enough for.
 
     Args:
-        description: The description of the robot.
-        group: The name of the planning group.
         pose: The pose T_frame_tcp of the TCP.
-        frame: The name of the frame.
     """
     place: dict[str, Any] = {} if frame == "world" else {"frame": frame}
     place["xyz"] = [round(float(value), 5) for value in pose.translation]
@@ -95,7 +92,6 @@ def object_spec(name: str, kind: str, size: list[float], xyz: list[float]) -> di
     """A new object as a scenario has it; a mass of water's density, at most 0.3 kg.
 
     Args:
-        name: The name of the object.
         kind: A shape of `shape_keys`.
         size: The full size [m].
         xyz: The position of its centre in the world [m].
@@ -155,7 +151,6 @@ class ObjectForm:
         """The object after its corner was dragged; the opposite corner stays where it is.
 
         Args:
-            spec: The object as the scenario has it.
             pose: The pose T_world_object of the object.
             corner: The new place of the corner in the world, shape (3,).
         """

@@ -24,7 +24,6 @@ def verdicts_message(
     Args:
         outcome: The outcome of the run; empty while steps remain.
         digest: The digest of the run; empty where it has none.
-        steps: The records of the steps of the file.
         verdicts: Each verdict, and whether it is decided: others can still change.
     """
     return {

@@ -74,8 +74,6 @@ def rendered(file: Path, *, script: str, style: str, **content: object) -> str:
 
     Args:
         file: The template; its folder has what it includes.
-        script: What stands for `{{ script }}`.
-        style: What stands for `{{ style }}`.
         **content: What the template shows.
     """
     from markupsafe import Markup
@@ -112,8 +110,6 @@ def content_policy(skeleton: str, *, script: str, style: str) -> str:
 
     Args:
         skeleton: The page's template, which no data of a run is in yet.
-        script: What is put in for `{{ script }}`.
-        style: What is put in for `{{ style }}`.
 
     References:
         [1] W3C, "Content Security Policy Level 3".

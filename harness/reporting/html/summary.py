@@ -25,11 +25,7 @@ TONES = {"failed": "bad", "not reached": "open"}
 
 @dataclass(frozen=True)
 class SummaryPicture:
-    """A small picture of a step's end.
-
-    Attributes:
-        data: A WebP file's bytes.
-    """
+    """A small picture of a step's end."""
 
     caption: str
     data: bytes

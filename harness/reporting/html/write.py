@@ -57,12 +57,7 @@ class Page:
         bundle.templates(bundle.TEMPLATE.parent)
 
     def html(self, stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
-        """The text of the page, which is made once.
-
-        Args:
-            stored: The same run with its pictures.
-            pictures: What the summary shows.
-        """
+        """The text of the page, which is made once."""
         text = rendered(
             bundle.TEMPLATE,
             script=bundle.script(),

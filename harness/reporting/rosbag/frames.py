@@ -58,11 +58,7 @@ def robot_edges(robot: RobotRecord) -> list[Edge]:
 def camera_edges(
     cameras: Sequence[Camera], robot: RobotRecord, objects: Collection[str]
 ) -> Iterator[Edge]:
-    """Optical frames that are no link of the robot already.
-
-    Args:
-        objects: The names of objects, which have frames too.
-    """
+    """Optical frames that are no link of the robot already."""
     known = {WORLD, *robot.link_names, *objects}
     for camera, frame in zip(cameras, optical_frames(cameras, objects).values(), strict=True):
         if frame not in known and camera.frame in known:

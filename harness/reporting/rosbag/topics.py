@@ -24,8 +24,6 @@ class Topic:
     """Where messages of one type go.
 
     Attributes:
-        name: The name, such as `/joint_states`.
-        msgtype: The message type, such as `sensor_msgs/msg/JointState`.
         depth: The depth of the publisher's history.
         is_latched: Late subscribers get the last message too (transient local).
         is_reliable: Else best effort, as sensors publish.

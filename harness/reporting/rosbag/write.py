@@ -71,7 +71,6 @@ def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None
     Args:
         folder: Must not be there yet.
         stored: A saved run; nothing else is read.
-        options: Default: those of `BagOptions`.
 
     Raises:
         HarnessError: The disk is full, or the place is not writable or taken.

@@ -100,7 +100,6 @@ class Columns:
         """Read some cases.
 
         Args:
-            cases: The cases; more can be added.
             most_listed: How many runs are listed: failures, then the nearest to failing.
         """
         self.outcomes = Counter[str]()

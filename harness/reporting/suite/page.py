@@ -66,7 +66,6 @@ def suite_html(
 
     Args:
         columns: What varies in its cases, with at most `MOST_ROWS` listed.
-        folder: Where the page will stand.
     """
     total, outcomes = len(record.cases), columns.outcomes
     rows = [_row(i, record.cases[i], folder, history or {}) for i in columns.listed]

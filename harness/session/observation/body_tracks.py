@@ -120,7 +120,6 @@ class TrackedShape:
     """A collision shape of a body, with its bounding sphere.
 
     Attributes:
-        body: The name of the body.
         geometry: The shape as Coal's geometry.
         pose: T_body_shape as Coal's transform.
         center: The bounding sphere's centre in the body frame [m].
@@ -241,7 +240,6 @@ class MovingBody:
     """The shapes of a body, and where the body is at N samples.
 
     Attributes:
-        shapes: The collision shapes of the body.
         track: T_world_body at every sample; absent at none.
         stretches: The number of the stretch of consecutive samples that each is in, ascending,
             shape (N,); None where all are one.

@@ -64,9 +64,6 @@ class CoalClearance:
         """The same signals with `clearances` and `clearance_links` filled in.
 
         Args:
-            signals: The recording of the run.
-            objects: All objects of the run.
-            attachments: All attachments of the run.
             cutoff: Larger distances are reported as the cutoff [m].
             only: The pairs that are measured; by default all.
         """

@@ -112,8 +112,6 @@ class _Record:
         """The fault with `receipt` and `evidence`.
 
         Args:
-            fault: What was set, and what it was before.
-            step: The record of the `inject` step.
             set_again: Sample at which the same was set to something else; what happens after it
                 is not an effect of this fault.
         """

@@ -25,12 +25,7 @@ NOTHING_EXPECTED = (
 
 
 def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...]:
-    """What the scenario file allows and probably does not intend.
-
-    Args:
-        program: The program of the run.
-        notes: Places in the file, as the language found them.
-    """
+    """What the scenario file allows and probably does not intend."""
     found = [Finding("note", noted(problem)) for problem in notes]
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_large(obj))]
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_inert(obj))]

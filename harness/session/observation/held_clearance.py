@@ -20,11 +20,6 @@ def with_held_distances(run: Run, signals: Signals, observer: CoalClearance) -> 
     """Signals with distances of objects in the hand that are not attached.
 
     What the hand grips has no distance to the robot.
-
-    Args:
-        run: The run as it was recorded.
-        signals: Its signals with the distances of other bodies.
-        observer: Measures the distances of bodies.
     """
     signals = _without_gripped(run, signals)
     holds = [] if "contact_forces" in run.unrecorded else _holds(run)

@@ -65,7 +65,6 @@ def _with_self_distances(signals: Signals, nearest: FloatArray, links: IntArray)
     """The signals with distances of the robot to itself, where they are the smallest.
 
     Args:
-        signals: The signals with the distances of other links.
         nearest: The distances [m], shape (N,).
         links: The link that each is measured from, -1 where none is below the cutoff, shape (N,).
     """

@@ -15,7 +15,6 @@ class MeasuredClearance:
     """What was measured at some samples, in their order.
 
     Attributes:
-        count: The number of samples.
         distances: Distance of each pair [m], NaN while either is absent, shape (count,).
         links: Index of the nearest link, -1 where there is none, shape (count,).
         travels: The most that the bodies moved against each other since the sample before [m],

@@ -167,7 +167,6 @@ def smallest_distances(
     Args:
         pairs: All over the same samples, none absent.
         cutoff: Larger distances are reported as the cutoff [m].
-        count: The number of samples.
 
     Returns:
         Distances (count,), at most `cutoff`, and indices of pairs (count,), -1 at the cutoff.
@@ -209,7 +208,6 @@ class _Search:
         """The smallest distance at a sample, and its pair; -1 where none is below the cutoff.
 
         Args:
-            sample: The sample to look at.
             previous: The pair that was the smallest before, and most likely is again; -1 if none.
         """
         travelled = self._travelled[sample]
@@ -240,7 +238,6 @@ class _Search:
 
         Args:
             best: The pair that was the smallest before; -1 if none was.
-            sample: The first sample to look at.
 
         Returns:
             The pairs, no more than `MOST_RIVALS` and `best` first; then the first sample at which

@@ -14,12 +14,7 @@ from harness.session.prepare import Prepared
 
 @remembered_facts()
 def observed_signals(prepared: Prepared, run: Run) -> Signals:
-    """The signals with distances, as verdicts and the digest need them.
-
-    Args:
-        prepared: The scenario that was executed.
-        run: The run as it was recorded.
-    """
+    """The signals with distances, as verdicts and the digest need them."""
     from harness.session.observation.clearance import CoalClearance
     from harness.session.observation.held_clearance import with_held_distances
     from harness.session.observation.link_overlaps import with_excluded_links
@@ -38,13 +33,7 @@ def observed_signals(prepared: Prepared, run: Run) -> Signals:
 
 @remembered_facts()
 def report_findings(prepared: Prepared, run: Run, signals: Signals) -> tuple[Finding, ...]:
-    """The findings that only a report shows.
-
-    Args:
-        prepared: The scenario that was executed.
-        run: The run as it was recorded.
-        signals: Its signals with distances.
-    """
+    """The findings that only a report shows."""
     from harness.session.observation.clearance import CoalClearance
     from harness.session.observation.link_overlaps import link_overlap_findings
     from harness.session.observation.looks_differ import looks_differ

@@ -39,8 +39,6 @@ def plan_against_physics(
     """What differed between belief and physics, and by how much, in every run.
 
     Args:
-        run: The run as it was recorded.
-        signals: Its signals with distances.
         planned: The signals of the run `as_commanded`.
         distances: Measures the clearances of some pairs at every sample it is given.
     """

@@ -27,7 +27,6 @@ class MotionTrials:
     """A motion of a scenario with its planning trials.
 
     Attributes:
-        file: The scenario file, as the user named it.
         step: The step's id, or its path if it has no id.
         trials: One trial for each planner and seed, planners outermost; a single trial when the
             straight line is free.

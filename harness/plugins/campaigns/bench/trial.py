@@ -73,11 +73,8 @@ def try_plan(
     """Plan once, and measure the result.
 
     Args:
-        planner: The planner, which plans in `scene`.
         scene: The planning scene at the start of the motion.
         request: The motion; its options name the planner and hold the step's seed.
-        name: Name of the planner, for the record.
-        seed: Seed of the scenario, for the record.
     """
     begin = time.process_time()
     try:

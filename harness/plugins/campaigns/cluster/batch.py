@@ -62,8 +62,6 @@ class Batch:
     """Cases that one process of a node runs one after the other.
 
     Attributes:
-        cases: Index and request of each case.
-        installation: The installation of the machine that sends the batch.
         hard_cap: Wall seconds a case may take; None: the program's own.
     """
 
@@ -122,7 +120,6 @@ class _Place:
     """A folder with the files of a suite as they were on the sending machine, and a fork server.
 
     Attributes:
-        key: The key of the files.
         server: A fork server whose working directory is inside the folder.
     """
 

@@ -103,8 +103,6 @@ class RayCluster:
         Args:
             name: `ray` for processes on this machine, or for the cluster that RAY_ADDRESS names;
                 else `ray://HOST:PORT`.
-            workers: Processes on this machine.
-            files: The scenario files of the cases.
 
         Yields:
             (index into the cases, result) in the order in which batches end. The reports are in

@@ -37,7 +37,6 @@ def margins(result: CaseResult, name: str | None = None) -> dict[Expectation, fl
     """The margin of every expectation that has one, in its own unit; negative where it failed.
 
     Args:
-        result: The result of a run.
         name: The name of the only expectation that counts; None: all count.
     """
     return {
@@ -59,7 +58,6 @@ class Closeness:
         """Measure how much each margin varies over some runs.
 
         Args:
-            results: The results of the runs.
             name: The name of the only expectation that counts; None: all count.
         """
         found: dict[Expectation, list[float]] = {}

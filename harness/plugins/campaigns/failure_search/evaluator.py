@@ -19,12 +19,7 @@ OnRun = Callable[[int, CaseResult], None]
 
 @dataclass(frozen=True)
 class Sample:
-    """A run at a point.
-
-    Attributes:
-        point: The values of the parameters.
-        result: The result of the run.
-    """
+    """A run at a point."""
 
     point: Point
     result: CaseResult
@@ -35,11 +30,8 @@ class Evaluator:
     """Runs points in batches; the results depend neither on the workers nor on the order.
 
     Attributes:
-        file: The scenario file that is searched.
-        space: The parameters that vary.
         overrides: Path -> value as YAML, the same in every run.
         seed: Seed that replaces the file's seed; every run has the same one.
-        server: The server that forks a process for every run.
         workers: Runs side by side.
         hard_cap: Wall seconds a run may take; None: the program's own.
         stream: Takes the results as they come, and has those of an earlier search.

@@ -118,7 +118,6 @@ def explore(
         start: How many of them the low-discrepancy samples are.
         batch: How many points the optimiser proposes together; None: as many as it recommends.
         minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
-        seed: Seed of the sequence and of the optimiser.
 
     References:
         [1] A. B. Owen, "Scrambling Sobol' and Niederreiter-Xing Points", Journal of Complexity

@@ -29,7 +29,6 @@ class SearchRequest:
     """What is searched, and how far.
 
     Attributes:
-        file: The scenario file that is searched.
         overrides: Path -> value as YAML; they take precedence over what varies.
         case: Name of the parametrised case; empty where there is one.
         seed: Seed of every run and of the search; None takes the file's.
@@ -66,12 +65,7 @@ class SearchRequest:
         """What a file's `search` says.
 
         Args:
-            file: The scenario file that is searched.
-            overrides: Path -> value as YAML; they take precedence over what varies.
-            case: Name of the parametrised case; empty where there is one.
             settings: Settings that take precedence over the file's; those that are None do not.
-            workers: Runs side by side.
-            hard_cap: Wall seconds a run may take; None: the program's own.
 
         Raises:
             UsageError: The case or the expectation does not exist.
@@ -104,7 +98,6 @@ class Failure:
 
     Attributes:
         kind: What failed, without numbers.
-        samples: The runs that failed in this way.
         nearest: The smallest change that fails in this way.
         shrink_runs: How many runs the shrinking took.
     """
@@ -124,7 +117,6 @@ class SearchResult:
         overrides: Path -> value as YAML that all runs have in common.
         space: The parameters that vary, with their nominal values.
         nominal: The run of the scenario as its file has it.
-        exploration: Every run of the search.
         failures: One for each kind of failure; if the nominal scenario fails, none.
         uncounted: Runs that are no evidence: invalid values, or overlaps where the file redraws.
         variation: The variation of the file, with the rate that it requires.
@@ -151,9 +143,6 @@ def search(
     """Search for failures of a scenario and shrink each kind of them.
 
     Args:
-        request: What is searched, and how far.
-        server: The server that forks a process for every run.
-        stream: Takes the results as they come.
         on_run: Called with the number of each new run and its result.
         on_stage: Called with what the search does next.
 

@@ -29,8 +29,6 @@ def shrink(space: SearchSpace, failing: Point, fails: Fails) -> Point:
     order of all trials is fixed, so that the result is the same every time.
 
     Args:
-        space: The parameters that vary, with their nominal values.
-        failing: A point that fails.
         fails: Runs points; called with several where none depends on another's result.
 
     References:

@@ -34,7 +34,6 @@ class Parameter:
 
     Attributes:
         path: Where it stands in the file, as `randomize` names it.
-        distribution: The distribution of its values.
         nominal: The value that the file itself has; else the middle of the distribution.
     """
 

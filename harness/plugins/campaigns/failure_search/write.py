@@ -36,8 +36,6 @@ class WrittenFailure:
     """A failure as a scenario file, which was run.
 
     Attributes:
-        failure: The failure that the file repeats.
-        file: The scenario file that was written.
         result: The result of running that file, with its report.
     """
 

@@ -28,8 +28,6 @@ class PairedMargin:
     """How the margin of an expectation changed from one campaign to the other.
 
     Attributes:
-        expectation: The text of the expectation in the first campaign.
-        unit: The unit of the margins.
         pairs: Pairs of runs in which both have the margin.
         median: Median of second minus first; negative where the second is nearer to failing.
         p_value: Wilcoxon's signed-rank test [1] of no change; 1 where all margins are equal.

@@ -25,7 +25,6 @@ class Query:
 
     Attributes:
         outcome: The outcome of the runs; empty for every outcome.
-        tags: Tags that the runs have.
         cause: Part of the cause of a failure; empty for every cause.
         conditions: Conditions such as `friction<0.4` or `margin<1 mm`, which all hold.
     """

@@ -38,8 +38,6 @@ def rows(
     """Selected runs in the order of their results, a value for each of `columns`.
 
     Args:
-        connection: The database of a campaign.
-        query: The selection of the runs.
         limit: The largest number of runs; None yields all.
         is_worst_first: Whether failures come first, then the runs that are nearest to failing.
     """

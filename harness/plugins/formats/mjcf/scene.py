@@ -47,7 +47,6 @@ def load_mjcf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
     """The world of an MJCF scene, as MuJoCo compiles it.
 
     Args:
-        path: The path of the file.
         folders: Folders that may be read besides the file's.
 
     Raises:

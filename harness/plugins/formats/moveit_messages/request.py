@@ -30,11 +30,9 @@ class MoveItRequest:
     """A MotionPlanRequest.
 
     Attributes:
-        group: The name of the planning group that moves.
         goals: Goals of a `move_to`; each set of constraints is one, and any may be reached.
         start: Joint positions at the start, by name, with their places; empty for the scene's.
         planning: Scaling factors of the scenario's `planning`.
-        notes: Notes on what is left out.
     """
 
     group: str

@@ -43,12 +43,10 @@ class MoveItScene:
     """A PlanningScene.
 
     Attributes:
-        robot: Name of its robot.
         world: Its objects; mesh files of `meshes` are not written yet.
         meshes: Triangles by file name.
         start: Joint positions of its robot, by name, with their places.
         allowed: Pairs of links and objects that may touch.
-        notes: Notes on what is left out.
     """
 
     robot: str

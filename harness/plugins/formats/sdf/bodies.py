@@ -21,9 +21,6 @@ class SdfLink:
 
     Attributes:
         name: Name with the enclosing models: `table::top`.
-        element: The element of the link.
-        scope: The scope of the enclosing model.
-        pose: The pose T_world_link of the link.
     """
 
     name: str
@@ -38,7 +35,6 @@ class SdfBody:
 
     Attributes:
         name: Name of the object.
-        pose: The pose T_world_object of the object.
         links: The links in file order.
         is_static: Whether the object is fixed in the world.
     """
@@ -170,7 +166,6 @@ def link_name(scope: SdfScope, name: str, element: XmlElement, depth: int = 0) -
     """The full name of the link that a name refers to.
 
     Args:
-        scope: The scope of the element with the name.
         name: A link; a frame or joint, for the link that it is attached to; a model, for its
             canonical link; or `world`.
         element: The element with the name, for messages.
@@ -216,7 +211,6 @@ def _body(members: list[SdfLink], sizes: Mapping[int, int], is_static: bool) -> 
     """An object, named after its model when it has all of its links, else after its first link.
 
     Args:
-        members: Links of the object.
         sizes: Number of links of each top-level model, by the identity of its scope.
         is_static: Whether the object is fixed in the world.
     """

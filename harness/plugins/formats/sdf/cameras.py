@@ -26,8 +26,6 @@ def cameras_of(body: SdfBody, notes: Notes, *, is_there: bool) -> list[CameraSpe
     """Cameras on a body; other sensors lead to a note.
 
     Args:
-        body: The body with the sensors.
-        notes: Collects notes on elements that are left out.
         is_there: Whether the body is an object; otherwise its cameras are fixed in the world.
     """
     found: list[CameraSpec] = []

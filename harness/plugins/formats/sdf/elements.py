@@ -54,9 +54,7 @@ def note_unread_elements(element: XmlElement, kind: str, notes: Notes) -> None:
     """Note every child of an element that is not read, unless it states what holds anyway.
 
     Args:
-        element: The element of the file.
         kind: Its kind in `READ`.
-        notes: The list that collects the notes.
     """
     for child in element.children:
         without_effect = ON if child.tag in ON_BY_DEFAULT else OFF

@@ -28,10 +28,7 @@ def link_masses(
     """Mass properties of a link, in the object's frame.
 
     Args:
-        link: The element of the `<link>`.
         shapes: Its collisions with their shapes on the object, for automatic inertia.
-        T_object_link: Pose of the link on the object.
-        notes: Collects notes on a link without inertial or inertia.
 
     Raises:
         SpecError: No rigid body can have these properties.

@@ -71,7 +71,6 @@ class ModelPath:
 
         Args:
             uri: `model://name/...`, `file://...`, a path, or a Fuel address.
-            element: The element with the URI, for messages.
             base_folder: Folder of the element's file; relative paths start there.
 
         Raises:

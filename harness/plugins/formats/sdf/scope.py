@@ -24,8 +24,6 @@ class Named:
 
     Attributes:
         kind: Kind of the element: `link`, `joint`, `frame`, `model`.
-        element: The element of the file.
-        pose: The pose of the element.
         base: Default frame of the pose; empty for the scope's frame.
     """
 
@@ -41,7 +39,6 @@ class SdfScope:
 
     Attributes:
         name: Name of the model; empty for the world.
-        element: The element of the file.
         folder: Folder of its file; relative paths start there.
         parent: The scope that encloses it.
         is_static: Whether it or an enclosing scope is static.
@@ -82,7 +79,6 @@ class SdfScope:
 
         Args:
             name: `a`, or `a::b` of a nested model; empty or `__model__` for the scope's own frame.
-            element: The element with the name, for messages.
 
         Raises:
             SpecError: The frame is unknown, or frames refer to each other in a cycle.

@@ -58,7 +58,6 @@ class ShapeReader:
         """A collision shape; None for an empty geometry.
 
         Args:
-            element: The `<collision>` element of the shape.
             folder: Folder of its file.
             pose: The pose T_object_collision of the shape.
 

@@ -38,7 +38,6 @@ class SdfTree:
         root: The `<world>`, or the `<sdf>` of a file that has models alone.
         world: The scope of the world.
         lights: Lights in file order, those of included files last.
-        notes: Notes on elements that are left out.
     """
 
     def __init__(self, path: Path, model_path: ModelPath) -> None:

@@ -25,9 +25,7 @@ class PlacedPose:
     """A pose in an SDF file.
 
     Attributes:
-        pose: The pose in the frame `relative_to`.
         relative_to: Name of a frame; empty for the element's default frame.
-        element: The element with the pose, for messages.
     """
 
     pose: SE3

@@ -33,7 +33,6 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
     """The world of an SDF file.
 
     Args:
-        path: The path of the file.
         folders: Folders to search for models and meshes before those of the environment.
 
     Raises:

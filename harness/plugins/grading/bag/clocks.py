@@ -25,9 +25,6 @@ class Timeline:
     with `use_sim_time`, the other without; two computers), the recorder's times convert between the
     clocks. Stamps may be in disorder. After a clock was set back, only the later part is used. A
     message without a stamp has the time at which the recorder received it.
-
-    Attributes:
-        notes: Notes on the clocks.
     """
 
     def __init__(self, reference: RecordedTrack) -> None:

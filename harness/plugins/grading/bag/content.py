@@ -65,7 +65,6 @@ class BagContent:
         objects: T_frame_object by (frame, object), from the topics that the user named.
         events: (logged [ns], content) of events in this program's form.
         topics: Type and number of messages of each topic.
-        notes: Notes for the user.
     """
 
     joints: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])

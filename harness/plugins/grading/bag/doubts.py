@@ -71,11 +71,7 @@ class Doubt:
 
 
 def joint_doubts(messages: Mapping[str, JointMessages]) -> Iterator[Doubt]:
-    """Joints whose messages jump: there and back, as those of two publishers do, or once.
-
-    Args:
-        messages: What was recorded of the joints.
-    """
+    """Joints whose messages jump: there and back, as those of two publishers do, or once."""
     for name, recorded in messages.items():
         joint, spans = recorded.joint, np.diff(recorded.times)
         fastest = FASTEST * (joint.velocity if 0 < joint.velocity < np.inf else UNKNOWN_LIMIT)
@@ -143,7 +139,6 @@ def object_doubts(
 
     Args:
         edges: Tracks of poses, by parent and child frame.
-        timeline: The times of the messages.
         objects: Shapes of the objects by name.
     """
     parents: dict[str, list[str]] = {}

@@ -38,7 +38,6 @@ def steps_of(
     """Steps that began; without an end event, a step lasts until the next step or the run's end.
 
     Args:
-        events: Events in order of time.
         times: Times of the run's samples [s].
         known: Line and summary of the scenario's steps, by id and by path.
     """

@@ -23,11 +23,6 @@ class Frames:
     Poses of the robot's links result from the joints. A frame without a parent counts as the world,
     with a note.
 
-    Args:
-        content: What was read of the recording.
-        links: Names of the robot's links.
-        timeline: The times of its messages.
-
     Attributes:
         notes: The assumptions made about frames.
         assumed: Frames that count as the world because they have no parent.

@@ -59,7 +59,6 @@ def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
     """Every message of an MCAP file.
 
     Args:
-        file: The file to read.
         named: The file in messages; it differs from `file` when that is an unpacked copy.
 
     Raises:
@@ -132,7 +131,6 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
     """Every message of a SQLite file.
 
     Args:
-        file: The file to read.
         named: The file in messages; it differs from `file` when that is an unpacked copy.
 
     Raises:

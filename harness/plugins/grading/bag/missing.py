@@ -25,7 +25,6 @@ def gaps(
     Args:
         joints: Names of the joints, by column.
         movable: Names of the objects that may move.
-        signals: The signals of the recording.
         present: When each object is in the scene, by name.
     """
     messages: list[str] = []

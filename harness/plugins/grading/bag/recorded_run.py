@@ -274,11 +274,7 @@ def _judged_times(
     not count. Where every other topic falls silent before the last one, the last sample is its end.
 
     Args:
-        path: The recording, for its error.
         traces: What was recorded of joints and objects.
-        tracks: Their messages, the joints' first.
-        content: What was read of the recording.
-        timeline: The times of its messages.
 
     Raises:
         SpecError: There are fewer than two, or too many.

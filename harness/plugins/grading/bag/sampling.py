@@ -75,11 +75,7 @@ def first_of_each(times: FloatArray, rows: FloatArray) -> tuple[FloatArray, Floa
 
 
 def gap_limit(times: FloatArray) -> float:
-    """The longest time between two messages of a topic over which its value is known [s].
-
-    Args:
-        times: Rising times of its messages [s].
-    """
+    """The longest time between two messages of a topic over which its value is known [s]."""
     period = float(np.median(np.diff(times))) if len(times) > 1 else LONGEST_GAP
     return float(np.clip(GAP_PERIODS * period, SHORTEST_GAP, LONGEST_GAP))
 

@@ -24,7 +24,6 @@ class Target:
     """A target pose.
 
     Attributes:
-        pose: The pose T_world_link of the link.
         joint_positions: Joint positions that reach the pose, shape (dof,); None when unknown.
     """
 

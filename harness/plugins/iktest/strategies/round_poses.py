@@ -66,7 +66,6 @@ def round_poses_around(chain: Chain, task: Task | None = None) -> Targets:
     those of the world, or their pitch is even. Whether the arm can reach them is unknown.
 
     Args:
-        chain: The chain of the arm.
         task: The task of the arm; by default `natural_task`.
     """
     fixed = task or natural_task(chain)

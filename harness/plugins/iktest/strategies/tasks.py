@@ -37,7 +37,6 @@ def task_jacobians(chain: Chain, task: Task, samples: FloatArray) -> FloatArray:
     """Jacobians of a task's coordinates, with positions in shares of the arm's reach.
 
     Args:
-        task: The parts of the pose that count.
         samples: Joint positions, shape (N, dof).
 
     Returns:

@@ -55,8 +55,6 @@ class Graph:
         """Join a domain.
 
         Args:
-            domain: The number of the ROS domain.
-            node: The name of the node in the domain.
             is_local: Whether the node communicates with this machine alone.
 
         Raises:

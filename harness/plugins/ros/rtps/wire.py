@@ -71,7 +71,6 @@ class Sample:
 
     Attributes:
         reader: The entity of the reader; zeros for all readers.
-        writer: The GUID of the writer.
         payload: The encapsulation header and the content, or fragments of them.
         first: The number of the first fragment, from 1; 0 for a whole sample.
         fragment_size: Bytes of each fragment but the last.
