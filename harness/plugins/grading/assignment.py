@@ -137,6 +137,9 @@ class Assignment(SpecModel):
         description="The title of the assignment."
     )
     description: str = Field(default="", description="A description for students.")
+    minutes: Annotated[Count, Field(ge=1)] | None = Field(
+        default=None, description="The time that a student is expected to need [min]."
+    )
     scenario: str | None = Field(
         default=None,
         description="The scenario file of the exercise, in this folder, or a bundled name.",
