@@ -22,7 +22,7 @@ from harness.language.reading.load import (
     read_scenario,
     world_path,
 )
-from harness.language.reading.repair import STAND_IN_ROBOT
+from harness.language.reading.partial import STAND_IN_ROBOT
 from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND

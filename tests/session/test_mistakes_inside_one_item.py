@@ -37,6 +37,12 @@ ITEMS = {
     "in_contact: {between: [<robot|roboot|'roboot'>, Table], min_force: <0|-1|at least 0>}]}]",
     "two goals": "steps: [lin: {pose: {xyz: [0.3, 0, 1.4], rpy: [0, 0, 0],"
     " frame: <world|nowhere|no frame 'nowhere'>}<|, joints: {elbow_joint: 0}|exactly one goal>}]",
+    "a rule and a field of a goal": "steps: [lin: {pose: {xyz: [0.3, <0|2 s|`2 s` is a time>, 1.4],"
+    " rpy: [0, 0, 0]}<|, named_target: home|exactly one goal>}]",
+    "a rule and a field of a gripper": "steps: [gripper: {<named_target: open|position: 2 s|`2 s`>"
+    "<|, width: 3 cm|exactly one of>}]",
+    "a rule and a field of an object": "objects: [{name: a, box: {size: [1, <1|-1|more than 0>, 1]}"
+    ", pose: {xyz: [1, 0, 2]}<|, sphere: {radius: 1}|exactly one of>}]\n" + STEPS,
     "a temporal word": STEPS + "expect: [always: {clearance: {between: [robot,"
     " <Table|Tabel|no object 'Tabel'>], at_least: <0|-1|at least 0>}}]",
     "a joint's tolerance": STEPS + "expect: [joints: {positions: {<elbow_joint|elbow|no joint>: 1},"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Generic, Literal, TypeVar, cast
 
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails
 
 from harness.core.errors import Problem, SpecError
 from harness.core.registry import plugin_hints, registry
@@ -21,7 +20,7 @@ from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 from harness.language.reading.includes import with_includes
 from harness.language.reading.overrides import apply_overrides, from_options
 from harness.language.reading.params import substitute
-from harness.language.reading.repair import Repaired, repair
+from harness.language.reading.partial import PartialReader
 from harness.language.reading.short_forms import models_shape
 from harness.language.reading.varied_paths import check_variation, values_of_case
 from harness.language.reading.wording import is_follow_up, problems_of
@@ -32,7 +31,6 @@ M = TypeVar("M", bound=SpecModel)
 
 WORLD_SUFFIXES = (".yaml", ".yml")
 SDF_SUFFIXES = (".sdf", ".world")
-MOST_REPAIRS = 3  # what is left out may leave something else incomplete
 SCENE_SUFFIX = ".scene"
 
 
@@ -129,8 +127,10 @@ def read_scenario(
         if error.remains is None:
             return Reading(None, tuple(error.problems))
         loaded = LoadedScenario(error.remains, path, text, error.lines, written, tuple(notes))
-        missing = frozenset(error.repaired.missing)
-        return Reading(loaded, tuple(error.problems), frozenset(error.repaired.words), missing)
+        reader = error.reader
+        return Reading(
+            loaded, tuple(error.problems), frozenset(reader.words), frozenset(reader.missing)
+        )
     loaded = LoadedScenario(model, path, text, lines, written, tuple(notes))
     return Reading(loaded, tuple(_unknown_expectation(model, lines)))
 
@@ -275,19 +275,15 @@ class _BrokenError(SpecError):
 
     Attributes:
         lines: The line and column of each field of the model.
-        remains: A model of what could be read; None when too little could.
-        repaired: What was left out of it and replaced.
+        remains: A model of what could be read; None of a file that is no scenario.
+        reader: Knows what was left out of it and replaced.
     """
 
     def __init__(
-        self,
-        problems: list[Problem],
-        lines: SourceMap,
-        remains: Any = None,
-        repaired: Repaired | None = None,
+        self, problems: list[Problem], lines: SourceMap, remains: Any, reader: PartialReader
     ) -> None:
         super().__init__(problems)
-        self.lines, self.remains, self.repaired = lines, remains, repaired or Repaired({})
+        self.lines, self.remains, self.reader = lines, remains, reader
 
 
 def _model(
@@ -301,20 +297,25 @@ def _model(
     guessed: set[tuple[str, int, int]] = set()
     lines = SourceMap(models_shape(written, model, problems, notes, guessed))
     data = lines.root.plain()
+    reader, remains = PartialReader(), None
     try:
         loaded = model.model_validate(data)
     except ValidationError as error:
         known = {(problem.path, problem.line, problem.column) for problem in problems}
         errors = [each for each in error.errors(include_url=False) if not is_follow_up(each)]
+        if model is Scenario and isinstance(data, dict):
+            places = [each["loc"] for each in errors]
+            remains = reader.scenario(cast("dict[str, Any]", data), places)
+        errors += reader.broken_rules
         independent = [each for each in errors if not _contains(lines, each["loc"], known)]
         problems += (
             problem
             for problem in problems_of(independent, lines)
             if (problem.path, problem.line, problem.column) not in known | guessed
         )
-        raise _BrokenError(problems, lines, *_remains(data, model, errors)) from None
+        raise _BrokenError(problems, lines, remains, reader) from None
     if problems:
-        raise _BrokenError(problems, lines, loaded)
+        raise _BrokenError(problems, lines, loaded, reader)
     return loaded, lines
 
 
@@ -327,22 +328,6 @@ def _contains(lines: SourceMap, loc: Loc, known: set[tuple[str, int, int]]) -> b
         nearby += [child for item in nearby for child in item.items()]
     places = [item.place for item in nearby]
     return any((place.source.path, place.line, place.column) in known for place in places)
-
-
-def _remains(
-    data: object, model: type[M], errors: Sequence[ErrorDetails]
-) -> tuple[M | None, Repaired | None]:
-    """A model of what is not broken, and what was taken out of it."""
-    if model is not Scenario or not isinstance(data, dict):
-        return None, None
-    places = [error["loc"] for error in errors]
-    for _ in range(MOST_REPAIRS):
-        found = repair(cast("dict[str, Any]", data), places)
-        try:
-            return model.model_validate(found.data), found
-        except ValidationError as error:
-            places += [each["loc"] for each in error.errors(include_url=False)]
-    return None, None
 
 
 def _of_world(problem: Problem, name: str) -> Problem:
