@@ -22,7 +22,11 @@ def interrupt(number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGALRM, _raise_unless_importing)
         _raise_unless_importing(number, frame)
     else:
+        signal.signal(signal.SIGALRM, _nothing)  # or the first would interrupt what handles this
         raise KeyboardInterrupt
+
+
+def _nothing(_number: int, _frame: FrameType | None) -> None: ...
 
 
 def is_interrupted() -> bool:

@@ -12,6 +12,7 @@ import pytest
 
 from harness.suite.leftovers import clean_report_folder
 from tests.cli.run_in_terminal import HARNESS, run_in_terminal
+from tests.waiting import HANG, wait_for
 
 LONG = """\
 scenario: Long
@@ -84,7 +85,7 @@ def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, numbe
         ) as process:  # fmt: skip
             time.sleep(delay)
             process.send_signal(number)
-            said, _ = process.communicate(timeout=60)
+            said, _ = process.communicate(timeout=HANG)
         if b"in entry" not in said and process.returncode in (-number, 1):
             continue  # Python was still starting or importing; nothing of the program had run
         assert process.returncode == 130, (delay, said)
@@ -92,8 +93,8 @@ def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, numbe
 
 
 IMPORTS = """\
-import signal, sys
-from harness.core.interruption import interrupt
+import signal, sys, time
+from harness.core.interruption import RETRY_SECONDS, interrupt
 signal.signal(signal.SIGINT, interrupt)
 sys.path.insert(0, ".")
 try:
@@ -101,6 +102,7 @@ try:
     while True:
         pass
 except KeyboardInterrupt:
+    time.sleep(3 * RETRY_SECONDS)  # nothing interrupts it once more
     print("module" if "interrupted_module" not in sys.modules else "after it")
 """
 
@@ -111,7 +113,7 @@ def test_the_first_signal_waits_for_the_end_of_an_import(folder, signals, where)
     (folder / "interrupted_module.py").write_text(module)
     done = subprocess.run(
         [sys.executable, "-c", IMPORTS],
-        cwd=folder, capture_output=True, text=True, check=False, timeout=60,
+        cwd=folder, capture_output=True, text=True, check=False, timeout=HANG,
     )  # fmt: skip
     assert (done.stdout.strip(), done.stderr) == (where, "")
 
@@ -203,15 +205,11 @@ def test_a_killed_run_leaves_nothing_after_the_next_one(folder):
     (folder / "film.scenario.yaml").write_text(SHORT)
     with subprocess.Popen([*HARNESS, "run", "film.scenario.yaml"], cwd=folder,
                           stdout=subprocess.DEVNULL) as process:  # fmt: skip
-        end = time.monotonic() + 120
         while not (found := list(Path(folder, "reports").glob(".film.writing.*"))):
-            assert time.monotonic() < end
             assert process.poll() is None
             time.sleep(0.002)
         process.kill()
     writer = int(found[0].name.split(".")[3])
-    while Path(f"/proc/{writer}").exists():
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    wait_for(lambda: not Path(f"/proc/{writer}").exists())
     clean_report_folder(folder / "reports")
     assert not list(Path(folder, "reports").glob(".film.*"))

@@ -1,0 +1,28 @@
+"""Waiting in tests: for an event, at most as long as only a hang takes."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+T = TypeVar("T")
+
+HANG = 120.0
+"""Wall time after which a wait counts as a hang [s]; on a busy machine most events take seconds."""
+
+
+def wait_for(condition: Callable[[], T]) -> T:
+    """What a condition returns as soon as that is true."""
+    end = time.monotonic() + HANG
+    while not (value := condition()):
+        assert time.monotonic() < end, f"nothing happened within {HANG:g} s"
+        time.sleep(0.01)
+    return value
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process runs; a zombie does not."""
+    try:
+        return "State:\tZ" not in Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+    except (FileNotFoundError, ProcessLookupError):
+        return False
