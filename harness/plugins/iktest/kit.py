@@ -63,7 +63,7 @@ class IkTest:
         seed: The seed of the cases; the same seed draws the same ones.
         position_tolerance: The largest position error of an answer [m].
         orientation_tolerance: The largest orientation or pitch error of an answer [rad].
-        patience: Wall time after which a call counts as hanging [s].
+        patience: Processor time after which a call counts as hanging [s].
         report_dir: Where pictures and `ik_test.json` go; None writes nothing.
     """
 

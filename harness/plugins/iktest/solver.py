@@ -22,6 +22,10 @@ IMPORT_SECONDS = 60.0
 
 POLL_SECONDS = 0.02
 
+WAITING_LIMIT = 10.0
+"""Wall time that a call may wait or be kept waiting, in multiples of its processor time: a busy
+machine makes no function hang."""
+
 
 class Solver(Protocol):
     """A function under test.
@@ -59,7 +63,7 @@ class InProcess:
 
 
 class Isolated:
-    """A function in a process of its own, which is ended when an answer takes too long.
+    """A function in a process of its own, which is ended when a call takes too long.
 
     A process that has ended, in whatever way, is followed by a new one at the next call.
     """
@@ -71,7 +75,7 @@ class Isolated:
             name: The name as `find_function` takes it, that of a registered solver, or `own`.
             tip: The link that is placed; empty for the TCP.
             dof: The number of the arm's joints.
-            patience: Wall time that an answer may take [s].
+            patience: Processor time that a call may take [s].
 
         Raises:
             UnusableSolver: The function cannot be imported or called.
@@ -104,16 +108,17 @@ class Isolated:
         assert self._connection is not None
         try:
             self._connection.send(dict(arguments))
-            if self._connection.poll(self._patience):
+            if self._connection.poll(WAITING_LIMIT * self._patience):
                 return self._connection.recv()
         except (EOFError, OSError):
             self._server.kill(self._job)  # what has closed its connection is as good as dead
-            return CallOutcome("died", text=_last_words(self._end()))
+            ended = self._end()
+            if ended.code == -signal.SIGPROF:
+                return _hung(self._patience, " of processor time")
+            return CallOutcome("died", text=_last_words(ended))
         self._server.kill(self._job)
         self._end()
-        return CallOutcome(
-            "hung", seconds=self._patience, text=f"no answer in {self._patience:g} s"
-        )
+        return _hung(WAITING_LIMIT * self._patience)
 
     def close(self) -> None:
         """End the process and the server that it comes from."""
@@ -125,7 +130,9 @@ class Isolated:
 
     def _start(self) -> tuple[str, ...]:
         """A new process, ready to be called; the parameters of its function."""
-        self._job = self._server.start(serve, *self._arguments, self._socket.getsockname())
+        self._job = self._server.start(
+            serve, *self._arguments, self._patience, self._socket.getsockname()
+        )
         self._connection = self._accept()
         try:
             if not self._connection.poll(IMPORT_SECONDS):
@@ -162,6 +169,10 @@ class Isolated:
             for event in self._server.wait(None):
                 if isinstance(event, Ended):
                     return event
+
+
+def _hung(seconds: float, of: str = "") -> CallOutcome:
+    return CallOutcome("hung", seconds=seconds, text=f"no answer in {seconds:g} s{of}")
 
 
 def _last_words(ended: Ended) -> str:

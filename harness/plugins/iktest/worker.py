@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import inspect
+import signal
 import socket
 import sys
 import traceback
@@ -116,14 +117,23 @@ def _offers(module: ModuleType, name: str) -> str:
     return did_you_mean(name, names, "functions there")
 
 
-def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _notify: object) -> bool:
+def serve(
+    name: str,
+    robot: RobotSource,
+    tip: str,
+    dof: int,
+    patience: float,
+    address: str,
+    _notify: object,
+) -> bool:
     """Load a function, then call it with whatever arguments come.
 
     Sends ("unusable", why) or ("ready", parameter words), then an `Outcome` for each mapping of
-    arguments that it receives.
+    arguments that it receives. A call that takes too long ends the process with SIGPROF.
 
     Args:
         name: The name as `find_function` takes it, that of a registered solver, or `own`.
+        patience: Processor time that a call may take [s].
         address: The address of the caller's Unix socket.
     """
     link = socket.socket(socket.AF_UNIX)
@@ -141,7 +151,10 @@ def serve(name: str, robot: RobotSource, tip: str, dof: int, address: str, _noti
                 arguments = connection.recv()
             except EOFError:
                 return True
-            connection.send(call(function, arguments, dof))
+            signal.setitimer(signal.ITIMER_PROF, patience)
+            outcome = call(function, arguments, dof)
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+            connection.send(outcome)
 
 
 def load_solver(name: str, robot: RobotSource, tip: str) -> Callable[..., Any]:

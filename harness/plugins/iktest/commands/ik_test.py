@@ -45,7 +45,7 @@ class IkTestCommand(Command):
         add("--position-tolerance", metavar="M", type=length, default=1e-4, help=text)
         text = "accept answers within this angle of the target [rad] (default: 0.001)"
         add("--orientation-tolerance", metavar="RAD", type=angle, default=1e-3, help=text)
-        text = "count a call as hanging after this wall time (default: 5)"
+        text = "count a call as hanging after this processor time (default: 5)"
         add("--call-limit", metavar="SECONDS", type=seconds, default=5.0, help=text)
         add_report_dir(command)
         add("--no-report", action="store_true", help="write no report and no pictures")

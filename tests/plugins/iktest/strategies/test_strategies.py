@@ -22,8 +22,7 @@ from harness.plugins.iktest.strategies.tasks import manipulability, natural_task
 from harness.session.check import check_file
 
 EACH_ARM = pytest.mark.parametrize("chain", ["open_manipulator_x", "ur3e"], indirect=True)
-FEW = settings(max_examples=30, deadline=None, database=None, derandomize=True,
-               suppress_health_check=list(HealthCheck))  # fmt: skip
+FEW = settings(max_examples=30, suppress_health_check=list(HealthCheck))
 ENOUGH = settings(FEW, max_examples=500)
 
 
