@@ -46,8 +46,7 @@ def property_test(
         @pytest.mark.nightly(only=[str(many)])
         @pytest.mark.parametrize("examples", [few, many])
         def test(examples: int) -> None:
-            enough = settings(deadline=None, derandomize=True, max_examples=examples)
-            enough(given(*strategies)(function))()
+            settings(max_examples=examples)(given(*strategies)(function))()
 
         test.__name__, test.__doc__ = function.__name__, function.__doc__
         return test

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.core.spatial import (
@@ -22,7 +22,6 @@ poses = st.builds(
     st.tuples(lengths, lengths, lengths),
     st.tuples(angles, st.floats(-1.5, 1.5), angles),
 )
-quick = settings(max_examples=100, derandomize=True, deadline=None, database=None)
 
 
 @pytest.mark.parametrize(
@@ -60,7 +59,6 @@ def test_half_turns_keep_their_axis(axis):
     assert quat_wxyz_from_rotation(rotation) == pytest.approx(expected)
 
 
-@quick
 @given(poses)
 def test_a_pose_times_its_inverse_is_nothing(pose):
     distance, angle = (pose @ pose.inverse()).distance_to(SE3.identity())
@@ -68,14 +66,12 @@ def test_a_pose_times_its_inverse_is_nothing(pose):
     assert angle < 1e-7
 
 
-@quick
 @given(poses, poses, poses)
 def test_composition_is_that_of_matrices_and_associative(a, b, c):
     assert (a @ b).matrix() == pytest.approx(a.matrix() @ b.matrix(), abs=1e-12)
     assert ((a @ b) @ c).matrix() == pytest.approx((a @ (b @ c)).matrix(), abs=1e-10)
 
 
-@quick
 @given(poses)
 def test_vectors_and_matrices_give_the_pose_back(pose):
     for again in (SE3.from_vector(pose.as_vector()), SE3.from_matrix(pose.matrix())):
@@ -84,7 +80,6 @@ def test_vectors_and_matrices_give_the_pose_back(pose):
     assert np.linalg.norm(pose.quat_wxyz) == pytest.approx(1)
 
 
-@quick
 @given(poses, poses, st.lists(st.tuples(lengths, lengths, lengths), min_size=1, max_size=4))
 def test_points_move_as_the_composed_pose_says(a, b, points):
     points = np.array(points)

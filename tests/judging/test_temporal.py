@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.judging.temporal import (
@@ -53,7 +53,6 @@ def held_minima(values, times, hold, within):
     return found
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), spans, spans)
 def test_eventually_is_the_best_span_and_never_its_opposite(signal, hold, within):
     values, times = signal
@@ -72,7 +71,6 @@ def test_eventually_is_the_best_span_and_never_its_opposite(signal, hold, within
     assert opposite.holds != decision.holds
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), spans, spans)
 def test_always_is_the_worst_sample_from_the_latest_start_allowed(signal, hold, within):
     values, times = signal
@@ -99,7 +97,6 @@ def test_a_span_may_be_as_long_as_all_that_is_known_and_no_longer(word):
         word(values, times, 0.31)
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), spans)
 def test_at_the_end_all_of_the_last_seconds_count(signal, hold):
     values, times = signal
@@ -113,7 +110,6 @@ def test_at_the_end_all_of_the_last_seconds_count(signal, hold):
     assert values[decision.index] == decision.value
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), spans)
 def test_a_deadline_never_makes_at_the_end_easier(signal, within):
     values, times = signal
@@ -123,7 +119,6 @@ def test_a_deadline_never_makes_at_the_end_easier(signal, within):
     )
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), st.integers(0, 50).map(lambda ticks: ticks * 0.01))
 def test_the_trailing_maximum_looks_back_and_not_ahead(signal, span):
     values, times = signal
@@ -134,7 +129,6 @@ def test_the_trailing_maximum_looks_back_and_not_ahead(signal, span):
     assert trailing_max(values, times, span).tolist() == expected
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), st.data())
 def test_the_minimum_of_ranges_is_exact(signal, data):
     values, _ = signal
@@ -245,7 +239,6 @@ def test_an_until_in_which_both_decide_is_decided_by_the_second():
     assert (decision.value, decision.index) == (-0.5, 1)
 
 
-@settings(deadline=None, derandomize=True)
 @given(signals(), st.integers(0, 8).map(lambda ticks: ticks * 0.01))
 def test_gaps_of_a_span_are_closed_with_the_smaller_value_around_them(signal, span):
     """At each level what is reached lasts until it was not for longer than the span."""

@@ -44,7 +44,7 @@ values = st.recursive(
 )
 
 
-@settings(max_examples=150, derandomize=True, deadline=None, database=None)
+@settings(max_examples=150)
 @given(st.dictionaries(texts, values, min_size=1, max_size=4))
 def test_any_values_written_are_read_again(data):
     text = yaml_text(located(data, Place(Source(""))), block_keys=("steps",))

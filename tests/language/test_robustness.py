@@ -16,7 +16,7 @@ TOKENS = [
     *("'", '"', "\t", "\0", "\u2028", "5 cm", "5 m**m", "5 m/", "a: b", "- ", "&a ", "!!str "),
     *("<<: *a", "\n", "  ", "do: lin", "until: x", "always: lifted", "expect: [grasped: a]"),
 ]
-quick = settings(max_examples=200, derandomize=True, deadline=None, database=None)
+quick = settings(max_examples=200)
 
 
 def load_or_refuse(text, overrides=None):

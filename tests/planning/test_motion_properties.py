@@ -67,9 +67,6 @@ def holds(name, examples):
 
     @settings(
         max_examples=examples,
-        deadline=None,
-        derandomize=True,
-        database=None,
         phases=(Phase.generate,),  # shrinking a plan takes minutes
         suppress_health_check=list(HealthCheck),
     )

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import HANG
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
@@ -39,12 +41,25 @@ def browser():
         yield browser
 
 
-def wait_for(page, expression, seconds=120.0):
+def new_context(browser, **options):
+    """A context whose pages wait as long as nothing but a hang takes."""
+    context = browser.new_context(**options)
+    context.set_default_timeout(1000 * HANG)
+    return context
+
+
+def wait_for(page, expression):
     """Wait until an expression is true in a page, whose policy keeps it from evaluating any."""
-    end = time.monotonic() + seconds
+    end = time.monotonic() + HANG
     while not page.evaluate(expression):
-        assert time.monotonic() < end, f"not within {seconds} s: {expression}"
+        assert time.monotonic() < end, f"not within {HANG:g} s: {expression}"
         page.wait_for_timeout(20)
+
+
+def wait_for_frame(page):
+    """Wait until a page has drawn what it was about to draw."""
+    frame = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    page.evaluate(f"{frame}.then(() => null)")
 
 
 class Visit:
@@ -73,8 +88,8 @@ def visit(browser):
     def open_page(file, place="", **options):
         size = {"width": options.pop("width", 1100), "height": options.pop("height", 720)}
         scripts = options.pop("scripts", True)
-        context = browser.new_context(
-            viewport=size, java_script_enabled=scripts, offline=True, **options
+        context = new_context(
+            browser, viewport=size, java_script_enabled=scripts, offline=True, **options
         )
         visit = Visit(context.new_page())
         opened.append((context, visit))

@@ -3,7 +3,7 @@
 import pytest
 
 from harness.reporting.suite.write import write_suite
-from tests.reporting.browser import Visit, wait_for
+from tests.reporting.browser import Visit, new_context, wait_for
 from tests.reporting.suites import small_suite
 from tests.reporting.test_hostile_names import page_of
 
@@ -31,7 +31,7 @@ def test_what_is_put_into_a_page_neither_runs_nor_loads(browser, page_file, tmp_
     text = page_file.read_text(encoding="utf-8")
     changed = tmp_path / "changed.html"
     changed.write_text(text.replace("<body>", f"<body>{intruder}", 1), encoding="utf-8")
-    context = browser.new_context(offline=True)
+    context = new_context(browser, offline=True)
     seen = Visit(context.new_page())
     seen.page.goto(changed.as_uri())
     wait_for(seen.page, "document.documentElement.dataset.ready === 'yes'")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from harness.recording.read_run import read_run
-from tests.reporting.browser import wait_for
+from tests.reporting.browser import wait_for, wait_for_frame
 
 PICTURE = """() => {
   const canvas = document.querySelector('#view canvas');
@@ -28,7 +28,7 @@ NO_WEBGL = """HTMLCanvasElement.prototype.getContext = ((get) => function (kind,
 
 
 def picture(page):
-    page.wait_for_timeout(300)
+    wait_for_frame(page)
     return np.array(page.evaluate(PICTURE)).reshape(48, 64, 4)[:, :, :3].astype(int)
 
 

@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.reporting.sampled import SampledRate, missed, rate_line, rate_text
@@ -11,7 +11,6 @@ from harness.suite.sampling import Tally, decided, wilson_interval
 from tests.suite.samples import rate_of
 
 
-@settings(deadline=None)  # the first example imports scipy.stats
 @given(st.integers(1, 400), st.floats(0, 1), st.sampled_from([0.8, 0.95, 0.99]))
 def test_the_interval_is_wilsons(total, share, confidence):
     from scipy.stats import binomtest

@@ -7,12 +7,12 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from harness.cli.main import main
+from tests.waiting import HANG, is_alive, wait_for
 
 HARNESS = Path(sys.executable).parent / "harness"
 
@@ -117,24 +117,6 @@ def running_cases(pid):
     ]
 
 
-def wait_for(condition, seconds=20.0):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.02)
-    raise AssertionError("it did not come")
-
-
-def is_alive(pid):
-    status = Path(f"/proc/{pid}/status")
-    try:
-        return "State:\tZ" not in status.read_text()
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-
-
 def test_outcomes_give_the_exit_code_and_the_failure_comes_last_with_how_to_repeat_it():
     write("good", title="Good one")
     write("late", title="Late one", expect=LATE)
@@ -228,7 +210,7 @@ def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
     )
     [child] = wait_for(lambda: running_cases(process.pid))
     os.kill(child, signal.SIGKILL)
-    out, _err = process.communicate(timeout=60)
+    out, _err = process.communicate(timeout=HANG)
     first, second = json.loads(out)["cases"]
     assert process.returncode == 3
     assert first["outcome"] == "error"
@@ -256,7 +238,7 @@ def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
     wait_for(lambda: running_cases(process.pid))
     below = processes_below(process.pid)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-    out, err = process.communicate(timeout=30)
+    out, err = process.communicate(timeout=HANG)
     assert process.returncode == 130
     assert "Traceback" not in out + err
     out = before + out
@@ -266,7 +248,7 @@ def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
     assert json.loads(Path("reports/results.json").read_text())["interrupted"]
     assert json.loads(Path("reports/a/run.json").read_text())["outcome"] == "passed"
     assert len(below) >= 2
-    wait_for(lambda: not any(is_alive(pid) for pid in below), seconds=5)
+    wait_for(lambda: not any(is_alive(pid) for pid in below))
 
 
 def test_a_file_with_mistakes_gets_them_all_and_exit_code_2(here):

@@ -8,13 +8,13 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections import Counter
 from pathlib import Path
 
 import pytest
 
 from tests.suite.ball import RATE, ball
+from tests.waiting import wait_for
 
 pytestmark = [pytest.mark.needs_cluster, pytest.mark.timeout(600)]
 
@@ -47,13 +47,6 @@ def journal(folder):
 def document(folder):
     found = json.loads((folder / "results.json").read_text())
     return found["rates"], [case["worst_margin"] for case in found["cases"]]
-
-
-def wait_for(condition, seconds=120.0):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.05)
 
 
 def lines_in(folder):

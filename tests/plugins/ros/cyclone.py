@@ -16,6 +16,8 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
+from tests.waiting import HANG
+
 ACTION = "control_msgs::action::dds_::GripperCommand_"
 RELIABLE = Qos(
     Policy.Reliability.Reliable(duration(seconds=1)),
@@ -107,8 +109,8 @@ class Service:
         self.number += 1
         self.writer.write(self.request(4711, self.number, *fields))
 
-    def response(self, timeout=20):
-        end = time.monotonic() + timeout
+    def response(self):
+        end = time.monotonic() + HANG
         while time.monotonic() < end:
             for sample in self.reader.take(1):
                 if (sample.client, sample.number) == (4711, self.number):

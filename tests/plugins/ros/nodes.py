@@ -8,6 +8,7 @@ from harness.plugins.ros.actions import ActionClient
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message
+from tests.waiting import HANG
 
 ARM = ("joint1", "joint2", "joint3", "joint4")
 
@@ -26,8 +27,8 @@ class Node:
         self.graph.subscribe(topic, kind, messages.append, *qos)
         return messages
 
-    def wait(self, holds=lambda: False, timeout=20.0):
-        assert self.graph.spin_until(holds, timeout), "nothing happened"
+    def wait(self, holds):
+        assert self.graph.spin_until(holds, HANG), "nothing happened"
 
     def ready(self):
         self.wait(lambda: self.arm.is_ready and self.gripper.is_ready)

@@ -166,7 +166,7 @@ def test_ctrl_c_ends_a_served_session_which_is_then_judged(tmp_path, capsys):
         person = Thread(target=press_ctrl_c)
         person.start()
         assert main(["bridge", str(file), "--domain", str(domain), "--no-report"]) == 0
-        person.join(20)
+        person.join()
         node.graph.close()
     assert "1 of 1 expectation holds" in capsys.readouterr().out
 

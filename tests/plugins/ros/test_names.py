@@ -36,11 +36,13 @@ def test_topics_that_nodes_use_among_themselves_are_left_out():
 
 
 def test_misspelt_actions_and_topics_are_named_when_nothing_arrived(tmp_path):
-    with bridge(scenario(tmp_path, HOLD)) as (node, results):
+    said = []
+    with bridge(scenario(tmp_path, HOLD), say=said.append) as (node, results):
         node.ready()
         node.graph.advertise("/arm_controler/joint_trajectory", TRAJECTORY)
         ActionClient(node.graph, "/gripper_controller/gripper_command", GRIPPER)
-        node.sleep(1.0)
+        node.graph.advertise("/arm_controller/joint_trajectory", "std_msgs/msg/String")
+        node.wait(lambda: said)  # of the wrong type, which is seen after the two before it
     assert results[0].remarks[1:] == (
         "a node calls the action /gripper_controller/gripper_command, which is not served; did you"
         " mean /gripper_controller/gripper_cmd?",
@@ -58,7 +60,7 @@ def test_wrong_types_and_qualities_are_noted_once_with_what_to_change(tmp_path):
         ActionClient(node.graph, "/gripper_controller/gripper_cmd", FOLLOW)
         node.listen("/joint_states", "sensor_msgs/msg/JointState", LATCHED)
         node.listen("/robot_description", "std_msgs/msg/String")
-        node.sleep(2.5)
+        node.wait(lambda: len(said) == 5)
     assert said == [
         "a node calls the action /gripper_controller/gripper_cmd with the type"
         " control_msgs/action/FollowJointTrajectory, but its type is"

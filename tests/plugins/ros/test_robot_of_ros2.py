@@ -79,14 +79,14 @@ def test_ctrl_c_stops_the_robot(tmp_path, plan):
         node.ready()
 
         def press_ctrl_c():
-            node.wait(lambda: states and states[-1].position[0] > 0.005, 60)
+            node.wait(lambda: states and states[-1].position[0] > 0.005)
             signal.raise_signal(signal.SIGINT)
 
         person = Thread(target=press_ctrl_c)
         person.start()
         slowly = ["--yes", "--no-report", "--velocity-scaling", "0.01"]
         assert remote(plan, node, *slowly) == 130
-        person.join(60)
+        person.join()
         node.sleep(0.2)
         stopped = states[-1].position[0]
         node.sleep(0.3)
@@ -95,7 +95,7 @@ def test_ctrl_c_stops_the_robot(tmp_path, plan):
 
 
 def test_a_robot_that_falls_silent_ends_the_run(plan, capsys, monkeypatch):
-    monkeypatch.setattr(harness.plugins.ros.remote, "SILENCE", 0.3)
+    monkeypatch.setattr(harness.plugins.ros.remote, "SILENCE", 2.0)
     with free_domain() as domain:
         driver, goals, is_over = Graph(domain, node="driver"), [], Event()
         states = driver.advertise("/joint_states", "sensor_msgs/msg/JointState")
@@ -122,11 +122,11 @@ def test_a_robot_that_falls_silent_ends_the_run(plan, capsys, monkeypatch):
         options = ["--robot", "ros2", "--yes", "--no-report", "--domain", str(domain)]
         assert main(["run", str(plan), *options]) == 1
         is_over.set()
-        thread.join(10)
+        thread.join()
         driver.close()
     assert len(goals) == 1
     said = " ".join(capsys.readouterr().out.split())
-    assert "COMMUNICATION_FAILURE: /joint_states has stopped for 0.3 s; cancellation was" in said
+    assert "COMMUNICATION_FAILURE: /joint_states has stopped for 2 s; cancellation was" in said
 
 
 def test_without_a_terminal_the_user_has_to_agree_in_advance(plan, capsys):

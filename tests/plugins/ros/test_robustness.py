@@ -21,6 +21,7 @@ from harness.plugins.ros.rtps.participant import Participant
 from harness.plugins.ros.rtps.sockets import Sockets
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.nodes import ARM, Node, follow, point
+from tests.waiting import HANG
 
 HOLD = "- external: {}"
 END = [0.2, 0, 0, 0]
@@ -70,7 +71,7 @@ def test_datagrams_that_get_lost_are_sent_again(monkeypatch):
         one, other = (Participant(domain, name=name) for name in ("one", "other"))
         other.reader("rt/data", "Data_", DEFAULT, lambda sample: arrived.append(sample.payload))
         writer = one.writer("rt/data", "Data_", Qos(depth=100))
-        end, left = time.monotonic() + 30, list(sent)
+        end, left = time.monotonic() + HANG, list(sent)
         while len(arrived) < len(sent) and time.monotonic() < end:
             if writer.matched and left:
                 writer.write(left.pop(0))
@@ -129,7 +130,7 @@ def test_another_implementation_of_the_protocol_reads_the_joints_and_commands_th
     with bridge(scenario(tmp_path), waits=True) as (node, results):
         other = rosless.Node(node.graph.participant.domain)
         topic = other.subscribe("/joint_states", "sensor_msgs/msg/JointState")
-        message, end = None, time.monotonic() + 20
+        message, end = None, time.monotonic() + HANG
         while message is None and time.monotonic() < end:
             node.sleep(0.05)
             message = topic.read(timeout=0.2)

@@ -1,6 +1,7 @@
 """Cyclone DDS, the middleware of many ROS 2 installations, against the bridge."""
 
 import time
+from functools import partial
 
 import pytest
 
@@ -10,6 +11,7 @@ from harness.plugins.ros.interfaces import CANCEL
 from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
+from tests.waiting import HANG, wait_for
 
 pytestmark = pytest.mark.needs_ros
 WITHOUT_MULTICAST = """<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General>
@@ -29,9 +31,7 @@ def test_goals_results_and_cancellation_reach_a_client_on_cyclone_dds(
     with bridge(scenario(tmp_path, "- external: {}")) as (node, _):
         node.ready()
         client = GripperClient(node.graph.participant.domain, "/gripper_controller/gripper_cmd")
-        end = time.monotonic() + 30
-        while not client.is_ready and time.monotonic() < end:
-            time.sleep(0.05)
+        wait_for(partial(getattr, client, "is_ready"))
         goal, accepted = client.send(0.015)
         assert accepted
         assert client.result(goal).reached_goal
@@ -48,7 +48,7 @@ def test_a_server_on_cyclone_dds_answers_our_client():
     responses, name = [], "/arm/_action/cancel_goal"
     with free_domain() as domain:
         server, graph = CancelServer(domain, name), Graph(domain, node="test")
-        client, end = graph.client(name, CANCEL), time.monotonic() + 30
+        client, end = graph.client(name, CANCEL), time.monotonic() + HANG
         next_call = 0.0
         while not responses and time.monotonic() < end:
             graph.spin(time.monotonic() + 0.02)

@@ -10,12 +10,13 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from harness.core.errors import HarnessError, SpecError
+from tests.waiting import HANG
 
 pytest.importorskip("viser")
 
 
 def status(served, path="/", **headers):
-    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=HANG)
     named = {name.replace("_", "-"): value for name, value in headers.items()}
     connection.request("GET", path, headers=named)
     response = connection.getresponse()

@@ -10,7 +10,7 @@ from harness.plugins.studio.document import new_text
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from tests.plugins.studio.conftest import pixel_of
-from tests.reporting.browser import wait_for
+from tests.reporting.browser import new_context, wait_for
 
 pytest.importorskip("viser")
 
@@ -70,7 +70,7 @@ def served(serve):
 def picked(browser, serve):
     """A page on which the guide's pick was done by hand, and its studio."""
     served = serve()
-    context = browser.new_context(viewport={"width": 1400, "height": 900})
+    context = new_context(browser, viewport={"width": 1400, "height": 900})
     page = Page(context, served.address)
     page.page.select_option("#speed", "0")
     for _, sentences in steps():
@@ -85,7 +85,7 @@ def picked(browser, serve):
 
 @pytest.fixture(scope="module")
 def opened(browser, served):
-    context = browser.new_context(viewport={"width": 1400, "height": 900})
+    context = new_context(browser, viewport={"width": 1400, "height": 900})
     page = Page(context, served.address)
     page.page.select_option("#speed", "0")
     yield page
@@ -110,7 +110,7 @@ def test_a_slider_moves_the_joint(opened, served):
 def test_keys_move_the_gripper_while_a_slider_or_a_box_to_tick_has_the_focus(browser, serve, focus):
     """Sliders have it after each drag; then a recorded step and the whole scenario run."""
     served = serve()
-    context = browser.new_context(viewport={"width": 1400, "height": 900})
+    context = new_context(browser, viewport={"width": 1400, "height": 900})
     page = Page(context, served.address)
     page.page.select_option("#speed", "0")
     slider = page.page.locator('input[aria-label="joint1"]')
@@ -216,7 +216,7 @@ def test_handles_and_ghosts_are_used_with_the_mouse(browser, serve):
     size, xyz = [0.06, 0.06, 0.06], [0.2, -0.15, 0.03]
     served.reply_to("add_object", name="box", kind="box", size=size, xyz=xyz)
     served.reply_to("handle", name="box")
-    context = browser.new_context(viewport={"width": 1010, "height": 520})
+    context = new_context(browser, viewport={"width": 1010, "height": 520})
     opened = Page(context, served.address, has_scene=True)
     mouse = Mouse(opened, served)
 
@@ -389,7 +389,7 @@ def test_the_angles_of_a_goal_are_converted_with_their_unit(opened):
 
 @pytest.mark.nightly
 def test_a_second_page_watches_until_it_is_given_control(browser, opened, served):
-    context = browser.new_context()
+    context = new_context(browser)
     second = Page(context, served.address)
     second.wait_text("#control-state", "you watch")
     good = opened.editor()
@@ -422,7 +422,7 @@ def test_a_page_that_comes_back_finds_everything_as_it_was(opened):
 def test_a_file_with_mistakes_opens_with_its_marks_and_becomes_live(browser, serve):
     good = new_text("by hand", {"model": "open_manipulator_x"}, "empty")
     served = serve("steps: [\n")
-    context = browser.new_context()
+    context = new_context(browser)
     opened = Page(context, served.address, is_live=False)
     opened.wait_text("#stand-in", "There is no robot yet")
     opened.wait_text("#problems", "not YAML")

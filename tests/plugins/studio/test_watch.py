@@ -16,6 +16,7 @@ from websockets.sync.client import connect
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_job
 from tests.plugins.studio.test_studio_page import Page
+from tests.reporting.browser import new_context
 
 pytest.importorskip("viser")
 from harness.plugins.studio.watch import Watch
@@ -64,7 +65,7 @@ def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
         if isinstance(event, StepStarted) and event.index == 1:
             was_seen.wait()
 
-    context, closed = browser.new_context(), browser.new_context()
+    context, closed = new_context(browser), new_context(browser)
     with Watch() as watch:
         opened = Page(context, watch.page, is_live=False)
         second = Page(closed, watch.page, is_live=False)
