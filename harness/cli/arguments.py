@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
 
-LONGEST_USAGE = 4
-"""Lines of a usage that is printed with an error; a longer one hides the error."""
+LONGEST_USAGE = 4  # lines of a usage that is printed with an error; a longer one hides the error
 
 SYNONYMS = {
     "--report-dir": ("-o", "--out", "--output", "--output-dir", "--reports"),

@@ -11,11 +11,8 @@ from harness.cli.progress import remaining
 from harness.core.lazy import LazySequence
 from harness.suite.suite_run import SuiteRun
 
-SHORTEST = 2.0
-"""Wall seconds between two pages, at least."""
-
-SHARE = 20
-"""How many times as long as a page takes to write, the next one waits at least."""
+SHORTEST = 2.0  # wall seconds between two pages, at least
+SHARE = 20  # how many times as long as a page takes to write, the next one waits at least
 
 
 class LivePage:

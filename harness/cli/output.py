@@ -22,11 +22,8 @@ CLEAR_LINE = "\r\x1b[2K"
 TICK = 1.0
 """Seconds after which the status line is written again, so that a terminal is never silent."""
 
-SHORTEST = 0.1
-"""Seconds between two frequent statuses, at least."""
-
-AGAIN = "again:"
-"""How a line begins that holds a command for the shell."""
+SHORTEST = 0.1  # seconds between two frequent statuses, at least
+AGAIN = "again:"  # how a line begins that holds a command for the shell
 
 
 class OutputError(Exception):

@@ -18,8 +18,7 @@ from harness.reporting.progress_events import (
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import Style, case_line, step_done, step_running
 
-Moment = tuple[float, float]
-"""Wall time and simulation time [s]."""
+Moment = tuple[float, float]  # wall time and simulation time [s]
 
 ENOUGH_FOR_AN_ESTIMATE = 3.0
 """Seconds after which the remaining time is estimated from what is done."""

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from harness.session.run_request import RunRequest
     from harness.suite.suite_run import SuiteRun
 
-MOST_FAILURES = 20
-"""Failures that are shown in full; the rest is counted."""
+MOST_FAILURES = 20  # failures that are shown in full; the rest is counted
 
 
 def write_suite_files(

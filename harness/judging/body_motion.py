@@ -34,8 +34,7 @@ from harness.recording.run import TIME_RESOLUTION, ObjectRecord, Run
 SIGNS = np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T
 """The corners of a cube about the origin, shape (8, 3)."""
 
-STILL = 0.05
-"""What moves at no time during so long is still; a turning point of a swing is not [s]."""
+STILL = 0.05  # what moves at no time during so long is still; a turning point of a swing is not [s]
 
 
 @dataclass(frozen=True, eq=False)

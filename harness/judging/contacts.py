@@ -21,12 +21,10 @@ from harness.recording.robot_record import GripperRecord
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
 
-TOUCH_FORCE = 1e-3
-"""A tenth of the weight of one gram; less is no support and no grip [N]."""
+TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
 OVERLAP = 0.001
 """Depth from which an overlap is no rounding of shapes: convex hulls are off by as much [m]."""
-DEBOUNCE = 0.010
-"""Longest gap inside one contact [s]: ten physics steps of 1 ms."""
+DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 
 def gripper_of(run: Run) -> GripperRecord:

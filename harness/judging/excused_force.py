@@ -32,15 +32,13 @@ from harness.recording.run import Run
 
 SPAN = 0.05
 """Over which a force is averaged: longer than any blow, shorter than any motion of an arm [s]."""
-FACTOR = 2.0
-"""As `on` requires half of the weight: an object is accelerated with at most gravity's."""
+FACTOR = 2.0  # as `on` requires half of the weight: an object is accelerated with at most gravity's
 SLACK = 1.0
 """What a position error of a tenth of a millimetre presses with [N]: the weight of 100 g."""
 LEAVE = 2 * SPAN
 """How long an object that is lifted at once may still be pressed onto its support [s]: the averages
 over the time before contain the grip for one `SPAN`, and the object leaves within another."""
-DRAG = 0.02
-"""Longer than contact points wander while an object is gripped, tilts and leaves [m]."""
+DRAG = 0.02  # longer than contact points wander while an object is gripped, tilts and leaves [m]
 
 
 def mean_force(run: Run, first: str, second: str) -> FloatArray:

@@ -51,8 +51,7 @@ At rest it is 1; below one half the object falls with more than half of gravity'
 """
 STEADY = 0.005
 """How far a held object may move in the hand within `HOLD_TIME` [m]: the default of `grasped`."""
-STEADY_TURN = 0.1
-"""How far it may turn [rad]."""
+STEADY_TURN = 0.1  # how far it may turn [rad]
 CLOSING_SHARE = 0.01
 """Share of its range by which a gripper's joint is commanded past where it stands if it presses."""
 DRIVE_SHARE = 0.5

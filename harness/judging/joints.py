@@ -20,8 +20,7 @@ from harness.recording.robot_record import JointRecord
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
-SLIDING_TOLERANCE = 0.002
-"""[m]"""
+SLIDING_TOLERANCE = 0.002  # [m]
 ROUNDING = 1e-9
 """Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
 

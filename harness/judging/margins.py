@@ -15,8 +15,7 @@ from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure, VerdictWarning
 
 Comparison = Literal["<=", ">=", "=="]
-Margin = FloatArray
-"""The margin of a predicate at each sample of a window, shape (n,)."""
+Margin = FloatArray  # the margin of a predicate at each sample of a window, shape (n,)
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ from harness.recording.run import Run
 WATCH_RATE = 5.0
 """Pictures a second at most of a camera that an expectation watches [Hz]: each costs 0.2 s."""
 
-MOST_PICTURES = 200
-"""That one expectation looks at; over a longer time they are taken less often."""
+MOST_PICTURES = 200  # that one expectation looks at; over a longer time they are taken less often
 
 
 def period(camera: Camera, window: Window) -> float:

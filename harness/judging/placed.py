@@ -15,8 +15,7 @@ from harness.language.annotations import units_of
 from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc
 
-OMITTED = ("points", "name")
-"""Keys that are no part of an expectation's text."""
+OMITTED = ("points", "name")  # keys that are no part of an expectation's text
 
 
 @dataclass(frozen=True)

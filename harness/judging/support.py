@@ -28,10 +28,8 @@ from harness.judging.temporal import without_gaps
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 
-SINKING = 0.005
-"""How far a soft contact may let an object sink, and still be above [m]."""
-SUPPORT_SHARE = 0.5
-"""Share of its weight with which something rests on what carries it."""
+SINKING = 0.005  # how far a soft contact may let an object sink, and still be above [m]
+SUPPORT_SHARE = 0.5  # share of its weight with which something rests on what carries it
 ROUNDING = 0.01
 """Part of that share which may be missing: a solver's forces of two equal supports differ."""
 

@@ -15,10 +15,8 @@ from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging.facts import of_times
 from harness.recording.run import TIME_RESOLUTION
 
-BRIDGE = 0.1
-"""Gaps under this time end neither a contact between objects nor a hold [s]."""
-FOREVER = 1e9
-"""Longer than any time that an expectation names [s]."""
+BRIDGE = 0.1  # gaps under this time end neither a contact between objects nor a hold [s]
+FOREVER = 1e9  # longer than any time that an expectation names [s]
 
 
 @dataclass(frozen=True)

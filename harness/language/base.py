@@ -26,8 +26,7 @@ LARGEST_NUMBER = 1e9
 """No number with a fraction is larger in its SI unit: beyond it, squares and distances overflow."""
 
 
-SMALLEST_SIZE = 1e-9
-"""Of a length or mass that has to be above zero [m or kg]."""
+SMALLEST_SIZE = 1e-9  # of a length or mass that has to be above zero [m or kg]
 
 
 def refuse_beyond(value: Any) -> None:

@@ -18,8 +18,7 @@ from harness.language.base import Name, Number, PositiveDuration, SpecModel
 from harness.language.plugin_field import PluginField
 
 KIND = "expectation"
-CHECK = "check"
-"""Key of the word in an expectation that was brought into its model's shape."""
+CHECK = "check"  # key of the word in an expectation that was brought into its model's shape
 
 Judged = Literal["at_end", "always", "eventually"]
 

@@ -17,8 +17,7 @@ from harness.language.step import Step
 PLACEHOLDER_VERB, PLACEHOLDER_WORD = "settle", "within_limits"
 """What takes the place of a step or an expectation that cannot be read, so that indices stay."""
 
-UNTIL = "until"
-"""Stands next to `always`: `{always: A, until: B}` is the expectation `until`."""
+UNTIL = "until"  # stands next to `always`: `{always: A, until: B}` is the expectation `until`
 
 
 class WordsOf(Mapping[str, type[ExpectationFields]]):

@@ -12,8 +12,7 @@ from harness.core.registry import noun, plugin_hints, registry
 from harness.language.base import SpecModel
 from harness.language.files.mistakes import MistakeError
 
-MARK = "plugin"
-"""In a field's JSON Schema: the kind of plug-in that it holds."""
+MARK = "plugin"  # in a field's JSON Schema: the kind of plug-in that it holds
 
 
 class PluginField:

@@ -45,9 +45,7 @@ BOUNDS = {
 }
 """pydantic's words on a validated value -> JSON Schema's."""
 
-MODEL = "model"
-"""In a model's schema while it is made: the model itself."""
-
+MODEL = "model"  # in a model's schema while it is made: the model itself
 DRAFT = "http://json-schema.org/draft-07/schema#"
 
 

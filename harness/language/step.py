@@ -22,8 +22,7 @@ if TYPE_CHECKING:  # of what steps work with, which is built on the language
     from harness.cell.cell import Cell
     from harness.cell.scope import At
 
-TAG = "do"
-"""In the shape of the models, the key of a step's verb."""
+TAG = "do"  # in the shape of the models, the key of a step's verb
 
 
 @dataclass(frozen=True)
@@ -156,8 +155,7 @@ class Step(SpecModel):
         return iter(())
 
 
-STEPS: Registry[type[Step]] = registry(Step.plugin_kind)
-"""The class of every verb."""
+STEPS: Registry[type[Step]] = registry(Step.plugin_kind)  # the class of every verb
 
 
 def step_class(verb: str) -> type[Step]:

@@ -10,8 +10,7 @@ import pytest
 if TYPE_CHECKING:
     from harness.suite.warm import WarmServer
 
-RECORD = "harness_record"
-"""Attribute of a test report that holds an item's record as plain data."""
+RECORD = "harness_record"  # attribute of a test report that holds an item's record as plain data
 
 SERVER = pytest.StashKey["WarmServer"]()
 

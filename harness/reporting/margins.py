@@ -7,11 +7,8 @@ from collections.abc import Sequence
 
 from harness.recording.verdict import Measure, Verdict
 
-SMALL = 0.05
-"""A margin that is a smaller share than this is worth a look before it is gone."""
-
-MOST_USED = 100.0
-"""A value that misses its limit by more uses no more of the allowance."""
+SMALL = 0.05  # a margin that is a smaller share than this is worth a look before it is gone
+MOST_USED = 100.0  # a value that misses its limit by more uses no more of the allowance
 
 
 def margin_share(verdict: Verdict) -> float:

@@ -13,8 +13,7 @@ from harness.core.errors import HarnessError
 from harness.core.registry import Plugin, described, raised, registry
 from harness.recording.stored_run import StoredRun
 
-__all__ = ["Reporter", "StoredRun"]
-"""What a package needs to add a reporter of its own."""
+__all__ = ["Reporter", "StoredRun"]  # what a package needs to add a reporter of its own
 
 
 class Reporter(Plugin, ABC):

@@ -25,10 +25,8 @@ from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 FOLDER = "images"
-MOST_EXPLAINED = 100
-"""Most failed steps of which the state that explains them is drawn, 0.2 s each."""
-Files = Mapping[str, bytes]
-"""Content of files by path in the run's folder."""
+MOST_EXPLAINED = 100  # most failed steps of which the state that explains them is drawn, 0.2 s each
+Files = Mapping[str, bytes]  # content of files by path in the run's folder
 
 Captures = tuple[tuple[CaptureRecord, ...], Files]
 """Pictures that the scenario's cameras took, and their files."""

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 S_co = TypeVar("S_co", bound=RecordingSimulator, covariant=True)
 M = TypeVar("M", bound="MujocoSimulator")
 
-MOST_DRAWS = 100
-"""Draws of a sample, the first included, until no objects overlap."""
+MOST_DRAWS = 100  # draws of a sample, the first included, until no objects overlap
 
 
 @dataclass(frozen=True)

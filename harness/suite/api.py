@@ -26,8 +26,7 @@ from harness.suite.variation import Case, Variation
 if TYPE_CHECKING:
     from harness.language.scenario import Scenario
 
-MODEL = "<Scenario model>"
-"""What messages call a scenario that is a model in Python, and no file."""
+MODEL = "<Scenario model>"  # what messages call a scenario that is a model in Python, and no file
 
 T = TypeVar("T")
 Runner = Callable[[RunRequest], CaseResult]

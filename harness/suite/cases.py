@@ -35,9 +35,7 @@ HARD_CAP_SECONDS = 600.0
 
 
 LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again
-
-MOST_READ = 1000
-"""Cases in which names of steps and robots are looked for, approximately."""
+MOST_READ = 1000  # cases in which names of steps and robots are looked for, approximately
 
 _WORD = re.compile(r"\w+")
 

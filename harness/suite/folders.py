@@ -13,8 +13,7 @@ from harness.core.files import is_dir, path_exists
 from harness.core.resources import data_folder
 from harness.suite.discovery import SUFFIX, UsageError
 
-LONGEST_NAME = 200
-"""The longest name of a report's folder [bytes]."""
+LONGEST_NAME = 200  # the longest name of a report's folder [bytes]
 
 
 def refuse_unwritable(root: Path) -> None:

@@ -31,8 +31,7 @@ FORMAT = "armharness-stream/3"
 KNOWN_FORMATS = ("armharness-stream/1", "armharness-stream/2", FORMAT)
 LEFT_OUT = "armharness-left-out/1"
 INPUTS = "armharness-inputs/1"
-CHECK = ',"check":"'
-"""How the end of a line begins that has the checksum of the text before it."""
+CHECK = ',"check":"'  # how the end of a line begins that has the checksum of the text before it
 
 CHECK_DIGITS = 16
 FILE = "results.jsonl"

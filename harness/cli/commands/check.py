@@ -17,8 +17,7 @@ from harness.suite.discovery import discover
 from harness.suite.header import read_header
 from harness.suite.outcome import EXIT_CODES
 
-MOST_CASES = 100
-"""Parametrised cases of a file that are checked; running them checks the rest."""
+MOST_CASES = 100  # parametrised cases of a file that are checked; running them checks the rest
 
 
 class CheckCommand(Command):

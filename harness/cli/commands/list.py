@@ -11,8 +11,7 @@ from harness.cli.output import complain, say
 from harness.cli.shared_options import add_plugin
 
 Rows = Iterable[tuple[str, ...]]
-SHOWN = 3
-"""Names of a kind that `harness list` alone prints."""
+SHOWN = 3  # names of a kind that `harness list` alone prints
 
 
 class ListCommand(Command):

@@ -43,8 +43,7 @@ if TYPE_CHECKING:
     from harness.reporting.result import CaseResult
     from harness.suite.suite_run import SuiteRun
 
-BRIEF_FROM = 20
-"""With more runs than this a passed one is a line, without its steps."""
+BRIEF_FROM = 20  # with more runs than this a passed one is a line, without its steps
 
 
 class RunCommand(Command):

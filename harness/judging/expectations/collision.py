@@ -32,8 +32,7 @@ from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
-LEAST_DISTANCE = 1e-6
-"""A recorded distance of zero without contact is still none [m]."""
+LEAST_DISTANCE = 1e-6  # a recorded distance of zero without contact is still none [m]
 
 FORCE = Quantity(
     "contact force", "N", "more than 0 in a pair that nothing excuses; the largest", "contact"

@@ -52,10 +52,8 @@ from harness.language.poses import Pose, PoseTolerance
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
-PLACE_POSITION = 0.01
-"""Tolerance of `placed` with a pose and no tolerance [m]."""
-PLACE_TILT = 0.1
-"""And how far it may lean from the given pose, turns about the vertical free [rad]."""
+PLACE_POSITION = 0.01  # tolerance of `placed` with a pose and no tolerance [m]
+PLACE_TILT = 0.1  # and how far it may lean from the given pose, turns about the vertical free [rad]
 
 SUPPORT = Quantity(
     "support", "N", "at least half of its weight from below, by what the robot does not carry"

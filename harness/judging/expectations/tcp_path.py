@@ -21,8 +21,7 @@ from harness.language.step import step_class
 from harness.recording.link_poses import planned_tcp_poses
 from harness.recording.verdict import Measure
 
-SHORTEST = 1e-6
-"""Points nearer than this are one [m]."""
+SHORTEST = 1e-6  # points nearer than this are one [m]
 
 DEVIATION = Quantity("deviation", "m", "at most `max_deviation`")
 SHARE = Quantity("share travelled forwards", "1", "at least `min_fraction`, in the whole window")

@@ -24,8 +24,7 @@ from harness.language.expectation import Quantity
 from harness.recording.robot_record import JointRecord
 from harness.recording.verdict import Measure
 
-STOP_SOFTNESS = 0.02
-"""Share of its range by which a joint that rests on its stop may sink into it."""
+STOP_SOFTNESS = 0.02  # share of its range by which a joint that rests on its stop may sink into it
 
 POSITION_TOLERANCE = {"rad": 1e-3, "m": 1e-4}
 """By which a measured position may exceed its limit [rad or m]: a controller that holds a joint

@@ -9,15 +9,12 @@ from typing import NamedTuple
 
 from harness.core.errors import Problem
 
-Loc = tuple[str | int, ...]
-"""A path of keys and list indices, as pydantic's `loc`."""
+Loc = tuple[str | int, ...]  # a path of keys and list indices, as pydantic's `loc`
 
 Scalar = str | int | float | bool | None
 Plain = Scalar | list["Plain"] | dict[str, "Plain"]
 
-MOST_BEFORE_TEXT = 4
-"""Characters that may stand before a text: a quote, or `>-` with a number."""
-
+MOST_BEFORE_TEXT = 4  # characters that may stand before a text: a quote, or `>-` with a number
 LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")  # the breaks that YAML's reader counts
 
 

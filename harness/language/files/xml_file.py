@@ -17,8 +17,7 @@ LARGEST_FILE = 16_000_000
 """Bytes of an XML file at most; the largest robot descriptions are under 1 MB."""
 
 MOST_ELEMENTS = 200_000
-MOST_ATTRIBUTES = 200
-"""Of one element; MuJoCo's reader takes hours for a million."""
+MOST_ATTRIBUTES = 200  # of one element; MuJoCo's reader takes hours for a million
 
 DEEPEST = 200
 QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")

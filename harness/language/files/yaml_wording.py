@@ -9,8 +9,7 @@ import yaml
 from harness.core.errors import Problem
 from harness.language.files.source import Place, Source
 
-DEEPEST = 50
-"""Most levels of lists and mappings in each other."""
+DEEPEST = 50  # most levels of lists and mappings in each other
 
 TOO_DEEP = f"nested more than {DEEPEST} levels deep"
 

@@ -12,8 +12,7 @@ from harness.language.reading.params import PARAMS, filled, mapped
 from harness.language.reading.short_forms import models_shape
 from harness.language.variation import CaseKeys
 
-DRAWN = "\0"
-"""Stands for the value of a case, which no file and no option can contain."""
+DRAWN = "\0"  # stands for the value of a case, which no file and no option can contain
 
 
 def read_case_keys(entries: Mapping[str, Entry], problems: list[Problem]) -> CaseKeys:

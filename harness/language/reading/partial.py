@@ -20,11 +20,8 @@ from harness.language.plugin_field import PluginField
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import Step
 
-ABSENT: Any = object()
-"""In place of a value that cannot be read and that nothing can stand in for."""
-
-NO_NAME = "?"
-"""Stands in for a name that cannot be read; problems with it follow from that."""
+ABSENT: Any = object()  # in place of a value that cannot be read and that nothing can stand in for
+NO_NAME = "?"  # stands in for a name that cannot be read; problems with it follow from that
 
 STAND_INS = (1, 0, True, NO_NAME)
 """Values of which the first valid one stands in for a value that a model needs."""

@@ -17,11 +17,8 @@ from harness.language.reading.overrides import Override, apply_overrides
 from harness.language.reading.params import PARAMS
 from harness.language.variation import VARIATION_KEYS, Distribution
 
-MOST_ROUNDS = 100
-"""Sets of values that are tried of a file, so many choices of one value at most."""
-
-Judge = Callable[[Located], Sequence[Problem]]
-"""All mistakes of a scenario's values."""
+MOST_ROUNDS = 100  # sets of values that are tried of a file, so many choices of one value at most
+Judge = Callable[[Located], Sequence[Problem]]  # all mistakes of a scenario's values
 
 
 def check_variation(

@@ -26,8 +26,7 @@ from harness.robot.yaml_data import read_data
 from harness.robot_tools.robot_source import RobotSource
 from harness.world.notes import Note
 
-SOURCE_KEYS = ("urdf", "xacro", "mjcf", "srdf")
-"""Keys of `robot:` that hold a path."""
+SOURCE_KEYS = ("urdf", "xacro", "mjcf", "srdf")  # keys of `robot:` that hold a path
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,8 @@ import numpy as np
 
 from harness.core.types import FloatArray
 
-Triangles = FloatArray
-"""Corners of triangles, shape (N, 3, 3) [m]."""
-
-CONE_SIDES = 32
-"""Sides of the pyramid that stands for a cone."""
+Triangles = FloatArray  # corners of triangles, shape (N, 3, 3) [m]
+CONE_SIDES = 32  # sides of the pyramid that stands for a cone
 
 
 def stl_bytes(triangles: Triangles) -> bytes:

@@ -14,8 +14,7 @@ from harness.core.types import BoolArray, FloatArray
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.tree import joints_to
 
-HOME = "home"
-"""Named state that counterexamples shrink towards, if the arm has it."""
+HOME = "home"  # named state that counterexamples shrink towards, if the arm has it
 
 
 @dataclass(frozen=True, eq=False)

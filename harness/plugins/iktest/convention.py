@@ -21,9 +21,7 @@ STARTS = (0.0, np.pi / 2, -np.pi / 2, np.pi)
 """Differences of a joint's zero [rad] from which a fit starts."""
 
 MOST_SAMPLES, MOST_STEPS = 10, 12
-KEPT = 0.8
-"""Share of the answers that a convention explains; others may be wrong in another way."""
-
+KEPT = 0.8  # share of the answers that a convention explains; others may be wrong in another way
 NO_OFFSET = 1e-6  # [rad or m]
 CONVERGED = 1e-11  # [rad or m] of a step
 NEARLY_RIGHT = 1e-3  # [rad, or m as a share of the reach] of answers that a fit explains

@@ -39,14 +39,9 @@ from harness.plugins.iktest.text import report_lines
 from harness.plugins.iktest.trial import HANGS, Flaw, SolverTrial
 from harness.robot_tools.robot_source import RobotSource, load_source
 
-MOSTLY = 0.5
-"""Share of right answers from which a function counts as its contract says."""
-
-LEAST_TARGETS = 5
-"""Number of answered targets from which answers show how a function counts."""
-
-MOST_FINDINGS = 4
-"""Kinds of flaws that are shrunk for one property, the most frequent first."""
+MOSTLY = 0.5  # share of right answers from which a function counts as its contract says
+LEAST_TARGETS = 5  # number of answered targets from which answers show how a function counts
+MOST_FINDINGS = 4  # kinds of flaws that are shrunk for one property, the most frequent first
 
 
 @dataclass(frozen=True)

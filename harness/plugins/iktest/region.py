@@ -13,8 +13,7 @@ from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.offset import number_of_places
 from harness.plugins.iktest.strategies.poses import Target
 
-LEAST_PLACES = 3
-"""Places of right answers, and of misses in each region: fewer may be an accident."""
+LEAST_PLACES = 3  # places of right answers, and of misses in each region: fewer may be an accident
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ from hypothesis.internal.conjecture.providers import HypothesisProvider
 C = TypeVar("C")
 F = TypeVar("F")
 
-SHRINK_CALLS = 250
-"""Cases tried at most after the first that shows what is sought."""
+SHRINK_CALLS = 250  # cases tried at most after the first that shows what is sought
 
 QUIET = settings(
     database=None,

@@ -17,8 +17,7 @@ from harness.plugins.iktest.worker import serve
 from harness.robot_tools.robot_source import RobotSource
 from harness.suite.warm import Ended, WarmServer
 
-IMPORT_SECONDS = 60.0
-"""Wall time that importing the function may take."""
+IMPORT_SECONDS = 60.0  # wall time that importing the function may take
 
 POLL_SECONDS = 0.02
 

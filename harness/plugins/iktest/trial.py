@@ -21,8 +21,7 @@ from harness.plugins.iktest.strategies.tasks import Task, miss
 
 LIMIT_SLACK = 1e-9  # [rad or m] that rounding may put an answer beyond a limit
 HANGS = "does not come back"
-COSTS = {"hung": 75, "died": 6}
-"""Cost of such a call in a search's budget; any other call costs 1."""
+COSTS = {"hung": 75, "died": 6}  # cost of such a call in a search's budget; any other call costs 1
 
 
 @dataclass(frozen=True, eq=False)

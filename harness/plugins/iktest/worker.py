@@ -22,11 +22,8 @@ from harness.plugins.iktest.calls import call
 from harness.plugins.iktest.contract import UnusableSolver, parameter_words
 from harness.robot_tools.robot_source import RobotSource
 
-OWN = "own"
-"""In place of a function's name: the solver that this program plans with."""
-
-SOLVERS = "ik_solver"
-"""The kind of plug-in whose names are solvers too."""
+OWN = "own"  # in place of a function's name: the solver that this program plans with
+SOLVERS = "ik_solver"  # the kind of plug-in whose names are solvers too
 
 
 def is_solver(name: str) -> bool:

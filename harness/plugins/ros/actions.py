@@ -17,15 +17,12 @@ from harness.reporting.rosbag.messages import message
 
 INFO = "action_msgs/msg/GoalInfo"
 STATUSES = "action_msgs/msg/GoalStatusArray"
-Clock = Callable[[], float]
-"""The simulated time [s]."""
+Clock = Callable[[], float]  # the simulated time [s]
 OnGoal = Callable[[str, Any], bool]
 """Takes a goal's identifier and content; whether it is accepted. A rejected goal may have a result
 already, for those who request it nevertheless."""
-OnCancel = Callable[[str], object]
-"""Takes the identifier of a running goal, which has to end then."""
-MOST_ENDED = 100
-"""Goals that are kept after their end, for those who request the result later."""
+OnCancel = Callable[[str], object]  # takes the identifier of a running goal, which has to end then
+MOST_ENDED = 100  # goals that are kept after their end, for those who request the result later
 
 
 class Status(IntEnum):

@@ -20,8 +20,7 @@ from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 
 NODE = "bridge"
-DISCOVERY = 0.5
-"""Wall time in which other robots of the domain are discovered [s]."""
+DISCOVERY = 0.5  # wall time in which other robots of the domain are discovered [s]
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from typing import Any
 
 from harness.plugins.ros.interfaces import encoded
 
-Reply = Callable[[Any], None]
-"""Sends the response of a service; at once or later."""
+Reply = Callable[[Any], None]  # sends the response of a service; at once or later
 
 OnMessage = Callable[[Any], object]
 
@@ -29,8 +28,7 @@ class Qos:
 
 
 DEFAULT = Qos()
-BEST_EFFORT = Qos(is_reliable=False)
-"""Of a subscription that takes messages of all publishers."""
+BEST_EFFORT = Qos(is_reliable=False)  # of a subscription that takes messages of all publishers
 LATCHED = Qos(is_latched=True, depth=1)
 
 

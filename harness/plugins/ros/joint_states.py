@@ -13,8 +13,7 @@ from harness.plugins.ros.interfaces import seconds
 from harness.plugins.ros.rtps.graph import Graph
 from harness.robot.description import RobotDescription
 
-GRID = 0.01
-"""Time between the samples of the record [s]; joint states are interpolated onto it."""
+GRID = 0.01  # time between the samples of the record [s]; joint states are interpolated onto it
 
 
 class JointStates:

@@ -12,8 +12,7 @@ from collections.abc import Mapping
 
 from harness.core.errors import StepFailed
 
-TAIL = 2000
-"""Characters of a program's last output that are shown."""
+TAIL = 2000  # characters of a program's last output that are shown
 
 
 def start_program(commands: Mapping[str, str], name: str, domain: int) -> Program | None:

@@ -41,14 +41,10 @@ Say = Callable[[str], None]
 FEEDBACK_EVERY = 5
 """Ticks between two messages of feedback: 20 Hz, as controllers are set by default."""
 
-LOOK_EVERY = 50
-"""Ticks between two looks at how nodes use topics."""
-
-MOST_NOTES = 50
-"""Notes that are given of a run while it continues."""
+LOOK_EVERY = 50  # ticks between two looks at how nodes use topics
+MOST_NOTES = 50  # notes that are given of a run while it continues
 TF = "tf2_msgs/msg/TFMessage"
-TF_EVERY = 2
-"""Ticks between two messages of frames: 50 Hz."""
+TF_EVERY = 2  # ticks between two messages of frames: 50 Hz
 
 
 class StateTopics:

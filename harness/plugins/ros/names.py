@@ -7,8 +7,7 @@ from difflib import get_close_matches
 
 from harness.plugins.ros.endpoints import Use
 
-IGNORED = {"/rosout", "/parameter_events", "/clock"}
-"""Topics that every node of rclpy has."""
+IGNORED = {"/rosout", "/parameter_events", "/clock"}  # topics that every node of rclpy has
 
 HIDDEN, FEEDBACK, MESSAGE = "/_action/", "/_action/feedback", "_FeedbackMessage"
 """Parts of the topics of actions, of those with feedback, and of their types."""

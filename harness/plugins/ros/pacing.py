@@ -7,11 +7,8 @@ from dataclasses import dataclass
 
 from harness.plugins.ros.control.cell import TICK
 
-LATE = 0.05
-"""Lag from which a tick, and what arrives in it, counts as late [s]."""
-
-GIVE_UP = 0.25
-"""Lag that is not made up for any more: simulated time continues from here [s]."""
+LATE = 0.05  # lag from which a tick, and what arrives in it, counts as late [s]
+GIVE_UP = 0.25  # lag that is not made up for any more: simulated time continues from here [s]
 
 SLOW_SHARE = 0.2
 """Share of the session's wall time that a machine may lose without being called slow."""

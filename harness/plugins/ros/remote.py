@@ -33,14 +33,9 @@ from harness.session.timing import Clock
 MEASURED = ("position", "effort", "stalled", "reached_goal")
 """What the result of GripperCommand says."""
 
-PATIENCE = 10.0
-"""Wall time in which servers must be found, and joint states must come [s]."""
-
-SILENCE = 3.0
-"""Wall time without joint states after which a robot in motion counts as lost [s]."""
-
-UNKNOWN = np.full(7, np.nan)
-"""The pose of an object that is not measured."""
+PATIENCE = 10.0  # wall time in which servers must be found, and joint states must come [s]
+SILENCE = 3.0  # wall time without joint states after which a robot in motion counts as lost [s]
+UNKNOWN = np.full(7, np.nan)  # the pose of an object that is not measured
 
 REASON = 1.0
 """Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""

@@ -14,11 +14,8 @@ from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY, seconds
 from harness.plugins.ros.rtps.graph import Graph
 from harness.recording.commands import CommandKind, CommandRecord
 
-Content = dict[str, Any]
-"""The values of a command as they are recorded."""
-
-Read = Callable[[Any], Content]
-"""Reads them from a message."""
+Content = dict[str, Any]  # the values of a command as they are recorded
+Read = Callable[[Any], Content]  # reads them from a message
 
 
 class Wiring:

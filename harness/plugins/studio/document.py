@@ -15,8 +15,7 @@ from harness.language.files.yaml_file import parse_yaml
 
 INDENT = "  "
 ROBOT_BLOCK = re.compile(r"^robot:.*(?:\n[ \t#].*|\n(?=[ \t\n#]))*", re.MULTILINE)
-STAND_IN = "wait: 1 ms"
-"""The step that a scenario without steps is compiled with."""
+STAND_IN = "wait: 1 ms"  # the step that a scenario without steps is compiled with
 
 Plain = Any
 

@@ -25,10 +25,8 @@ from harness.ports.motion_planning import MotionPlan
 from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.step_record import StepRecord
 
-SOLID, FAINT = 0.8, 0.2
-"""Opacity of the way that continues the current posture, and of the others."""
-MOST_POINTS = 120
-"""Points of a drawn path."""
+SOLID, FAINT = 0.8, 0.2  # opacity of the way that continues the current posture, and of the others
+MOST_POINTS = 120  # points of a drawn path
 
 
 @dataclass(frozen=True, eq=False)

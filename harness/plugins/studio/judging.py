@@ -21,8 +21,7 @@ from harness.session.pictures import Pictures
 from harness.session.run_builder import RunBuilder
 from harness.session.run_request import RunRequest
 
-FINAL_FAILURES = ("always", "never")
-"""Words whose failure is final, whatever later samples show."""
+FINAL_FAILURES = ("always", "never")  # words whose failure is final, whatever later samples show
 
 
 @dataclass(frozen=True, eq=False)

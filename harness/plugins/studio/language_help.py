@@ -17,11 +17,8 @@ from harness.language.step import STEPS
 Schema = Mapping[str, Any]
 Path = tuple[str, ...]
 
-ITEM = "-"
-"""In a path: an item of a list."""
-
-MARK = "\ue000"
-"""A character of no script, put where the cursor is."""
+ITEM = "-"  # in a path: an item of a list
+MARK = "\ue000"  # a character of no script, put where the cursor is
 
 _WORD = re.compile(r"[\w./-]*$")
 
@@ -43,8 +40,7 @@ class Option:
 Names = Mapping[str, Sequence[str]]
 """Names that exist in a cell, by the fields that take them: `object`, `link`, `joints`."""
 
-GRIPPER_TARGET = "gripper_target"
-"""In names: the `named_target` of a step that moves the gripper."""
+GRIPPER_TARGET = "gripper_target"  # in names: the `named_target` of a step that moves the gripper
 
 
 def named_at(path: Path, names: Names) -> Sequence[str]:

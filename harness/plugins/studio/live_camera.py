@@ -16,8 +16,7 @@ from harness.core.errors import HarnessError
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.newest import Newest
 
-PERIOD = 0.35
-"""Time between two pictures [s]."""
+PERIOD = 0.35  # time between two pictures [s]
 
 MOST_PIXELS = 240 * 180
 """Pixels of a picture, of which each costs two microseconds; a larger one is drawn smaller."""

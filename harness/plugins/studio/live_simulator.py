@@ -16,8 +16,7 @@ from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.set_points import SetPoints
 from harness.simulation.step_state import refresh, set_step_state, step_state, wake
 
-CHUNK = 16
-"""Samples between two calls of the pace; the results do not depend on it."""
+CHUNK = 16  # samples between two calls of the pace; the results do not depend on it
 
 Pace = Callable[[int], bool]
 """Called after some samples; waits as long as they last, and says whether to go on."""

@@ -23,8 +23,7 @@ if TYPE_CHECKING:  # whoever shows a case needs no planner
     from harness.session.start import Start
     from harness.session.timing import Clock
 
-FRAME = 1 / 25
-"""Wall time between two frames, at least [s]."""
+FRAME = 1 / 25  # wall time between two frames, at least [s]
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,8 +28,7 @@ from harness.recording.step_record import StepRecord
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)
 """Simulated seconds in a second of wall time; 0 is as fast as possible."""
 
-MEASURED_EVERY = 5
-"""Updates of the page between two measurements of the smallest clearance."""
+MEASURED_EVERY = 5  # updates of the page between two measurements of the smallest clearance
 
 
 class LiveStudio:

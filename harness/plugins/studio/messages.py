@@ -16,8 +16,7 @@ from harness.plugins.studio.texts import MOTIONS, ObjectForm, gripper_steps
 from harness.recording.step_record import StepRecord
 from harness.reporting.explanation import explanation_lines
 
-MOST_CONTACTS = 8
-"""Contacts that are listed, strongest first."""
+MOST_CONTACTS = 8  # contacts that are listed, strongest first
 
 
 def robot_message(cell: LiveCell) -> Message:

@@ -15,8 +15,7 @@ from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.messages import names_of
 from harness.plugins.studio.texts import step_text
 
-MOVED = 0.005
-"""Largest distance from its start at which an object counts as not moved [m]."""
+MOVED = 0.005  # largest distance from its start at which an object counts as not moved [m]
 
 TOLERANCE = {"position": "5 mm", "orientation": "3 deg"}
 """A tolerance of poses that a repetition keeps."""

@@ -20,8 +20,7 @@ from harness.plugins.studio.live_cell import LiveCell
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.scene import Touch
 
-WHOLE_POSE_JOINTS = 6
-"""An arm of fewer joints cannot choose the whole orientation of its TCP."""
+WHOLE_POSE_JOINTS = 6  # an arm of fewer joints cannot choose the whole orientation of its TCP
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,7 @@ from harness.robot.description import RobotDescription
 MOST_TRIANGLES = 20_000
 """Triangles of the whole robot; its meshes are coarsened until they are no more."""
 
-GRID = 0.002
-"""The first cell size in which vertices are merged [m]."""
+GRID = 0.002  # the first cell size in which vertices are merged [m]
 
 GHOST, REFUSED, PLANNED = (70, 130, 220), (214, 60, 50), (40, 160, 90)
 PLANE_SIZE = 6.0  # [m]

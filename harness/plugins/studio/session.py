@@ -21,14 +21,9 @@ from harness.core.errors import HarnessError, SpecError
 from harness.core.printable import printable
 from harness.core.untrusted_json import parse_json
 
-FRAME = 1 / 30
-"""Time between two pictures of the scene [s]."""
-
-PANEL_PERIOD = 0.1
-"""Time between two updates of the numbers on the page [s]."""
-
-MOST_MESSAGES = 500
-"""Messages that wait for a slow page; older ones of the state are dropped."""
+FRAME = 1 / 30  # time between two pictures of the scene [s]
+PANEL_PERIOD = 0.1  # time between two updates of the numbers on the page [s]
+MOST_MESSAGES = 500  # messages that wait for a slow page; older ones of the state are dropped
 
 Message = dict[str, Any]
 

@@ -72,8 +72,7 @@ def gripper_steps(description: RobotDescription) -> dict[str, str]:
 AXES: dict[str, tuple[int, ...]] = {"box": (0, 1, 2), "cylinder": (0, 2), "sphere": (2,)}
 """The axes of an object along which its sizes are measured, in the order of the page's field."""
 
-SMALLEST = 0.005
-"""The smallest size that a handle gives an object [m]."""
+SMALLEST = 0.005  # the smallest size that a handle gives an object [m]
 
 
 def shape_keys(kind: str, size: Sequence[float]) -> dict[str, Any]:

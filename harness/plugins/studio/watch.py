@@ -31,8 +31,7 @@ from harness.reporting.result import CaseResult
 MOST_CASES = 40
 """Cases that can be chosen on the page: those that run, and the last that have ended."""
 
-LATEST = 0
-"""The number that stands for whichever case began last."""
+LATEST = 0  # the number that stands for whichever case began last
 
 
 @dataclass(eq=False)

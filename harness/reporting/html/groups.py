@@ -17,8 +17,7 @@ from harness.reporting.html.packing import Packer, pack, thin
 from harness.reporting.html.plot_group import Group, Limit
 
 STRETCHES_PER_SECOND, FEWEST_STRETCHES, MOST_STRETCHES = 40, 600, 3000
-NEAR_LIMIT = 0.4
-"""Share of a limit that is used before the plot makes room to show it."""
+NEAR_LIMIT = 0.4  # share of a limit that is used before the plot makes room to show it
 
 
 def pack_groups(run: Run, verdicts: Sequence[Verdict], packer: Packer) -> list[dict[str, Any]]:

@@ -16,8 +16,7 @@ from harness.core.types import FloatArray, IntArray
 
 Array = np.ndarray[Any, Any]
 ALIGNMENT = 8
-LEVEL = 7
-"""Deflate level: 9 takes twice as long and saves a hundredth."""
+LEVEL = 7  # deflate level: 9 takes twice as long and saves a hundredth
 
 
 class Packer:

@@ -11,8 +11,7 @@ from harness.recording.run import Run
 from harness.reporting.html.packing import Packer, differences
 from harness.reporting.html.scene import FULL, frame_samples
 
-MOST = 12
-"""Pairs that are drawn: those that pressed hardest."""
+MOST = 12  # pairs that are drawn: those that pressed hardest
 
 
 def pack_presses(run: Run, packer: Packer) -> list[dict[str, Any]]:

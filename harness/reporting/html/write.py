@@ -110,10 +110,8 @@ def _short(value: str) -> str:
 
 PICTURES = 6
 WIDTH = 360  # [pixels]
-WHY = "-why"
-"""How names of pictures end that show what explains a failure."""
-CAPTION_SHARE = 26 / 480
-"""Of a still's height: the strip below with words too small for the page."""
+WHY = "-why"  # how names of pictures end that show what explains a failure
+CAPTION_SHARE = 26 / 480  # of a still's height: the strip below with words too small for the page
 QUALITY = 70
 
 

@@ -37,8 +37,7 @@ from harness.reporting.rosbag.topics import SCENE_MARKERS
 
 MARKER = "visualization_msgs/msg/Marker"
 Marker: Any = TYPES[MARKER]
-PLANE_SIZE = 4.0
-"""Of the square that stands for an endless plane [m]."""
+PLANE_SIZE = 4.0  # of the square that stands for an endless plane [m]
 PLANNED = "planned_tcp"
 PLANNED_COLOUR: Rgba = (0.5, 0.2, 0.9, 1.0)
 LINE_WIDTH = 0.004  # [m]

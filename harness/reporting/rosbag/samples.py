@@ -11,8 +11,7 @@ import numpy as np
 from harness.core.types import FloatArray, IntArray
 from harness.reporting.rosbag.topics import Topic
 
-BLOCK = 1024
-"""Samples whose frames are computed at once: it bounds the memory of a long run."""
+BLOCK = 1024  # samples whose frames are computed at once: it bounds the memory of a long run
 
 
 @dataclass(frozen=True, eq=False)

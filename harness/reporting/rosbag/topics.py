@@ -15,8 +15,7 @@ from rosbags.interfaces import (
 )
 
 PREFIX = "/armharness"
-FOREVER = QosTime(sec=9223372036, nsec=854775807)
-"""As rmw writes an infinite duration."""
+FOREVER = QosTime(sec=9223372036, nsec=854775807)  # as rmw writes an infinite duration
 
 
 @dataclass(frozen=True)

@@ -39,8 +39,7 @@ VERSION = 8
 """Of rosbag2's metadata. Version 9 says QoS in words, which Humble and Iron cannot read; Jazzy and
 later read both."""
 
-BAG = "bag"
-"""The folder of a bag that is written with its run."""
+BAG = "bag"  # the folder of a bag that is written with its run
 Storage = Literal["mcap", "sqlite3"]
 ROBOT, LAYOUT, RVIZ = "robot.urdf", "foxglove.json", "view.rviz"
 

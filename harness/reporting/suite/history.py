@@ -12,8 +12,7 @@ from harness.reporting.suite.record import FORMAT
 MOST_RUNS = 30
 MOST_BYTES = 100_000_000
 
-Key = tuple[str, str]
-"""File and name of a case."""
+Key = tuple[str, str]  # file and name of a case
 
 
 def history_of(folder: Path) -> dict[Key, list[float | None]]:

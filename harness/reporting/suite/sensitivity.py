@@ -11,17 +11,13 @@ from numpy.typing import NDArray
 from harness.core.types import FloatArray, IntArray
 from harness.reporting.suite.columns import Columns, VariedQuantity
 
-FEWEST_RUNS = 8
-"""With fewer runs no effect can be shown."""
+FEWEST_RUNS = 8  # with fewer runs no effect can be shown
 
 LEVEL = 0.05
 """A parameter is named when chance gives any parameter such an effect less often than this."""
 
-RESHUFFLES = 1999
-"""Permutations of a test: they resolve a hundredth of `LEVEL`."""
-
-MOST_RUNS = 1000
-"""Failed runs, and passed runs, that a test looks at; of more, an even choice."""
+RESHUFFLES = 1999  # permutations of a test: they resolve a hundredth of `LEVEL`
+MOST_RUNS = 1000  # failed runs, and passed runs, that a test looks at; of more, an even choice
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from harness.reporting.suite.columns import Columns, VariedQuantity
 from harness.reporting.terminal import PLAIN, Style
 
-BINS = 4
-"""Parts of equal size into which numbers are cut for a table."""
+BINS = 4  # parts of equal size into which numbers are cut for a table
 
 MOST_ROWS = 12
 

@@ -23,8 +23,7 @@ from harness.recording.motion import Motion
 from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.robot.solids import coal_geometry
 
-LOOKS = 8
-"""Samples from one at which the gaps of balls and boxes are computed to the next."""
+LOOKS = 8  # samples from one at which the gaps of balls and boxes are computed to the next
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,11 +8,8 @@ from harness.judging.text import amount
 from harness.recording.run import Finding, Run
 from harness.robot.description import RobotDescription
 
-APART = {"prismatic": 1e-3}
-"""Deviation of a prismatic mimic joint from which it is reported [m]."""
-
-TURNED_APART = 0.02
-"""The same of a revolute one [rad]."""
+APART = {"prismatic": 1e-3}  # deviation of a prismatic mimic joint from which it is reported [m]
+TURNED_APART = 0.02  # the same of a revolute one [rad]
 
 
 def coupling_findings(run: Run, description: RobotDescription) -> tuple[Finding, ...]:

@@ -16,11 +16,8 @@ from harness.recording.run import Finding, ObjectRecord
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 
-MOVING = 1e-3
-"""A body faster than this moves [m/s]."""
-
-COMMANDED = 1e-4
-"""A set point that changes by more is a command to move [rad or m]."""
+MOVING = 1e-3  # a body faster than this moves [m/s]
+COMMANDED = 1e-4  # a set point that changes by more is a command to move [rad or m]
 
 
 @dataclass(frozen=True)

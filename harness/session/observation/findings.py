@@ -15,8 +15,7 @@ from harness.recording.explanation import LoweredMargins
 from harness.recording.run import Finding
 from harness.recording.step_record import StepRecord
 
-LARGE = 5.0
-"""Size from which a movable object is probably given in millimetres [m]."""
+LARGE = 5.0  # size from which a movable object is probably given in millimetres [m]
 
 NOTHING_EXPECTED = (
     "the scenario expects nothing, so it passes whatever happens, as long as no step fails;"

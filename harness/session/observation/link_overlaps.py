@@ -23,8 +23,7 @@ from harness.session.observation.nearest import ShapePair, pairs_between, smalle
 from harness.session.observation.sampled_clearance import between, knots
 
 SELF = ("robot", "robot")
-LEAST_DEPTH = 0.001
-"""Convex hulls and a calibration are off by as much; less is no overlap [m]."""
+LEAST_DEPTH = 0.001  # convex hulls and a calibration are off by as much; less is no overlap [m]
 
 
 def with_excluded_links(signals: Signals, description: RobotDescription) -> Signals:

@@ -12,10 +12,8 @@ from harness.core.geometry import Mesh, Plane, Shape, reach
 from harness.core.types import FloatArray
 from harness.recording.run import Finding, ObjectRecord
 
-LEAST_DIFFERENCE = 0.005
-"""Of a side's place [m]: a picture that is off by less shows the shape."""
-LEAST_SHARE = 0.1
-"""Of the object's extent along that axis."""
+LEAST_DIFFERENCE = 0.005  # of a side's place [m]: a picture that is off by less shows the shape
+LEAST_SHARE = 0.1  # of the object's extent along that axis
 CORNERS = np.array(list(product((0, 1), repeat=3)))
 
 

@@ -26,17 +26,10 @@ from harness.session.observation.body_tracks import (
     travels,
 )
 
-STILL = 1e-6
-"""Relative travel below which a distance is not measured again [m]."""
-
-COAL_TOLERANCE = 1e-6
-"""How far a measured distance may be above a bound of it [m]."""
-
-BLOCK = 64
-"""Samples for which the pairs that may be the nearest are chosen at once."""
-
-MOST_RIVALS = 12
-"""Pairs that are followed at once; with more, they are chosen again earlier."""
+STILL = 1e-6  # relative travel below which a distance is not measured again [m]
+COAL_TOLERANCE = 1e-6  # how far a measured distance may be above a bound of it [m]
+BLOCK = 64  # samples for which the pairs that may be the nearest are chosen at once
+MOST_RIVALS = 12  # pairs that are followed at once; with more, they are chosen again earlier
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,14 +25,9 @@ Where bodies move so fast that it could be, by the bound of their motion, every 
 where it could be between two samples too, positions between them are interpolated, and the smallest
 distance counts for the sample before.
 """
-PART = 5.0
-"""Time of a run that is measured at once [s]."""
-
-AROUND = 2
-"""Samples before and after each coming and going that are measured."""
-
-MOST_PARTS = 200
-"""Positions between two samples: enough for 800 m/s at 1 ms."""
+PART = 5.0  # time of a run that is measured at once [s]
+AROUND = 2  # samples before and after each coming and going that are measured
+MOST_PARTS = 200  # positions between two samples: enough for 800 m/s at 1 ms
 
 MOST_PARTS_PER_SAMPLE, FEW_PARTS = 10, 20_000
 """Positions between samples, on average over a run: 20 m/s all along at 1 ms; and as many as are

@@ -16,9 +16,7 @@ LEGEND = (
     "Thick line: median; box: quartiles; thin line: extremes. Failed plans count only in success "
     "and state checks."
 )
-WIDE = 20.0
-"""Ratio of the largest to the smallest value above which a panel's axis is logarithmic."""
-
+WIDE = 20.0  # ratio of the largest to the smallest value above which a panel's axis is logarithmic
 INK, FAINT, BOX, LINE = "#333", "#ddd", "#9ec1e0", "#1f5f99"
 
 

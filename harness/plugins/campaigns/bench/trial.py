@@ -18,8 +18,7 @@ from harness.recording.plan_statistics import PlanStatistics
 SPACING = 0.05
 """Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
 
-STRAIGHT_TURN = 1e-6
-"""Turns below this are rounding errors [rad]."""
+STRAIGHT_TURN = 1e-6  # turns below this are rounding errors [rad]
 
 STRAIGHT = "straight line"
 """The `planner_id` in a plan's statistics when the straight line was free."""

@@ -30,8 +30,7 @@ from harness.suite.leftovers import remove_abandoned
 from harness.suite.stream import result_of
 from harness.suite.warm import WarmServer
 
-PREFIX = "harness-batch-"
-"""How the names of folders begin; the number of the process follows."""
+PREFIX = "harness-batch-"  # how the names of folders begin; the number of the process follows
 
 
 @dataclass(frozen=True)

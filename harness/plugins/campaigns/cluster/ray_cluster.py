@@ -32,14 +32,12 @@ CLIENT = "ray://"
 BATCH_SECONDS = 3.0
 """Wall time that a batch is to take: long compared with the millisecond that Ray adds."""
 
-MOST_CASES = 100
-"""Largest number of cases in a batch."""
+MOST_CASES = 100  # largest number of cases in a batch
 
 BATCHES_FOR_EACH_PROCESS = 2
 """Batches that wait or run for each process of the cluster; more are not made yet."""
 
-RETRIES = 3
-"""How often Ray starts a batch again whose process or node ended."""
+RETRIES = 3  # how often Ray starts a batch again whose process or node ended
 
 BatchFunction = Callable[[Batch, Files], BatchResult]
 

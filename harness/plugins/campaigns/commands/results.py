@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from harness.plugins.campaigns.queries.filters import Query
     from harness.reporting.terminal import Style
 
-SHOWN = 20
-"""Runs that are printed unless `--limit` says otherwise."""
+SHOWN = 20  # runs that are printed unless `--limit` says otherwise
 
 
 class ResultsCommand(Command):

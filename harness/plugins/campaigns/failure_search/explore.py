@@ -19,14 +19,9 @@ from harness.plugins.campaigns.failure_search.closeness import (
 from harness.plugins.campaigns.failure_search.evaluator import Sample
 from harness.plugins.campaigns.failure_search.space import Point, SearchSpace
 
-STEP_SIZE = 0.15
-"""First standard deviation of the optimiser, as a share of each range."""
-
-CONFIDENCE = 0.95
-"""The confidence of the interval of the rate."""
-
-PATIENCE = 6
-"""Generations without a nearer run, after which the optimiser starts somewhere else."""
+STEP_SIZE = 0.15  # first standard deviation of the optimiser, as a share of each range
+CONFIDENCE = 0.95  # the confidence of the interval of the rate
+PATIENCE = 6  # generations without a nearer run, after which the optimiser starts somewhere else
 
 Evaluate = Callable[[Sequence[Point]], list[Sample]]
 

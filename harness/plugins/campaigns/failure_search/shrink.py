@@ -9,14 +9,9 @@ from dataclasses import dataclass
 
 from harness.plugins.campaigns.failure_search.space import Parameter, Point, SearchSpace
 
-FRACTIONS = 256
-"""Parts into which the way from the nominal point to the failure is divided."""
-
-MOST_ROUNDS = 3
-"""Rounds over all changed parameters; each can only bring the point nearer."""
-
-Fails = Callable[[Sequence[Point]], list[bool]]
-"""Whether each of some points fails in the same way."""
+FRACTIONS = 256  # parts into which the way from the nominal point to the failure is divided
+MOST_ROUNDS = 3  # rounds over all changed parameters; each can only bring the point nearer
+Fails = Callable[[Sequence[Point]], list[bool]]  # whether each of some points fails in the same way
 
 
 def shrink(space: SearchSpace, failing: Point, fails: Fails) -> Point:

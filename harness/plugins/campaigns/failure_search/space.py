@@ -16,16 +16,12 @@ from harness.language.units import conversion_factor
 from harness.suite.distribution import Choice, Distribution, Uniform
 from harness.suite.variation import Variation
 
-TAIL = 0.001
-"""Share of a normal distribution beyond each end of its range."""
-
-RESOLUTION = 0.005
-"""Largest step in which a number is shrunk, as a share of its range."""
+TAIL = 0.001  # share of a normal distribution beyond each end of its range
+RESOLUTION = 0.005  # largest step in which a number is shrunk, as a share of its range
 
 MIDDLE = 0.5
 
-Point = tuple[Any, ...]
-"""One value for each parameter, as a scenario file writes it."""
+Point = tuple[Any, ...]  # one value for each parameter, as a scenario file writes it
 
 
 @dataclass(frozen=True)

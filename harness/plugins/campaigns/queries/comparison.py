@@ -13,11 +13,8 @@ from typing import Any
 from harness.core.types import FloatArray
 from harness.suite.discovery import UsageError
 
-LEVEL = 0.05
-"""Probability of calling equal campaigns different."""
-
-POWER = 0.8
-"""Probability with which the smallest detectable drop would have been detected."""
+LEVEL = 0.05  # probability of calling equal campaigns different
+POWER = 0.8  # probability with which the smallest detectable drop would have been detected
 
 MOST_NAMES = 5
 RUNS = "FROM main.runs a, second.runs b"

@@ -18,8 +18,7 @@ from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of
 
 DATABASE = "results.sqlite"
 VERSION = 4
-BATCH = 2000
-"""Lines that are inserted together; this many are in memory."""
+BATCH = 2000  # lines that are inserted together; this many are in memory
 
 SCHEMA = """
 CREATE TABLE all_runs (

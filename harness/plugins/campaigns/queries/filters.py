@@ -71,8 +71,7 @@ def parameter_paths(connection: sqlite3.Connection) -> list[str]:
     ]
 
 
-Clause = tuple[str, list[Any]]
-"""A part of a WHERE clause, and its values."""
+Clause = tuple[str, list[Any]]  # a part of a WHERE clause, and its values
 
 
 def _condition(text: str, connection: sqlite3.Connection) -> Clause:

@@ -29,8 +29,7 @@ PLAIN = (0.5, 0.5, 0.5, 1.0)
 
 SHAPES = ("box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh")
 
-DRAWN_GROUPS = 3
-"""MuJoCo draws the geoms of the groups 0 to 2."""
+DRAWN_GROUPS = 3  # MuJoCo draws the geoms of the groups 0 to 2
 
 
 @dataclass(eq=False)

@@ -32,8 +32,7 @@ from harness.world.plain_values import (
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 LARGEST_FILE = 8_000_000  # [bytes]
 MOST_SHAPES = 10_000
-MOST_CORNERS = 200_000
-"""Most vertices of one mesh, and most triangles: the limit of the physics."""
+MOST_CORNERS = 200_000  # most vertices of one mesh, and most triangles: the limit of the physics
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,8 +17,7 @@ from harness.world.notes import Notes
 from harness.world.object_words import MassProperties, together
 from harness.world.objects import primitive
 
-WATER = 1000.0
-"""Default density of an automatic inertial in SDF 1.11 [kg/m^3]."""
+WATER = 1000.0  # default density of an automatic inertial in SDF 1.11 [kg/m^3]
 
 
 def link_masses(

@@ -41,8 +41,7 @@ PLAIN_COLORS: Mapping[str, Rgba] = {
 }
 """Diffuse colours of material scripts called `Gazebo/...`: gazebo.material of Gazebo classic 11."""
 
-SHAPES = READ["geometry"]
-"""What a collision can be."""
+SHAPES = READ["geometry"]  # what a collision can be
 
 DEFAULT_TORSIONAL = FrictionSpec().torsional
 

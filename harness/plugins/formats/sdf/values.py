@@ -14,8 +14,7 @@ from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE, SpecModel
 from harness.language.files.xml_file import XmlElement
 from harness.world.plain_values import first_mistake
 
-UNBOUNDED = ("mu", "mu2")
-"""Elements in which worlds write 1e16 to exclude slip."""
+UNBOUNDED = ("mu", "mu2")  # elements in which worlds write 1e16 to exclude slip
 M = TypeVar("M", bound=SpecModel)
 TRUE, FALSE = ("true", "1"), ("false", "0")
 

@@ -28,8 +28,7 @@ DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities", "jumps"
 
 FEWEST_JUMPS = 3
 """Jumps there and back from which on a topic has two publishers; one is a wrong message."""
-FASTEST = 3.0
-"""A joint that moves faster than this multiple of its velocity limit jumps."""
+FASTEST = 3.0  # a joint that moves faster than this multiple of its velocity limit jumps
 UNKNOWN_LIMIT = 2 * np.pi
 """Velocity limit of a joint whose description has none, or 0 [rad/s or m/s]."""
 SHORTEST_TIME = 0.02
@@ -49,8 +48,7 @@ other."""
 OBJECT_APART, OBJECT_TURNED_APART = 0.02, 0.2
 """Difference between two topics with the pose of an object [m, rad]: a joint's twice."""
 
-STRETCH = 0.5
-"""Motions are compared with the integral of the velocities over this time [s]."""
+STRETCH = 0.5  # motions are compared with the integral of the velocities over this time [s]
 SHARE_OF_MOTION = 0.2
 """Share of a motion by which filters and coarse sampling may falsify that integral."""
 

@@ -12,8 +12,7 @@ from harness.plugins.grading.bag.clocks import Timeline
 from harness.plugins.grading.bag.content import BagContent
 from harness.recording.step_record import StepRecord, StepStatus
 
-RESOLUTION = 1e-6
-"""Tolerance of comparisons of times [s]; stamps are whole nanoseconds."""
+RESOLUTION = 1e-6  # tolerance of comparisons of times [s]; stamps are whole nanoseconds
 STATUSES: Mapping[str, StepStatus] = {
     **{status: status for status in get_args(StepStatus)},
     "expected_error": "expected error",  # of bags that earlier versions wrote

@@ -13,8 +13,7 @@ from harness.plugins.grading.bag.content import BagContent, RecordedTrack
 from harness.plugins.grading.bag.sampling import Trace, pose_trace
 
 WORLD = "world"
-Edge = tuple[str, RecordedTrack]
-"""The parent of a frame, and its poses in it."""
+Edge = tuple[str, RecordedTrack]  # the parent of a frame, and its poses in it
 
 
 class Frames:

@@ -17,8 +17,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
 from harness.core.errors import HarnessError, Problem, SpecError
 
-LARGEST_RECORD = 256 * 2**20
-"""Largest unpacked message or chunk of messages [bytes]."""
+LARGEST_RECORD = 256 * 2**20  # largest unpacked message or chunk of messages [bytes]
 
 
 @dataclass(frozen=True)

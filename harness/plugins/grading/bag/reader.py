@@ -17,8 +17,7 @@ from harness.plugins.grading.bag.storage import bag_files, messages
 MOST_NUMBERS = 20_000_000
 """Most numbers kept of one recording (160 MB); an hour of ten joints at 100 Hz needs half of it."""
 
-LATEST = 2**63 - 1
-"""Latest time of a message [ns]."""
+LATEST = 2**63 - 1  # latest time of a message [ns]
 
 NEW_KEY = 200
 """Numbers that a new frame or set of joints counts for, in addition to its names' characters."""
@@ -36,8 +35,7 @@ for _store in (TYPES, ROS1_TYPES):
             "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist", MODEL_STATES
         )
     )
-NAMED_POSES = (TF, MODEL_STATES)
-"""Types whose messages contain object names."""
+NAMED_POSES = (TF, MODEL_STATES)  # types whose messages contain object names
 SINGLE_POSES = (
     "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/TransformStamped",

@@ -26,8 +26,7 @@ MESSAGE, CHUNK, CONNECTION = 2, 5, 7
 RENAMED = {"tf/msg/tfMessage": "tf2_msgs/msg/TFMessage"}
 """Types that had another name, with the same content."""
 
-LARGEST_HEADER = 2**20
-"""Largest header of a record [bytes]; it has a handful of names and numbers."""
+LARGEST_HEADER = 2**20  # largest header of a record [bytes]; it has a handful of names and numbers
 
 Fields = Mapping[str, bytes]
 

@@ -15,8 +15,7 @@ SHORTEST_GAP, LONGEST_GAP = 0.1, 1.5
 
 A burst of lost messages is shorter than the first; a topic at 1 Hz has no gaps.
 """
-GAP_PERIODS = 10
-"""Between the bounds a gap is longer than so many of the topic's median periods."""
+GAP_PERIODS = 10  # between the bounds a gap is longer than so many of the topic's median periods
 LONGEST_MOTION = 0.25
 """Longest time between two messages over which a motion is interpolated [s]: an arm that
 accelerates by 2 m/s^2 is 16 mm off the straight line then. Over a longer time only what is the same

@@ -25,8 +25,7 @@ from harness.plugins.grading.bag.ros1_messages import ros1_messages
 METADATA = "metadata.yaml"
 SUFFIXES = (".mcap", ".db3")
 ROS1 = ".bag"
-LARGEST_FILE = 16 * 2**30
-"""Largest unpacked size of a file that is compressed as a whole [bytes]."""
+LARGEST_FILE = 16 * 2**30  # largest unpacked size of a file that is compressed as a whole [bytes]
 LARGEST_METADATA = 4 * 2**20  # [bytes]
 
 

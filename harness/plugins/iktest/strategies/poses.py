@@ -33,8 +33,7 @@ class Target:
 
 Targets = st.SearchStrategy[Target]
 
-BEYOND = (0.001, 0.01, 0.1, 1.0)
-"""Distances outside the arm's reach, as shares of the reach."""
+BEYOND = (0.001, 0.01, 0.1, 1.0)  # distances outside the arm's reach, as shares of the reach
 
 
 def reachable_poses(chain: Chain, positions: Positions | None = None) -> Targets:

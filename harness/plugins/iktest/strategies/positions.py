@@ -21,8 +21,7 @@ CELLS = (1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.025, 0.05, 0.1, 0.25,
 """Widths of the cells that divide a range [rad or m]; positions shrink to the cells' edges."""
 
 PARTS = 100  # of a cell; positions are drawn between its edges too
-OFFSETS = (0.0, 1e-9, 1e-6, 1e-4, 1e-2)
-"""Distances from a limit or a singularity [rad or m]."""
+OFFSETS = (0.0, 1e-9, 1e-6, 1e-4, 1e-2)  # distances from a limit or a singularity [rad or m]
 
 SEARCHED, REFINED = 33, 4
 

@@ -22,8 +22,7 @@ from harness.plugins.iktest.strategies.tasks import (
     task_jacobians,
 )
 
-STEP = 0.01
-"""Coordinates that are multiples of this count as even [m]."""
+STEP = 0.01  # coordinates that are multiples of this count as even [m]
 
 UP = np.array([0.0, 0.0, 1.0])
 PITCH_STEP = np.pi / 4

@@ -11,8 +11,7 @@ from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.poses import Target, reachable_poses
 from harness.plugins.iktest.strategies.positions import joint_positions, load_chain
 
-Document = dict[str, Any]
-"""The content of a scenario's YAML file; `yaml.safe_dump` writes it."""
+Document = dict[str, Any]  # the content of a scenario's YAML file; `yaml.safe_dump` writes it
 
 
 def scenarios(

@@ -11,8 +11,7 @@ from harness.plugins.ros.control.goals import Code
 from harness.recording.commands import CommandKind
 from harness.robot.description import Joint, TrackingTolerances
 
-Rows = FloatArray
-"""Positions, velocities and accelerations, shape (3, N, dof)."""
+Rows = FloatArray  # positions, velocities and accelerations, shape (3, N, dof)
 
 
 @dataclass(frozen=True, eq=False)

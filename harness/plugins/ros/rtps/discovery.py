@@ -17,14 +17,9 @@ T = TypeVar("T")
 Reachable = Callable[[Sequence[Address]], Address | None]
 """The one of some addresses under which they are reached; None for none."""
 
-LEASE = 100.0
-"""Seconds of silence after which peers forget this participant."""
-
-PEER_LEASE = 20.0
-"""Seconds of silence after which a peer that announces no lease is forgotten."""
-
-BUILTIN = 0x3F
-"""Participant discovery and endpoint discovery, both directions."""
+LEASE = 100.0  # seconds of silence after which peers forget this participant
+PEER_LEASE = 20.0  # seconds of silence after which a peer that announces no lease is forgotten
+BUILTIN = 0x3F  # participant discovery and endpoint discovery, both directions
 
 _HEAD = b"\0\3\0\0"
 _VERSION = [(wire.PID_VERSION, wire.VERSION), (wire.PID_VENDOR, wire.VENDOR)]

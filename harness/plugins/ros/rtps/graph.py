@@ -34,8 +34,7 @@ CYCLONE = b"\x01\x10"
 """Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
 content, between the encapsulation header and the message of requests and responses."""
 CYCLONE_IDENTITY = 16
-GID = 16
-"""Bytes of a GUID in rmw_dds_common/msg/Gid since Jazzy."""
+GID = 16  # bytes of a GUID in rmw_dds_common/msg/Gid since Jazzy
 
 
 def dds_type(kind: str) -> str:

@@ -11,14 +11,9 @@ from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.wire import Address, Sample
 from harness.plugins.ros.rtps.writer import Send
 
-FAST_DDS = b"\x01\x0f"
-"""Vendor at the start of a GUID."""
-
-MOST_WAITING = 4096
-"""Samples of one writer that wait for an earlier one."""
-
-LARGEST_SAMPLE = 2**26
-"""Samples that claim to be larger are ignored [bytes]."""
+FAST_DDS = b"\x01\x0f"  # vendor at the start of a GUID
+MOST_WAITING = 4096  # samples of one writer that wait for an earlier one
+LARGEST_SAMPLE = 2**26  # samples that claim to be larger are ignored [bytes]
 
 
 @dataclass

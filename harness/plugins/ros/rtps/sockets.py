@@ -18,11 +18,8 @@ MOST_PARTICIPANTS = 120
 NEIGHBOURS = 32
 """Participants of this machine that are announced to one by one: some listen to no multicast."""
 
-BUFFER = 2**22
-"""Bytes that the kernel keeps of what is sent and received."""
-
-MOST_AT_ONCE = 256
-"""Datagrams of a socket that are read before the other socket has its turn."""
+BUFFER = 2**22  # bytes that the kernel keeps of what is sent and received
+MOST_AT_ONCE = 256  # datagrams of a socket that are read before the other socket has its turn
 
 _SIOCGIFADDR = 0x8915
 

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 VERSION = b"\x02\x03"
-VENDOR = b"\x01\x7a"
-"""A vendor that is not registered: peers use no private extension with it."""
+VENDOR = b"\x01\x7a"  # a vendor that is not registered: peers use no private extension with it
 
 NO_ENTITY, PARTICIPANT, SPDP_WRITER = bytes(4), b"\x00\x00\x01\xc1", b"\x00\x01\x00\xc2"
 PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
@@ -26,10 +25,8 @@ PID_NAME, PID_KEY_HASH, PID_STATUS, PID_RELATED = 0x62, 0x70, 0x71, 0x83
 PID_RELATED_OLD = 0x800F
 """The related sample identity as Fast DDS wrote it before it had a number of the standard."""
 
-FRAGMENT = 57_344
-"""Bytes of a sample in one datagram; UDP carries at most 65,507."""
-MOST_BITS = 256
-"""Sequence numbers in one set."""
+FRAGMENT = 57_344  # bytes of a sample in one datagram; UDP carries at most 65,507
+MOST_BITS = 256  # sequence numbers in one set
 
 Address = tuple[str, int]
 Parameters = dict[int, list[bytes]]
