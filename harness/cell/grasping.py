@@ -280,6 +280,16 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
     )
 
 
+def level_sides(obj: WorldObject, object_pose: SE3, cell: Cell) -> tuple[tuple[float, bool], ...]:
+    """The level sides of an upright object, narrow first: width [m], and whether it can be held.
+
+    Raises:
+        StepFailed: INVALID_OBJECT_NAME, when it leans, or has no shape that can be held.
+    """
+    _, _, size, _, level = _standing(obj, object_pose, cell)
+    return tuple((size[axis], _fits(size[axis], cell)) for axis in level)
+
+
 def _opening(cell: Cell) -> float:
     """Largest gap between the pads [m]."""
     return float(cell.gripper.widths[:, 1].max())
