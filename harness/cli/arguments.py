@@ -64,6 +64,15 @@ class Parser(argparse.ArgumentParser):
         hint = f"did you mean {near}? " if near else ""
         return f"there is no option {name}; {hint}`{self.prog} --help` lists the options"
 
+    def arguments(self) -> list[argparse.Action]:
+        """The options and positional arguments, and last the choice of a command."""
+        return self._actions
+
+    def commands(self) -> dict[str, Parser]:
+        """The parser of each command of this one; empty without commands."""
+        found = [each for each in self._actions if each.nargs == argparse.PARSER]
+        return dict(found[0].choices or {}) if found else {}  # pyright: ignore[reportArgumentType]
+
     def print_help(self, file: SupportsWrite[str] | None = None) -> None:
         """Print the help; argparse would hide that it cannot be written."""
         (file or sys.stdout).write(self.format_help())
@@ -82,10 +91,14 @@ class CommandParser(Parser):
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> tuple[argparse.Namespace, list[str]]:
         """Parse the arguments of the command."""
+        self.learn()
+        return super().parse_known_args(args, namespace)
+
+    def learn(self) -> None:
+        """Add the options of the command, once."""
         add, self.add_options = self.add_options, None
         if add is not None:
             add(self)
-        return super().parse_known_args(args, namespace)
 
 
 def folder(text: str) -> Path:

@@ -15,6 +15,12 @@ __all__ = ["Command", "UsageError", "complain", "run_folder", "say"]
 """What a package needs to add a command of its own."""
 
 
+SCENARIOS, RESULTS, SEARCHES = "scenarios", "results", "comparisons and searches"
+EXCHANGE, SETUP, OTHERS = "robots and other programs", "this program", "other commands"
+GROUPS = (SCENARIOS, RESULTS, SEARCHES, EXCHANGE, SETUP, OTHERS)
+"""Titles of the groups of commands in `harness --help`, in this order."""
+
+
 class Command(Plugin, ABC):
     """A command; the first line of its docstring, a sentence, is its text in `harness --help`.
 
@@ -23,12 +29,14 @@ class Command(Plugin, ABC):
     is imported where it is used.
 
     Attributes:
+        group: The one of `GROUPS` that lists the command.
         writes_json_in_parts: Whether `--format json` prints case by case, so that the command
             itself keeps everything else from standard output.
         collects_garbage: Whether the command lives long enough for Python's garbage collector.
     """
 
     plugin_kind: ClassVar[str] = "command"
+    group: ClassVar[str] = OTHERS
     writes_json_in_parts: ClassVar[bool] = False
     collects_garbage: ClassVar[bool] = False
 

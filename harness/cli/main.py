@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import signal
 import sys
@@ -10,16 +11,18 @@ from typing import TYPE_CHECKING, NoReturn
 from harness.suite.outcome import EXIT_CODES, INTERRUPTED_EXIT_CODE, USAGE_EXIT_CODE
 
 if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
     from pathlib import Path
     from types import FrameType
 
+    from harness.cli.arguments import Parser
     from harness.cli.command import Command
 
 EPILOG = """exit codes: 0 passed, 1 failed, 2 invalid file or wrong usage, 3 error,
-130 interrupted (Ctrl-C, SIGTERM)"""
+130 interrupted (Ctrl-C, SIGTERM)
+
+`harness COMMAND --help` explains a command; docs/README.md of the repository lists all pages."""
 GREETING = """\
 harness runs scenarios of robot arms: planned, simulated in physics, judged, reported.
 
@@ -27,7 +30,9 @@ harness runs scenarios of robot arms: planned, simulated in physics, judged, rep
   harness run NAME                run one, and write its report page
   harness new first.scenario.yaml write a commented scenario that passes, to begin with
   harness studio                  open a robot cell in the browser
-  harness --help                  all commands"""
+  harness --help                  all commands
+
+The documentation is the folder docs of the repository, from docs/README.md on."""
 """What `harness` alone prints."""
 BROKEN_PIPE_EXIT_CODE = 141  # as a shell shows SIGPIPE
 STREAMS = ("stdin", "stdout", "stderr")
@@ -71,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from contextlib import nullcontext
 
     words = sys.argv[1:] if arguments is None else arguments
-    parsed = _parser(words).parse_args(words)
+    parsed = parser_of(words).parse_args(words)
     from harness.cli.output import OutputError, complain, guarded, only_json_on_stdout, say
 
     if parsed.command is None:
@@ -207,7 +212,7 @@ def _load_plugins(modules: Sequence[str]) -> bool:
     return True
 
 
-def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+def parser_of(words: Sequence[str]) -> Parser:
     """The parser of the command that the words name, or of all commands where they name none."""
     from harness import __version__
     from harness.cli.arguments import CommandParser, Parser
@@ -215,27 +220,43 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
     parser = Parser(
         prog="harness",
+        usage="harness [-h] [--version] COMMAND ...",
         description="Run scenarios of robot arms: planned, simulated, judged, reported.",
-        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"armharness {__version__}")
     parsers = parser.add_subparsers(
-        title="commands",
+        prog="harness",
         metavar="COMMAND",
         dest="command",
         parser_class=CommandParser,
+        help=argparse.SUPPRESS,
     )
     known = registry("command")
     named = [word for word in words[:1] if word in known.built_in_names]
-    for name in named or _all_commands():
-        command: Command = known[name]()
-        text = command.summary()
-        added = parsers.add_parser(
-            name, help=f"{text[0].lower()}{text[1:].rstrip('.')}", description=text
-        )
+    commands: dict[str, Command] = {name: known[name]() for name in named or _all_commands()}
+    for name, command in commands.items():
+        added = parsers.add_parser(name, description=command.summary())
         added.set_defaults(implementation=command)
         added.add_options = command.add_options
+    parser.epilog = f"{_grouped(commands)}\n{EPILOG}"
     return parser
+
+
+def _grouped(commands: Mapping[str, Command]) -> str:
+    """The commands with their summaries, under the titles of their groups."""
+    from harness.cli.command import GROUPS, OTHERS
+
+    width = max(map(len, commands)) + 2
+    text = ""
+    for group in GROUPS:
+        lines = [
+            f"    {name:{width}}{(said := each.summary())[0].lower()}{said[1:].rstrip('.')}\n"
+            for name, each in commands.items()
+            if group == (each.group if each.group in GROUPS else OTHERS)
+        ]
+        text += "".join([f"{group}:\n", *lines, "\n"]) if lines else ""
+    return text
 
 
 def _all_commands() -> list[str]:

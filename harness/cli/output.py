@@ -15,6 +15,7 @@ from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, RobotError, SpecError
 from harness.core.interruption import is_interrupted
 from harness.core.printable import cropped, fitted, printable, printable_lines, terminal_text
+from harness.core.resources import with_short_names
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES, USAGE_EXIT_CODE
 
@@ -51,7 +52,7 @@ class Output:
 
     def line(self, text: str) -> None:
         """Write one line, at once."""
-        self._write_line(terminal_text, text)
+        self._write_line(terminal_text, with_short_names(text))
 
     def command(self, text: str) -> None:
         """Write one line that a CI service reads as a command."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.errors import RobotError
+from harness.core.resources import existing_or_bundled
 from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
 from harness.language.files.xml_file import XmlElement, read_xml
@@ -119,7 +120,7 @@ def load_source(source: RobotSource) -> RobotDescription:
         RobotError: The robot is not known, or its files cannot be used.
     """
     if source.kind == "scenario":
-        path = Path(source.word)
+        path = existing_or_bundled(Path(source.word))
         for option in OPTIONS:
             if getattr(source, option):
                 raise RobotError(f"'{path}' says its robot itself: {OPTIONS[option]} is for others")

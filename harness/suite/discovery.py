@@ -23,8 +23,8 @@ def discover(paths: Sequence[str | Path]) -> list[Path]:
     """Find scenario files.
 
     A path is a file (of any name), a folder (its `*.scenario.yaml`, at any depth, in the order of
-    their names), or, where no such path exists, a bundled scenario or folder of them, with or
-    without `.scenario.yaml`: `lessons`, `lessons/01_gripper_and_joints`.
+    their names), or, where no such path exists, a bundled scenario or folder of them, also without
+    `.scenario.yaml` or with `scenarios/` before it: `lessons`, `lessons/01_gripper_and_joints`.
 
     Returns:
         Files in the order of `paths`, each once.
@@ -65,7 +65,7 @@ def _files(path: Path) -> list[Path]:
             raise UsageError(f"no *{SUFFIX} in folder '{path}'")
         return files
     bundled = bundled_scenarios()
-    name = path.as_posix().removesuffix(SUFFIX)
+    name = path.as_posix().removesuffix(SUFFIX).removeprefix("scenarios/")
     if name in bundled:
         return [bundled[name]]
     below = [file for each, file in bundled.items() if each.startswith(f"{name}/")]

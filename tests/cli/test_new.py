@@ -1,5 +1,6 @@
 """`harness new --robot`: a scenario for whatever robot, which then passes."""
 
+import json
 import re
 from pathlib import Path
 
@@ -188,3 +189,21 @@ def test_wrong_words_are_exit_code_2_and_leave_nothing(arguments, said, folder, 
     assert main(["new", str(FILE), *arguments]) == 2
     assert said in capsys.readouterr().err
     assert not (folder / "sub").exists()
+
+
+def test_the_first_line_names_the_schema_for_editors_which_is_there(tmp_path):
+    assert main(["new", "a.scenario.yaml"]) == 0
+    bundled = schema_of("a.scenario.yaml")
+    assert Path(bundled).is_absolute()
+    assert json.loads(Path(bundled).read_text())["title"]
+    (tmp_path / "scenario.schema.json").write_text("{}")
+    assert main(["new", "b.scenario.yaml"]) == 0
+    assert schema_of("b.scenario.yaml") == "scenario.schema.json"
+    assert main(["new", str(FILE), "--robot", "arm.urdf", "--srdf", "arm.srdf"]) == 0
+    assert schema_of(FILE) == "../scenario.schema.json"
+    assert main(["check", "a.scenario.yaml", str(FILE)]) == 0
+
+
+def schema_of(file):
+    first = Path(file).read_text(encoding="utf-8").splitlines()[0]
+    return first.partition("# yaml-language-server: $schema=")[2]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from harness.core.resources import existing_or_bundled, with_short_names
 from harness.suite.discovery import UsageError, bundled_scenarios, discover
 from harness.suite.folders import report_folders
 from harness.suite.header import ScenarioHeader, read_header
@@ -140,3 +141,36 @@ def test_what_dead_writers_left_is_removed_and_an_older_report_put_back(folder):
     assert sorted(each.name for each in (folder / "r").iterdir()) == sorted(
         [alive.name, other.name, "case"]
     )
+
+
+@pytest.mark.parametrize("name", ["scenarios/lessons", "scenarios/failures/timed_out"])
+def test_names_of_the_repository_work_without_it(name):
+    assert discover([name]) == discover([name.removeprefix("scenarios/")]) != []
+
+
+def test_python_files_and_robots_of_scenarios_are_found_by_bundled_names():
+    found = existing_or_bundled(Path("scenarios/ik_test/student_ik.py"))
+    assert found == existing_or_bundled(Path("ik_test/student_ik.py"))
+    assert found.is_file()
+
+
+def test_a_file_of_the_user_comes_before_a_bundled_one(folder):
+    mine = Path("ik_test/student_ik.py")
+    (folder / "ik_test").mkdir()
+    mine.touch()
+    assert existing_or_bundled(mine) == mine
+
+
+@pytest.mark.parametrize("name", ["no/such.py", "../scenarios/ik_test/student_ik.py", "/etc/x"])
+def test_what_is_no_bundled_file_stays_as_it_is(name):
+    assert existing_or_bundled(Path(name)) == Path(name)
+
+
+def test_a_bundled_file_is_printed_by_a_name_that_finds_it(folder):
+    [file] = discover(["lessons/04_gripper_alone"])
+    name = "lessons/04_gripper_alone.scenario.yaml"
+    assert with_short_names(f"FAILED {file}:7: it fell") == f"FAILED {name}:7: it fell"
+    assert discover([name]) == [file]
+    (folder / "lessons").mkdir()
+    (folder / name).touch()
+    assert with_short_names(f"FAILED {file}:7") == f"FAILED {file}:7"

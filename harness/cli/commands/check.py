@@ -9,7 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import output, say, say_json, say_text
 from harness.cli.shared_options import add_format, add_paths, add_seed
 from harness.core.printable import counted
@@ -24,6 +24,7 @@ class CheckCommand(Command):
     """Validate scenarios and the reach of their goals."""
 
     name: ClassVar[str] = "check"
+    group: ClassVar[str] = SCENARIOS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness check`."""

@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import RESULTS, Command
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json
@@ -17,6 +17,7 @@ class CompareCommand(Command):
     """Report what changed from one saved run to another."""
 
     name: ClassVar[str] = "compare"
+    group: ClassVar[str] = RESULTS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness compare`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import say_text
 from harness.cli.shared_options import add_paths, add_seed
 from harness.suite.discovery import discover
@@ -15,6 +15,7 @@ class ExplainCommand(Command):
     """Print the program that a scenario becomes."""
 
     name: ClassVar[str] = "explain"
+    group: ClassVar[str] = SCENARIOS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness explain`."""

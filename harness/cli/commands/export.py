@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import positive_number
-from harness.cli.command import Command
+from harness.cli.command import RESULTS, Command
 from harness.cli.files import refuse_existing, refusing_unwritable, run_folder, write_text
 from harness.cli.output import say
 from harness.suite.discovery import UsageError
@@ -25,6 +25,7 @@ class ExportCommand(Command):
     """Write a saved run as a rosbag2, and its robot as a URDF."""
 
     name: ClassVar[str] = "export"
+    group: ClassVar[str] = RESULTS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness export`."""

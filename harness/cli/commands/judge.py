@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import RESULTS, Command
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json, add_plugin
@@ -26,6 +26,7 @@ class JudgeCommand(Command):
     """Judge a saved run again."""
 
     name: ClassVar[str] = "judge"
+    group: ClassVar[str] = RESULTS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness judge`."""

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Iterable
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SETUP, Command
 from harness.cli.output import complain, say
 from harness.cli.shared_options import add_plugin
 
@@ -18,6 +18,7 @@ class ListCommand(Command):
     """List robots, worlds, steps and all else that a scenario may name."""
 
     name: ClassVar[str] = "list"
+    group: ClassVar[str] = SETUP
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness list`."""

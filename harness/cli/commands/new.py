@@ -7,18 +7,21 @@ import shlex
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
+from harness.core.resources import data_folder
 from harness.suite.discovery import SUFFIX, UsageError
 
 TEMPLATE = Path(__file__).parents[1] / "templates" / "new.scenario.yaml"
+SCHEMA = "scenario.schema.json"
 
 
 class NewCommand(Command):
     """Write a commented scenario that passes."""
 
     name: ClassVar[str] = "new"
+    group: ClassVar[str] = SCENARIOS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness new`."""
@@ -41,7 +44,7 @@ class NewCommand(Command):
             file.parent.mkdir(parents=True, exist_ok=True)
             text, lines = _content(arguments, file)
             with file.open("x", encoding="utf-8") as new:
-                new.write(text)
+                new.write(f"# yaml-language-server: $schema={_schema(file)}\n{text}")
         except OSError as error:
             raise UsageError(f"cannot write '{file}': {error.strerror}") from error
         finally:
@@ -53,6 +56,15 @@ class NewCommand(Command):
             say_text(line)
         say(f"check it: harness check {name}", f"run it:   harness run {name}")
         return 0
+
+
+def _schema(file: Path) -> str:
+    """The schema for editors: in the file's folder or above it, else the bundled one."""
+    folder = file.parent.resolve()
+    for level, above in enumerate((folder, *folder.parents)):
+        if (above / SCHEMA).is_file():
+            return "../" * level + SCHEMA
+    return str(data_folder("scenarios") / SCHEMA)
 
 
 def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, list[str]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import whole_number
-from harness.cli.command import Command
+from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import refuse_existing, refusing_unwritable, write_text
 from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
@@ -27,6 +27,7 @@ class RobotCommand(Command):
     """Check a robot, or draw it."""
 
     name: ClassVar[str] = "robot"
+    group: ClassVar[str] = EXCHANGE
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness robot`."""

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.options import add_options, read_options
 from harness.cli.output import only_json_on_stdout, output
 from harness.cli.run_mode import RunFiles, RunMode
@@ -50,6 +50,7 @@ class RunCommand(Command):
     """Run scenarios and judge them."""
 
     name: ClassVar[str] = "run"
+    group: ClassVar[str] = SCENARIOS
     writes_json_in_parts: ClassVar[bool] = True
     collects_garbage: ClassVar[bool] = True
 

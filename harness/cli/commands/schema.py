@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SETUP, Command
 from harness.cli.files import refusing_unwritable
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
@@ -16,6 +16,7 @@ class SchemaCommand(Command):
     """Print the JSON Schema of scenario files."""
 
     name: ClassVar[str] = "schema"
+    group: ClassVar[str] = SETUP
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness schema`."""

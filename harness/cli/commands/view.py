@@ -8,7 +8,7 @@ import webbrowser
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import RESULTS, Command
 from harness.cli.output import complain, say
 from harness.suite.discovery import UsageError
 
@@ -17,6 +17,7 @@ class ViewCommand(Command):
     """Open the page of a run."""
 
     name: ClassVar[str] = "view"
+    group: ClassVar[str] = RESULTS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness view`."""

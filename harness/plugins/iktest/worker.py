@@ -17,6 +17,7 @@ from typing import Any
 
 from harness.core.errors import HarnessError
 from harness.core.registry import broken_plugins, registry
+from harness.core.resources import existing_or_bundled
 from harness.core.suggestion import did_you_mean
 from harness.plugins.iktest.calls import call
 from harness.plugins.iktest.contract import UnusableSolver, parameter_words
@@ -47,7 +48,8 @@ def find_function(name: str) -> Callable[..., Any]:
             f"'{name}' is not module:function or file.py:function, and no solver has that name; "
             f"solvers: {'; '.join([known, *broken_plugins()])}"
         )
-    module = _from_file(Path(place)) if place.endswith(".py") else _from_name(place)
+    file = existing_or_bundled(Path(place))
+    module = _from_file(file) if place.endswith(".py") else _from_name(place)
     found: Any = module
     for part in attribute.split("."):
         if not hasattr(found, part):

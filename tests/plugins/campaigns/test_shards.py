@@ -341,7 +341,7 @@ def test_the_recipes_are_valid_and_use_the_same_number_of_parts_throughout():
 
 
 def test_every_command_of_the_guide_is_accepted():
-    from harness.cli.main import _parser
+    from harness.cli.main import parser_of
 
     guide = GUIDE.replace("${{ matrix.shard }}", "1").replace('"$SLURM_CPUS_PER_TASK"', "4")
     lines = re.findall(r"harness ((?:run|merge) [^\n`\"]*)", guide)
@@ -349,7 +349,7 @@ def test_every_command_of_the_guide_is_accepted():
     for line in lines:
         words = line.split()
         words += ["x"] if words[-1] == "--report-dir" else []
-        _parser(words).parse_args(words)
+        parser_of(words).parse_args(words)
 
 
 @pytest.mark.nightly

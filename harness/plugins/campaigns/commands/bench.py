@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.arguments import whole_number
-from harness.cli.command import Command
+from harness.cli.command import SEARCHES, Command
 from harness.cli.output import complain, say, say_json, say_text
 from harness.cli.shared_options import add_json, add_paths, add_report_dir
 from harness.core.errors import SpecError
@@ -19,6 +19,7 @@ class BenchCommand(Command):
     """Compare planners on the motions of scenarios."""
 
     name: ClassVar[str] = "bench"
+    group: ClassVar[str] = SEARCHES
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness bench`."""

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import RESULTS, Command
 from harness.cli.output import complain
 from harness.cli.shared_options import add_format, add_history, add_report_dir
 from harness.cli.suite_output import show_json, show_lines, show_results, write_suite_files
@@ -18,6 +18,7 @@ class MergeCommand(Command):
     """Merge the parts of a suite that ran with --shard."""
 
     name: ClassVar[str] = "merge"
+    group: ClassVar[str] = RESULTS
     writes_json_in_parts: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from harness.cli.arguments import whole_number
-from harness.cli.command import Command
+from harness.cli.command import RESULTS, Command
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json
 from harness.suite.outcome import EXIT_CODES
@@ -28,6 +28,7 @@ class ResultsCommand(Command):
     """Query, compare and export the results of many runs."""
 
     name: ClassVar[str] = "results"
+    group: ClassVar[str] = RESULTS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness results`."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import batch_size, whole_number
-from harness.cli.command import Command
+from harness.cli.command import SEARCHES, Command
 from harness.cli.files import one_scenario
 from harness.cli.output import complain, output, say, say_json
 from harness.cli.shared_options import (
@@ -34,6 +34,7 @@ class SearchCommand(Command):
     """Search for conditions under which a scenario fails."""
 
     name: ClassVar[str] = "search"
+    group: ClassVar[str] = SEARCHES
     collects_garbage: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:

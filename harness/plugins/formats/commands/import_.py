@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import refuse_existing, refusing_unwritable
 from harness.cli.output import say
 from harness.cli.robot_options import add_robot_options, source_of
@@ -22,6 +22,7 @@ class ImportCommand(Command):
     """Convert files of other programs."""
 
     name: ClassVar[str] = "import"
+    group: ClassVar[str] = EXCHANGE
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness import`."""

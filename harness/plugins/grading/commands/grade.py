@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import pair, seconds
-from harness.cli.command import Command
+from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import one_scenario
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import (
@@ -36,6 +36,7 @@ class GradeCommand(Command):
     """Grade a recording of another program by a scenario."""
 
     name: ClassVar[str] = "grade"
+    group: ClassVar[str] = EXCHANGE
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness grade`."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.arguments import positive_number, seconds, whole_number
-from harness.cli.command import Command
+from harness.cli.command import SEARCHES, Command
 from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json, add_plugin, add_report_dir
@@ -20,6 +20,7 @@ class IkTestCommand(Command):
     """Test a function that solves inverse kinematics."""
 
     name: ClassVar[str] = "ik-test"
+    group: ClassVar[str] = SEARCHES
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness ik-test`."""

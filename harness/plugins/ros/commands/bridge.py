@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import seconds
-from harness.cli.command import Command
+from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import one_scenario
 from harness.cli.output import complain
 from harness.cli.shared_options import (
@@ -29,6 +29,7 @@ class BridgeCommand(Command):
     """Let ROS 2 nodes command a scenario's robot."""
 
     name: ClassVar[str] = "bridge"
+    group: ClassVar[str] = EXCHANGE
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness bridge`."""

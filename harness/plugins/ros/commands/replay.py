@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json, add_plugin
@@ -18,6 +18,7 @@ class ReplayCommand(Command):
     """Run the recorded commands of ROS 2 nodes again."""
 
     name: ClassVar[str] = "replay"
+    group: ClassVar[str] = EXCHANGE
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness replay`."""

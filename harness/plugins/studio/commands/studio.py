@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.arguments import coordinate, port_number, start_time
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.commands.view import open_browser
 from harness.cli.output import complain, say
 from harness.cli.robot_options import ROBOT
@@ -21,6 +21,7 @@ class StudioCommand(Command):
     """Open a robot cell in the browser, and make a scenario."""
 
     name: ClassVar[str] = "studio"
+    group: ClassVar[str] = SCENARIOS
     collects_garbage: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
