@@ -12,12 +12,7 @@ from pydantic import BaseModel, Field
 from harness.cell.scope import At
 from harness.core.errors import HarnessError
 from harness.judging.margins import Margin, MarginSignal, Part, all_of
-from harness.judging.observations import (
-    ExpectationError,
-    Observations,
-    merged,
-    restricted,
-)
+from harness.judging.observations import ExpectationError, Observations, merged, restricted
 from harness.judging.poses import present
 from harness.judging.text import amount
 from harness.judging.window import NotObservable, NotReached, Window, lasting, window_of

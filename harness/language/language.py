@@ -6,12 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from harness.core.registry import Registry, registry
 from harness.language.annotations import keys_of
-from harness.language.expectation import (
-    KIND,
-    ExpectationFields,
-    PredicateFields,
-    TemporalFields,
-)
+from harness.language.expectation import KIND, ExpectationFields, PredicateFields, TemporalFields
 from harness.language.step import Step
 
 PLACEHOLDER_VERB, PLACEHOLDER_WORD = "settle", "within_limits"

@@ -141,10 +141,7 @@ def _run(
 
 
 def _keep(
-    item: pytest.Item,
-    number: int,
-    cases: Sequence[SuiteCase],
-    rates: Sequence[SampledRate] = (),
+    item: pytest.Item, number: int, cases: Sequence[SuiteCase], rates: Sequence[SampledRate] = ()
 ) -> None:
     """Attach the record to the item, from which the test's report carries it to the session."""
     record = ItemRecord(item.nodeid, number, tuple(cases), tuple(rates))

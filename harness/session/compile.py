@@ -228,10 +228,7 @@ class _Compiler:
                 placed = self.sources.kinematics.link_pose(start, frame)
             return placed @ spec.pose.se3()
         self.problems.unknown(
-            (*loc, "pose", "frame"),
-            "frame",
-            frame,
-            ("world", *objects, *description.link_names),
+            (*loc, "pose", "frame"), "frame", frame, ("world", *objects, *description.link_names)
         )
         return spec.pose.se3()
 

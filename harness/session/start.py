@@ -68,10 +68,7 @@ def start_case(request: RunRequest, clock: Clock, kind: type[M]) -> Start[M]:
 
 
 def start_physics(
-    prepared: Prepared,
-    kind: type[M],
-    clock: Clock | None = None,
-    frames: Sequence[str] = (),
+    prepared: Prepared, kind: type[M], clock: Clock | None = None, frames: Sequence[str] = ()
 ) -> M:
     """Build the physics and record its start state.
 

@@ -13,12 +13,7 @@ from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
 from harness.judging.collision import colliding
 from harness.judging.contacts import attached, shapeless
-from harness.judging.distances import (
-    MEASURED_WORDS,
-    Key,
-    recorded_distances,
-    unknown_distances,
-)
+from harness.judging.distances import MEASURED_WORDS, Key, recorded_distances, unknown_distances
 from harness.judging.expectation import Predicate
 from harness.judging.margins import Evidence, MarginSignal, measured
 from harness.judging.observations import CLEARANCE_ROOM, Observations

@@ -11,20 +11,10 @@ from harness.cell.scope import At
 from harness.core.state_words import stated_name
 from harness.judging.contacts import finger_gap, gripper_of
 from harness.judging.expectation import Predicate
-from harness.judging.joints import (
-    POSITION_ERROR,
-    SLIDING_TOLERANCE,
-    check_tolerance,
-    near,
-)
+from harness.judging.joints import POSITION_ERROR, SLIDING_TOLERANCE, check_tolerance, near
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.text import amounts
-from harness.judging.window import (
-    NotObservable,
-    NotReached,
-    Window,
-    refuse_unrecorded_steps,
-)
+from harness.judging.window import NotObservable, NotReached, Window, refuse_unrecorded_steps
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
 from harness.language.expectation import Quantity
 from harness.recording.execution_failures import GripperOutcome

@@ -17,13 +17,7 @@ from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.poses import (
-    UP,
-    object_poses,
-    physical_poses,
-    present,
-    start_samples,
-)
+from harness.judging.poses import UP, object_poses, physical_poses, present, start_samples
 from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, Window, object_record
 from harness.language.base import AngleBetween, Name

@@ -35,14 +35,7 @@ from harness.judging.contacts import TOUCH_FORCE, was_in_robot
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
-from harness.judging.poses import (
-    JUMP,
-    UP,
-    frame_poses,
-    object_poses,
-    present,
-    start_samples,
-)
+from harness.judging.poses import JUMP, UP, frame_poses, object_poses, present, start_samples
 from harness.judging.support import required_support, standing, supports
 from harness.judging.text import amounts
 from harness.judging.window import Window, object_record

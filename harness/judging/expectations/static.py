@@ -8,13 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
-from harness.judging.at_rest import (
-    SPEED,
-    TURNING,
-    rest_is_known,
-    resting_parts,
-    still_part,
-)
+from harness.judging.at_rest import SPEED, TURNING, rest_is_known, resting_parts, still_part
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import physical_poses, present

@@ -10,12 +10,7 @@ from pydantic import Field
 
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
-from harness.judging.joints import (
-    ROUNDING,
-    gripper_joints,
-    is_measured,
-    resting_joints,
-)
+from harness.judging.joints import ROUNDING, gripper_joints, is_measured, resting_joints
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.text import amounts
 from harness.judging.window import NotObservable, Window
@@ -42,10 +37,7 @@ POSITION = Quantity(
     "position",
 )
 COMMAND = Quantity(
-    "commanded position",
-    "rad or m",
-    "between the joint's limits, without a tolerance",
-    "position",
+    "commanded position", "rad or m", "between the joint's limits, without a tolerance", "position"
 )
 VELOCITY = Quantity(
     "velocity",
@@ -75,8 +67,7 @@ class WithinLimits(Predicate):
     )
     velocity: Flag = Field(default=True, description="Whether measured velocities are judged.")
     acceleration: Flag = Field(
-        default=False,
-        description="Whether accelerations of the commanded trajectory are judged.",
+        default=False, description="Whether accelerations of the commanded trajectory are judged."
     )
     effort: Flag = Field(default=True, description="Whether efforts of the motors are judged.")
 

@@ -236,11 +236,7 @@ def world_path(name_or_path: str, base_dir: Path) -> Path:
     if name_or_path in names:
         return data_folder("worlds") / f"{name_or_path}.yaml"
     known, *of_plugin = plugin_hints(name_or_path, names, "world format", "worlds")
-    hints = [
-        known,
-        "or the path of a .yaml, .sdf or .xml file",
-        *(of_plugin if suffix else ()),
-    ]
+    hints = [known, "or the path of a .yaml, .sdf or .xml file", *(of_plugin if suffix else ())]
     raise _no_world(name_or_path, f"no world is called `{name_or_path}`", "; ".join(hints))
 
 

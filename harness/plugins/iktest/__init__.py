@@ -9,14 +9,7 @@ if TYPE_CHECKING:
     from harness.plugins.iktest.kit import IkTest, check_ik, run_ik_test
     from harness.plugins.iktest.report import IkFinding, IkReport, PropertyResult
 
-__all__ = [
-    "IkFinding",
-    "IkReport",
-    "IkTest",
-    "PropertyResult",
-    "check_ik",
-    "run_ik_test",
-]
+__all__ = ["IkFinding", "IkReport", "IkTest", "PropertyResult", "check_ik", "run_ik_test"]
 
 
 def __getattr__(name: str) -> Any:

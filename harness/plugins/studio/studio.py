@@ -18,12 +18,7 @@ from harness.plugins.studio.messages import failure_message, names_of, robot_mes
 from harness.plugins.studio.proposals import proposals
 from harness.plugins.studio.scene_view import Handle, SceneView
 from harness.plugins.studio.session import Message, RefusedError, guarded
-from harness.plugins.studio.texts import (
-    ObjectForm,
-    object_spec,
-    pose_keys_of,
-    step_text,
-)
+from harness.plugins.studio.texts import ObjectForm, object_spec, pose_keys_of, step_text
 from harness.recording.step_record import StepRecord
 from harness.session.prepare import prepare
 

@@ -7,16 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.geometry import (
-    Box,
-    Capsule,
-    Cylinder,
-    Mesh,
-    Plane,
-    Rgba,
-    Shape,
-    Sphere,
-)
+from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Rgba, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.recording.link_poses import planned_tcp_poses
@@ -24,14 +15,7 @@ from harness.recording.robot_record import MeshRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD, moving_objects
-from harness.reporting.rosbag.messages import (
-    TYPES,
-    header,
-    message,
-    point,
-    pose_message,
-    vector,
-)
+from harness.reporting.rosbag.messages import TYPES, header, message, point, pose_message, vector
 from harness.reporting.rosbag.samples import Message
 from harness.reporting.rosbag.topics import SCENE_MARKERS
 

@@ -226,11 +226,7 @@ def _effect(
         text = f"nearer to {'the ends' if is_larger else 'the middle'} of its range in failed runs"
     column = score[:, int(is_folded)][np.isfinite(numbers)]
     return Effect(
-        parameter.path,
-        _pairs(column, values[np.isfinite(numbers)] > 0),
-        "",
-        float(chance),
-        text,
+        parameter.path, _pairs(column, values[np.isfinite(numbers)] > 0), "", float(chance), text
     )
 
 

@@ -76,10 +76,7 @@ def carried_track(link: BodyTrack, pose_in_link: Sequence[float]) -> BodyTrack:
 
 
 def object_track(
-    record: ObjectRecord,
-    attachments: Sequence[AttachmentRecord],
-    motion: Motion,
-    links: LinkPoses,
+    record: ObjectRecord, attachments: Sequence[AttachmentRecord], motion: Motion, links: LinkPoses
 ) -> BodyTrack:
     """An object's track: as the physics recorded it, otherwise as the planning scene assumes it.
 
@@ -293,8 +290,6 @@ class MovingBody:
         return MovingBody(self.shapes, self.track.part(samples), stretches)
 
 
-def links_with_shapes(
-    shapes: Mapping[str, Sequence[Shape]],
-) -> dict[str, tuple[TrackedShape, ...]]:
+def links_with_shapes(shapes: Mapping[str, Sequence[Shape]]) -> dict[str, tuple[TrackedShape, ...]]:
     """Tracked shapes of every link that has any."""
     return {link: tracked_shapes(link, each) for link, each in shapes.items() if each}

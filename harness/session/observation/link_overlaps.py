@@ -73,10 +73,7 @@ def _with_self_distances(signals: Signals, nearest: FloatArray, links: IntArray)
     return replace(
         signals,
         clearances={**signals.clearances, SELF: np.where(is_nearer, nearest, known)},
-        clearance_links={
-            **signals.clearance_links,
-            SELF: np.where(is_nearer, links, of_link),
-        },
+        clearance_links={**signals.clearance_links, SELF: np.where(is_nearer, links, of_link)},
     )
 
 

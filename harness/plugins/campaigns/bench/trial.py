@@ -63,11 +63,7 @@ class Trial:
 
 
 def try_plan(
-    planner: MotionPlanner,
-    scene: CoalScene,
-    request: MotionRequest,
-    name: str,
-    seed: int,
+    planner: MotionPlanner, scene: CoalScene, request: MotionRequest, name: str, seed: int
 ) -> Trial:
     """Plan once, and measure the result.
 

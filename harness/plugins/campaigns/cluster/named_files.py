@@ -9,17 +9,7 @@ from pathlib import Path
 from harness.core.files import is_file
 
 MESHES = (".stl", ".obj", ".dae", ".ply", ".glb")
-INPUTS = (
-    ".yaml",
-    ".yml",
-    ".sdf",
-    ".world",
-    ".urdf",
-    ".xacro",
-    ".srdf",
-    ".xml",
-    *MESHES,
-)
+INPUTS = (".yaml", ".yml", ".sdf", ".world", ".urdf", ".xacro", ".srdf", ".xml", *MESHES)
 """Endings of files that are sent where a scenario, or a file that it names, names them."""
 
 _NAME = re.compile(r"""\"([^\"\n]+)\"|'([^'\n]+)'|([^\s\"',\[\]{}<>=]+)""")

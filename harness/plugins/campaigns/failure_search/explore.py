@@ -185,11 +185,7 @@ class _Search:
             self._descend(shares[origins[0][1]], closeness, searched, int(rng.integers(2**31)))
 
     def _descend(
-        self,
-        origin: FloatArray,
-        closeness: Closeness,
-        searched: frozenset[Expectation],
-        seed: int,
+        self, origin: FloatArray, closeness: Closeness, searched: frozenset[Expectation], seed: int
     ) -> None:
         """Minimise the worst margin from an origin, until something new fails."""
         from cmaes import CMA

@@ -152,10 +152,7 @@ def search(
         HarnessError: The nominal scenario ends in an error.
     """
     variation = read_header(request.file, request.overrides).variation
-    overrides = {
-        **_case_overrides(request.file, request.case, variation),
-        **request.overrides,
-    }
+    overrides = {**_case_overrides(request.file, request.case, variation), **request.overrides}
     space = search_space(request.file, variation, overrides)
     space = SearchSpace(
         tuple(each for each in space.parameters if each.path not in request.overrides)

@@ -59,10 +59,7 @@ def rows(
 def count(connection: sqlite3.Connection, query: Query) -> int:
     """How many runs are selected."""
     where, values = sql_of(query, connection)
-    return connection.execute(
-        f"SELECT count(*) FROM runs WHERE {where}",
-        values,
-    ).fetchone()[0]
+    return connection.execute(f"SELECT count(*) FROM runs WHERE {where}", values).fetchone()[0]
 
 
 def left_out(connection: sqlite3.Connection) -> int:
@@ -107,11 +104,7 @@ def write_parquet(connection: sqlite3.Connection, query: Query, file: Path) -> i
     names, numbers = columns(connection), _numeric_columns(connection)
     schema = pa.schema([(name, pa.float64() if name in numbers else pa.string()) for name in names])
     found = rows(connection, query)
-    with (
-        writing(file.parent),
-        replaced(file) as part,
-        pq.ParquetWriter(part, schema) as writer,
-    ):
+    with writing(file.parent), replaced(file) as part, pq.ParquetWriter(part, schema) as writer:
         while batch := list(islice(found, ROWS_TOGETHER)):
             arrays = [
                 pa.array([_cell(row[i], name in numbers) for row in batch], schema.field(i).type)

@@ -116,11 +116,7 @@ class _Reader:
         self._folder = folder
         self.notes = Notes()
         self.meshes: dict[str, Triangles] = {}
-        self._kinds = (
-            ("primitive", self._primitive),
-            ("mesh", self._mesh),
-            ("plane", self._plane),
-        )
+        self._kinds = (("primitive", self._primitive), ("mesh", self._mesh), ("plane", self._plane))
 
     def object(self, item: Located) -> ObjectSpec:
         """A collision object; it stands still."""

@@ -13,12 +13,7 @@ from harness.core.inputs import is_there
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import XmlElement, read_xml
 
-VARIABLES = (
-    "GZ_SIM_RESOURCE_PATH",
-    "IGN_GAZEBO_RESOURCE_PATH",
-    "SDF_PATH",
-    "GAZEBO_MODEL_PATH",
-)
+VARIABLES = ("GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH")
 """Gazebo's environment variables: lists of folders of model folders, separated by colons."""
 
 FUEL_CACHE = "GZ_FUEL_CACHE_PATH"

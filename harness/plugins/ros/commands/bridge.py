@@ -105,11 +105,7 @@ def bridge_request(
                 f" and the {count} expectations of these steps are not judged"
             )
     return BridgeRequest(
-        request,
-        domain=domain,
-        is_local=not arguments.network,
-        factor=arguments.pace,
-        say=note,
+        request, domain=domain, is_local=not arguments.network, factor=arguments.pace, say=note
     )
 
 

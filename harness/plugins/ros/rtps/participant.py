@@ -11,13 +11,7 @@ from contextlib import suppress
 
 from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.rtps import wire
-from harness.plugins.ros.rtps.discovery import (
-    Endpoint,
-    Peer,
-    announcement,
-    farewell,
-    is_gone,
-)
+from harness.plugins.ros.rtps.discovery import Endpoint, Peer, announcement, farewell, is_gone
 from harness.plugins.ros.rtps.reader import Reader
 from harness.plugins.ros.rtps.sockets import Sockets
 from harness.plugins.ros.rtps.wire import Address, Sample
