@@ -40,9 +40,11 @@ class Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Refuse a word that is not among an argument's choices, and name the nearest one."""
         if action.choices is not None and value not in action.choices:
+            from harness.core.registry import absent_plugins  # takes time
+
             words = [str(each) for each in action.choices]
-            hint = did_you_mean(str(value), words, "valid words")
-            raise argparse.ArgumentError(action, f"'{value}' is not valid; {hint}")
+            hints = [did_you_mean(str(value), words, "valid words"), *absent_plugins()]
+            raise argparse.ArgumentError(action, f"'{value}' is not valid; {'; '.join(hints)}")
 
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
         self, args: Sequence[str] | None = None, namespace: Any = None

@@ -402,7 +402,14 @@ def plugin_hints(
     of_plugin = f"{article} {what} of a plug-in that is not installed needs `--plugin`"
     is_misspelt = is_misspelt or (near is not None and is_slip(name, near))
     known = did_you_mean(name, valid, listed or f"{what}s")
-    return [known, *([] if is_misspelt else [of_plugin]), *broken_plugins()]
+    return [known, *([] if is_misspelt else [of_plugin, *absent_plugins()]), *broken_plugins()]
+
+
+def absent_plugins() -> list[str]:
+    """A sentence where this installation is the core alone."""
+    if BUNDLED.is_dir():
+        return []
+    return ["this installation lacks the built-in plug-ins: `pip install armharness` has them"]
 
 
 def broken_plugins() -> list[str]:

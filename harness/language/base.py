@@ -108,7 +108,7 @@ class SpecModel(BaseModel):
 
 
 Number = Annotated[float, Strict()]
-Count = Annotated[int, Strict()]
+Count = Annotated[int, Strict(), Field(ge=0)]
 Flag = Annotated[bool, Strict()]
 
 Share = Annotated[float, BeforeValidator(quantity("1"))]
@@ -125,6 +125,7 @@ JointAcceleration = Annotated[float, BeforeValidator(quantity("rad/s**2", "m/s**
 JointJerk = Annotated[float, BeforeValidator(quantity("rad/s**3", "m/s**3"))]
 LinearAcceleration = Annotated[float, BeforeValidator(quantity("m/s**2"))]
 JointValue = Annotated[float, BeforeValidator(quantity("rad", "m"))]
+"""A joint's position: rad where it turns, m where it slides; an `Angle` refuses the latter."""
 JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
 
 PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]

@@ -5,10 +5,12 @@ import math
 from pathlib import Path
 
 import pytest
+from pydantic import TypeAdapter, ValidationError
 
 from harness.core.errors import SpecError
 from harness.core.quantity import constant_of, split_quantity
 from harness.judging.expectations.sees import HUES, HueRange
+from harness.language.base import Count
 from harness.language.colors import COLORS, color_of_name
 from harness.language.reading.load import parse_scenario
 
@@ -165,3 +167,11 @@ def test_sees_finds_an_object_by_the_name_of_its_color(name):
     assert low <= 360 * hue <= high or (low > high and not high < 360 * hue < low)
     assert saturation > HueRange(named=name).min_saturation
     assert value > HueRange(named=name).min_value
+
+
+@pytest.mark.parametrize("value", [-1, -10_000, 0.5, True])
+def test_a_count_is_a_whole_number_from_0(value):
+    counts = TypeAdapter(Count)
+    assert [counts.validate_python(each) for each in (0, 1, 10_000)] == [0, 1, 10_000]
+    with pytest.raises(ValidationError):
+        counts.validate_python(value)

@@ -47,12 +47,14 @@ def test_the_help_of_the_core_has_fewer_commands(core):
         refused = core(name)
         assert refused.returncode == 2
         assert f"'{name}' is not valid" in refused.stderr
+        assert "lacks the built-in plug-ins" in refused.stderr
         assert "Traceback" not in refused.stderr
 
 
 def test_the_core_lists_no_packages_of_plug_ins(core):
     done = core("list", "plugins")
     assert (done.returncode, done.stdout.strip()) == (0, "")
+    assert done.stderr.count("lacks the built-in plug-ins") == 1
     assert "Traceback" not in done.stderr
 
 

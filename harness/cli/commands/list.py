@@ -101,9 +101,17 @@ def _packages() -> Rows:
     from importlib.util import find_spec
 
     from harness.core.extras import install_command
-    from harness.core.registry import BUILT_IN, BUNDLED, OWN_PACKAGE, broken_plugins, noun, registry
+    from harness.core.registry import (
+        BUILT_IN,
+        BUNDLED,
+        OWN_PACKAGE,
+        absent_plugins,
+        broken_plugins,
+        noun,
+        registry,
+    )
 
-    for broken in broken_plugins():
+    for broken in [*broken_plugins(), *absent_plugins()]:
         complain(f"harness: {broken}")
     provided: dict[tuple[str, str], list[str]] = {}
     for kind in BUILT_IN:
@@ -152,5 +160,7 @@ LISTINGS: dict[str, Callable[[], Rows]] = {
     "world-formats": _listing("world_format"),
     "reporters": _listing("reporter"),
     "commands": _listing("command"),
+    "run-modes": _listing("run_mode"),
+    "case-runners": _listing("case_runner"),
     "plugins": _packages,
 }
