@@ -78,12 +78,15 @@ def _doubtful(inertial: Inertial) -> list[str]:
     _, _, most = principal_moments(inertial)
     notes: list[str] = []
     if np.allclose(inertial.inertia, np.eye(3)):
-        notes.append("the inertia is the unit tensor, a placeholder")
+        notes.append("the inertia is the unit tensor, a placeholder; write that of the link")
     elif most == 0:
         notes.append(f"{inertial.mass:g} kg without inertia: a point")
     elif np.sqrt(most / inertial.mass) > LONGEST_GYRATION:
         gyration = np.sqrt(most / inertial.mass)
-        notes.append(f"its mass would be {gyration:.2g} m from its centre")
+        notes.append(
+            f"its mass would be {gyration:.2g} m from its centre: the inertia is in kg m^2, and a"
+            " CAD program writes kg mm^2 or g mm^2"
+        )
     return notes
 
 

@@ -151,6 +151,15 @@ def test_what_looks_doubtful_is_reported_and_is_no_failure(urdf, said, folder, m
     assert said in page
 
 
+def test_a_scenario_is_checked_with_the_masses_of_its_robot(folder, capsys):
+    write_arm(folder, URDF.replace(f'"wrist">{INERTIAL}', f'"wrist">{UNIT}'))
+    text = "scenario: s\nrobot: {urdf: arm.urdf}\nsteps: [wait: 1 s]\n"
+    (folder / "s.scenario.yaml").write_text(text)
+    assert main(["check", "s.scenario.yaml"]) == 0
+    said = capsys.readouterr().out
+    assert "note: robot: link 'wrist': the inertia is the unit tensor, a placeholder" in said
+
+
 def test_a_model_that_differs_in_physics_would_be_found(folder):
     ours = load_arm(folder)
     shifted = tuple(

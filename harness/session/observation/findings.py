@@ -9,6 +9,7 @@ import numpy as np
 from harness.cell.program import Program
 from harness.core.errors import Problem
 from harness.core.geometry import Box, Capsule, Cylinder, Sphere, bounding_radius
+from harness.core.solids import volume_of
 from harness.core.world import WorldObject
 from harness.ports.scene import Touch
 from harness.recording.explanation import LoweredMargins
@@ -16,6 +17,7 @@ from harness.recording.run import Finding
 from harness.recording.step_record import StepRecord
 
 LARGE = 5.0  # size from which a movable object is probably given in millimetres [m]
+DENSEST = 22590.0  # osmium at room temperature, CRC Handbook of Chemistry and Physics [kg/m^3]
 
 NOTHING_EXPECTED = (
     "the scenario expects nothing, so it passes whatever happens, as long as no step fails;"
@@ -28,6 +30,7 @@ def about_file(program: Program, notes: Sequence[Problem]) -> tuple[Finding, ...
     found = [Finding("note", noted(problem)) for problem in notes]
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_large(obj))]
     found += [Finding("note", text) for obj in program.all_objects() if (text := _too_inert(obj))]
+    found += [Finding("note", text) for obj in program.all_objects() if (text := _too_dense(obj))]
     expects_errors = any(step.spec.expect_error for step in program.all_steps())
     if not program.expectations and not expects_errors:
         found.append(Finding("nothing_expected", NOTHING_EXPECTED))
@@ -63,6 +66,18 @@ def _too_inert(obj: WorldObject) -> str:
     return (
         f"'{obj.name}' has an inertia of {moment:.3g} kg m^2, and its mass within its shapes has"
         f" {most:.3g} kg m^2 at most: it tips and turns so slowly that it seems to rest"
+    )
+
+
+def _too_dense(obj: WorldObject) -> str:
+    """A remark on a movable object that is heavier than any metal of its size."""
+    volumes = [volume_of(shape.geometry) for shape in obj.shapes]
+    volume = sum(each for each in volumes if each is not None)
+    if obj.is_static or not volume or None in volumes or obj.mass <= DENSEST * volume:
+        return ""
+    return (
+        f"'{obj.name}' has {obj.mass / volume:.3g} kg/m^3, and osmium, the densest metal,"
+        f" {DENSEST:g}: a mass without a unit is in kg, write `{obj.mass:g} g` for grams"
     )
 
 

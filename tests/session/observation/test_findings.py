@@ -184,3 +184,21 @@ def test_a_file_that_expects_nothing_differs_from_one_that_expects_a_failure(
     steps = [SimpleNamespace(spec=SimpleNamespace(expect_error=code)) for code in (None, error)]
     program = program_with(steps=steps, expectations=expectations)
     assert [each.kind for each in about_file(program, ())] == ["nothing_expected"] * is_note
+
+
+@pytest.mark.parametrize(
+    ("obj", "is_said"),
+    [
+        (thing(Shape(Sphere(0.1)), mass=94.0), False),  # 4.19 l of osmium have 94.6 kg
+        (thing(Shape(Sphere(0.1)), mass=95.0), True),
+        (thing(Shape(Box((0.1, 0.1, 0.1))), Shape(Sphere(0.1)), mass=117.0), False),
+        (thing(Shape(Box((0.1, 0.1, 0.1))), Shape(Sphere(0.1)), mass=118.0), True),
+        (thing(Shape(Sphere(0.1)), mass=1000.0, is_static=True), False),
+        (thing(Shape(Mesh("a.stl", np.ones(3))), Shape(Sphere(0.01)), mass=1000.0), False),
+        (thing(mass=1000.0), False),
+    ],
+)
+def test_no_object_is_denser_than_the_densest_metal(obj, is_said):
+    found = findings_about(obj)
+    assert bool(found) is is_said
+    assert all(f"write `{obj.mass:g} g` for grams" in each.message for each in found)
