@@ -63,12 +63,11 @@ class DrySimulator:
             obj.name for obj in program.all_objects() if obj.in_simulation and not obj.is_static
         )
 
-    def watch(self, kind: str, step: ProgramStep, record: StepRecord | None) -> None:
+    def watch(self, step: ProgramStep, record: StepRecord | None) -> None:
         """Note which steps run; the gripper misses in a step that is expected to fail so."""
-        del record
         if step.spec.expect_error != "CONTROL_FAILED":
             return
-        if kind == "step_started":
+        if record is None:
             self._missing.append(step.path)
         else:
             self._missing.remove(step.path)

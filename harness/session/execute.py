@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 from harness.cell.cell import Belief, Cell, Presence, StepNotes
 from harness.cell.program import Program, ProgramStep
@@ -20,8 +19,8 @@ from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 from harness.session.advice import advice
 
-StepEvent = Literal["step_started", "step_finished"]
-OnStep = Callable[[StepEvent, ProgramStep, StepRecord | None], None]
+OnStep = Callable[[ProgramStep, StepRecord | None], None]
+"""Called as a step begins, with None, and as it ends, with its record."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +67,7 @@ class _Runner:
 
     def _run_step(self, step: ProgramStep) -> None:
         cell = self.cell
-        self.on_step("step_started", step, None)
+        self.on_step(step, None)
         cell.step, cell.notes = step, StepNotes()
         place = len(self.records)
         self.records.append(_not_reached(step))
@@ -92,7 +91,7 @@ class _Runner:
             explanation=notes.explanation + _details(failure, cell),
             result=notes.result,
         )
-        self.on_step("step_finished", step, self.records[place])
+        self.on_step(step, self.records[place])
         if status == "failed" and (self.depth or not self.keep_going):
             if isinstance(inner, _RunEndedError):
                 raise inner
@@ -133,7 +132,6 @@ class ProgramExecution:
             ports: The planning scene is empty; the world's objects are added here.
             simulator: The simulator at the start state, with every object of the program prepared
                 and the world's objects present.
-            on_step: Called before and after each step.
             keep_going: Whether a failed step of the file does not prevent the next one; a
                 step made of others ends with the first of them that fails.
             external: Programs to which a step may hand the robot over; None: such a step does

@@ -10,7 +10,7 @@ from harness.ports.planning import PlanningPorts
 from harness.ports.scene import PlanningScene, Touch
 from harness.recording.step_record import StepRecord
 from harness.session.dry_run import DryPlanner, DrySimulator
-from harness.session.execute import StepEvent, execute_program
+from harness.session.execute import execute_program
 
 
 def predict(
@@ -25,8 +25,8 @@ def predict(
     simulator = DrySimulator(program)
     poses: dict[str, tuple[SE3, SE3]] = {}
 
-    def watch(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
-        simulator.watch(kind, step, record)
+    def watch(step: ProgramStep, record: StepRecord | None) -> None:
+        simulator.watch(step, record)
         tcp_link = program.description.tcp_link
         pose = ports.kinematics.link_pose(simulator.joint_positions(), tcp_link)
         poses[step.path] = (poses.get(step.path, (pose, pose))[0], pose)

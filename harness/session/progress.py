@@ -19,7 +19,6 @@ from harness.reporting.progress_events import (
     Written,
 )
 from harness.reporting.result import CaseResult
-from harness.session.execute import StepEvent
 
 Notify = Callable[[ProgressEvent], None]
 
@@ -39,9 +38,7 @@ class Progress:
         """Report work that is no step: see `harness.core.activity.Activity`."""
         self.notify(Working(what, done, total))
 
-    def step(
-        self, simulator: Simulator, _: StepEvent, step: ProgramStep, record: StepRecord | None
-    ) -> None:
+    def step(self, simulator: Simulator, step: ProgramStep, record: StepRecord | None) -> None:
         """Report that a step begins, or its result."""
         places = {each.path: index for index, each in enumerate(self.program.steps)}
         place = places.get(step.path, -1), len(places)

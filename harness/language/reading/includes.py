@@ -16,7 +16,7 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Place, Source, walk
 from harness.language.files.yaml_file import LARGEST_TREE, parse_yaml, read_text
 from harness.language.language import PLACEHOLDER_VERB
-from harness.language.reading.params import PARAMS, escaped, filled
+from harness.language.reading.params import PARAMS, escaped, filled, mapped
 from harness.language.reading.paths import paths_from
 
 INCLUDE = "include"
@@ -70,17 +70,9 @@ class _Expander:
         self.count = 0
 
     def expand(self, item: Located, context: _Context) -> Located:
-        if isinstance(item.value, list):
-            return Located([self.expand(each, context) for each in item.value], item.place)
-        if not isinstance(item.value, dict):
-            return item
-        if INCLUDE in item.value:
-            return self._block(item, item.value[INCLUDE], context)
-        entries = {
-            key: Entry(entry.key, self.expand(entry.value, context))
-            for key, entry in item.value.items()
-        }
-        return Located(entries, item.place)
+        if INCLUDE in item.mapping():
+            return self._block(item, item.mapping()[INCLUDE], context)
+        return mapped(item, lambda child: self.expand(child, context))
 
     def _block(self, item: Located, include: Entry, context: _Context) -> Located:
         """The step as `repeat: {times: 1, steps: ...}`; the keys next to it stay."""

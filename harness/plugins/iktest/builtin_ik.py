@@ -79,19 +79,11 @@ def _function_of(
     chain: Chain, solve: Callable[[LinkGoal, FloatArray], Solutions]
 ) -> Callable[..., Any]:
     """What an arm can be given as a goal, as a function that `harness ik-test` can call."""
-
-    def pose(matrix: FloatArray, seed: FloatArray) -> Solutions:
-        return solve(PoseGoal(chain.link, SE3.from_matrix(matrix)), seed)
-
-    def position_and_pitch(position: FloatArray, pitch: float, seed: FloatArray) -> Solutions:
-        return solve(PositionGoal(chain.link, position, pitch), seed)
-
-    def position_alone(position: FloatArray, seed: FloatArray) -> Solutions:
-        return solve(PositionGoal(chain.link, position), seed)
-
-    solvers: dict[str, Callable[..., Any]] = {
-        "pose": pose,
-        "position and pitch": position_and_pitch,
-        "position": position_alone,
+    functions: dict[str, Callable[..., Any]] = {
+        "pose": lambda matrix, seed: solve(PoseGoal(chain.link, SE3.from_matrix(matrix)), seed),
+        "position and pitch": lambda position, pitch, seed: solve(
+            PositionGoal(chain.link, position, pitch), seed
+        ),
+        "position": lambda position, seed: solve(PositionGoal(chain.link, position), seed),
     }
-    return solvers[natural_task(chain)]
+    return functions[natural_task(chain)]

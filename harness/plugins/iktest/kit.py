@@ -176,8 +176,9 @@ class _Search:
         self, properties: tuple[Property, ...]
     ) -> tuple[tuple[PropertyResult, ...], tuple[IkFinding, ...], Speed | None]:
         """Results, findings and speed."""
-        speed = self._time()
-        self._learn()
+        targets = self._targets()
+        speed = self._time(targets)
+        self._learn(targets)
         results: list[PropertyResult] = []
         for each in properties:
             if HANGS in self._known:
@@ -186,28 +187,25 @@ class _Search:
                 results.append(self._try(each))
         return tuple(results), tuple(self._findings), speed
 
-    def _time(self) -> Speed | None:
+    def _time(self, targets: Sequence[Target]) -> Speed | None:
         """Times of calls for targets within reach."""
         times: list[float] = []
-
-        def visit(target: Target) -> bool:
+        for target in targets:
             outcome = self._trial.query(target)
             if outcome.kind in ("answered", "refused"):
                 times.append(outcome.seconds)
-            return not self._trial.has_hung
-
-        draw(within_reach(self._trial), visit, self._test.examples, self._test.seed)
+            if self._trial.has_hung:
+                break
         if not times:
             return None
         median, slow = np.quantile(times, [0.5, 0.95])
         return Speed(float(median), float(slow), max(times), len(times))
 
-    def _learn(self) -> None:
+    def _learn(self, targets: Sequence[Target]) -> None:
         """How the function counts, the error that answers share, and the regions of mistakes."""
         trial = self._trial
         if trial.has_hung:
             return
-        targets = self._targets()
         plain, pairs = trial.convention, self._answers(targets)
         learned = self._learned(plain, pairs)
         if learned.share < MOSTLY:

@@ -341,7 +341,7 @@ class LiveCell:
         self._keys = document.step_keys()
         self._has_same_links = True
         self.execution = ProgramExecution(
-            prepared.program, prepared.ports, simulator, lambda *event: self.on_step(*event)
+            prepared.program, prepared.ports, simulator, lambda *of: self.on_step(*of)
         )
         self.history = []
         self._keep(0)

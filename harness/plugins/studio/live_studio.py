@@ -5,10 +5,10 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from harness.cell.program import ProgramStep
 from harness.core.errors import Problem, SpecError
 from harness.core.printable import printable
 from harness.core.types import FloatArray
@@ -234,14 +234,14 @@ class LiveStudio:
         else:
             self.cell.idle(seconds)
 
-    def _on_step(self, event: str, step: Any, record: StepRecord | None) -> None:
-        if event == "step_started":
+    def _on_step(self, step: ProgramStep, record: StepRecord | None) -> None:
+        if record is None:
             self.busy = step.summary
             self.session.frame()
             return
         if self.cell.document.step_count and not self.cell.is_by_hand:
             self.verdicts.begin(self.cell, is_last=False)
-        if record is not None and record.status == "failed":
+        if record.status == "failed":
             self.say("failed", f"{record.summary}: {record.error_code}: {record.message}")
 
     def working(self, what: str, action: Callable[[], None]) -> None:

@@ -16,7 +16,7 @@ from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion
 from harness.recording.step_record import StepRecord
 from harness.session.dry_run import DryPlanner, DrySimulator
-from harness.session.execute import StepEvent, execute_program
+from harness.session.execute import execute_program
 from harness.session.prepare import Prepared, prepare
 
 OnMotion = Callable[["MotionTrials"], None]
@@ -71,9 +71,9 @@ def collect(
     bench = _BenchPlanner(prepared, str(path), planners, seeds, on_motion)
     simulator = DrySimulator(prepared.program)
 
-    def watch(kind: StepEvent, step: ProgramStep, record: StepRecord | None) -> None:
-        simulator.watch(kind, step, record)
-        bench.on_step(kind, step)
+    def watch(step: ProgramStep, record: StepRecord | None) -> None:
+        simulator.watch(step, record)
+        bench.step = step if record is None else bench.step
 
     execute_program(prepared.program, prepared.ports._replace(planner=bench), simulator, watch)
     return bench.motions
@@ -97,16 +97,11 @@ class _BenchPlanner(DryPlanner):
         self._real = prepared.ports.planner
         self._scene = prepared.ports.scene
         self._file, self._planners, self._seeds, self._on_motion = file, planners, seeds, on_motion
-        self._step: ProgramStep | None = None
-
-    def on_step(self, kind: str, step: ProgramStep) -> None:
-        """Remember the step that is being planned."""
-        if kind == "step_started":
-            self._step = step
+        self.step: ProgramStep | None = None  # the one that began last
 
     def plan(self, request: MotionRequest) -> MotionPlan:
         # the goal comes first, so that an unreachable one counts against no planner
-        jump, motion, step = super().plan(request), request.motion, self._step
+        jump, motion, step = super().plan(request), request.motion, self.step
         if step is None or not isinstance(motion, FreeMotion) or motion.constraints is not None:
             return jump
         trials: list[Trial] = []
