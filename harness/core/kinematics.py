@@ -40,6 +40,10 @@ class LinkJoint:
         """T_parent_child of a movable joint at a position [rad or m]."""
         return LinkPoses([self], np.array([[position]])).at(0)[self.child]
 
+    def poses(self, positions: FloatArray) -> FloatArray:
+        """T_parent_child of a movable joint at positions [rad or m], (N,) -> (N, 7)."""
+        return LinkPoses([self], positions[:, None]).rows(self.child)
+
 
 class LinkPoses:
     """Poses T_root_link of links for N samples.

@@ -17,9 +17,9 @@ from harness.judging.facts import fact
 from harness.judging.poses import present, put_samples
 from harness.judging.temporal import trailing_max, without_gaps
 from harness.judging.window import NotObservable, object_record
-from harness.recording.robot_record import GripperRecord
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
+from harness.robot.description import Gripper
 
 TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
 OVERLAP = 0.001
@@ -27,7 +27,7 @@ OVERLAP = 0.001
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 
-def gripper_of(run: Run) -> GripperRecord:
+def gripper_of(run: Run) -> Gripper:
     """The gripper.
 
     Raises:
@@ -38,12 +38,12 @@ def gripper_of(run: Run) -> GripperRecord:
     return run.robot.gripper
 
 
-def finger_links(gripper: GripperRecord) -> frozenset[str]:
+def finger_links(gripper: Gripper) -> frozenset[str]:
     """Links of all finger sides."""
-    return frozenset(link for links in gripper.sides.values() for link in links)
+    return frozenset(gripper.links)
 
 
-def hand_links(gripper: GripperRecord) -> frozenset[str]:
+def hand_links(gripper: Gripper) -> frozenset[str]:
     """Links of all finger sides, and the palm."""
     return finger_links(gripper) | ({gripper.palm_link} - {""})
 
@@ -100,12 +100,10 @@ def finger_gap(run: Run) -> FloatArray:
         NotObservable: The gripper's widths are not known.
     """
     hand = gripper_of(run)
-    names = [joint.name for joint in run.robot.joints]
-    if not hand.widths or hand.joint not in names:
+    column = run.robot.joint_index.get(hand.joint)
+    if not len(hand.widths) or column is None:
         raise NotObservable("the gripper's widths are not known")
-    rows = np.array(sorted(hand.widths))
-    position = run.signals.joint_positions[:, names.index(hand.joint)]
-    return np.interp(position, rows[:, 0], rows[:, 1])
+    return hand.gap_at(run.signals.joint_positions[:, column])
 
 
 def attached(run: Run, name: str) -> BoolArray:

@@ -61,10 +61,10 @@ def grip_force(run: Run) -> FloatArray:
     of the gap. It is not known (inf) where the gripper's widths are not.
     """
     hand = gripper_of(run)
-    rows = np.array(sorted(hand.widths))
+    rows = hand.widths[np.argsort(hand.widths[:, 0])]
     if len(rows) < 2:
         return np.full(len(run.signals.times), np.inf)
-    column = [joint.name for joint in run.robot.joints].index(hand.joint)
+    column = run.robot.joint_index[hand.joint]
     middles = (rows[1:, 0] + rows[:-1, 0]) / 2
     slopes = np.abs(np.diff(rows[:, 1]) / np.diff(rows[:, 0]))
     slope = np.interp(run.signals.joint_positions[:, column], middles, slopes)

@@ -195,11 +195,11 @@ def _is_squeezed(run: Run, name: str) -> BoolArray:
     theirs, F = effort / (d gap / d position).
     """
     hand = gripper_of(run)
-    column = [joint.name for joint in run.robot.joints].index(hand.joint)
+    column = run.robot.joint_index[hand.joint]
     signals = run.signals
     short = np.abs(signals.joint_commands[:, column] - signals.joint_positions[:, column])
     closes = short > CLOSING_SHARE * abs(hand.open_position - hand.closed_position)
-    rows = np.array(sorted(hand.widths))
+    rows = hand.widths[np.argsort(hand.widths[:, 0])]
     sides = _side_presses(run, name)
     if len(rows) < 2 or len(sides) < 2:
         return closes
@@ -217,7 +217,7 @@ def _is_squeezed(run: Run, name: str) -> BoolArray:
 
 def _jammed(run: Run) -> BoolArray:
     """Samples after a fault that blocked a joint of the gripper, shape (N,)."""
-    joints = run.robot.groups.get(gripper_of(run).group, (gripper_of(run).joint,))
+    joints = run.robot.group_joints(gripper_of(run).group) or (gripper_of(run).joint,)
     stalls = [
         step.start_time
         for step in run.steps

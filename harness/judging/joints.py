@@ -16,9 +16,9 @@ from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.text import amounts
 from harness.judging.window import NotObservable, Window
 from harness.language.expectation import Quantity
-from harness.recording.robot_record import JointRecord
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
+from harness.robot.description import Joint
 
 SLIDING_TOLERANCE = 0.002  # [m]
 ROUNDING = 1e-9
@@ -47,13 +47,13 @@ def check_tolerance(at: At, targets: Mapping[str, float], tolerance: float, is_g
         )
 
 
-def joint_column(run: Run, name: str) -> tuple[int, JointRecord]:
+def joint_column(run: Run, name: str) -> tuple[int, Joint]:
     """Place of a joint in the recorded columns, and its record.
 
     Raises:
         NotObservable: The robot has no such movable joint.
     """
-    for column, joint in enumerate(run.robot.joints):
+    for column, joint in enumerate(run.robot.movable_joints):
         if joint.name == name:
             return column, joint
     raise NotObservable(f"there is no joint '{name}' in this run")
@@ -64,17 +64,19 @@ def gripper_joints(run: Run) -> frozenset[str]:
     hand = run.robot.gripper
     if hand is None:
         return frozenset()
-    mimics = {joint.name for joint in run.robot.joints if joint.is_mimic}
-    return frozenset(run.robot.groups.get(hand.group, ())) | {hand.joint} | mimics
+    mimics = {joint.name for joint in run.robot.movable_joints if joint.is_mimic}
+    return frozenset(run.robot.group_joints(hand.group)) | {hand.joint} | mimics
 
 
 def resting_joints(run: Run) -> frozenset[str]:
     """Joints that may lean on their stops: the gripper's, followers, and idle ones off the arm."""
-    names = gripper_joints(run) | {joint.name for joint in run.robot.joints if joint.is_mimic}
+    names = gripper_joints(run) | {
+        joint.name for joint in run.robot.movable_joints if joint.is_mimic
+    }
     if "joint_commands" in run.unrecorded:
         return names
-    others = names | set(run.robot.groups.get(run.robot.arm_group, ()))
-    for column, joint in enumerate(run.robot.joints):
+    others = names | set(run.robot.group_joints(run.robot.arm_group))
+    for column, joint in enumerate(run.robot.movable_joints):
         if joint.name in others:
             continue
         commands = run.signals.joint_commands[:, column]
@@ -83,7 +85,7 @@ def resting_joints(run: Run) -> frozenset[str]:
     return names
 
 
-def is_measured(recorded: FloatArray, joint: JointRecord, what: str) -> bool:
+def is_measured(recorded: FloatArray, joint: Joint, what: str) -> bool:
     """Whether a run has measurements of a joint; a mimic joint has no sensor.
 
     Raises:

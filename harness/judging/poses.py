@@ -31,7 +31,7 @@ def link_poses(run: Run, link: str) -> FloatArray:
     if link in run.signals.frames:
         return run.signals.frames[link]
     if link in robot.static_link_poses:
-        return np.broadcast_to(np.array(robot.static_link_poses[link]), (count, 7))
+        return np.broadcast_to(robot.static_link_poses[link], (count, 7))
     raise NotObservable(f"the pose of link '{link}' was not recorded")
 
 

@@ -156,7 +156,7 @@ def _step_at(run: Run, row: int) -> str:
 
 
 def _signal_name(run: Run, name: str, column: int, columns: int) -> str:
-    joints = run.robot.joints
+    joints = run.robot.movable_joints
     if name.startswith("joint_") and columns == len(joints):
         return f"{name} of {joints[column].name}"
     return name

@@ -12,11 +12,12 @@ from harness.core.geometry import Mesh
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import BY_NAME, BY_PAIR
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.npz_file import ArrayHeader
-from harness.recording.robot_record import MeshRecord, RobotRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
+from harness.robot.description import RobotDescription
 
 Inconsistency = tuple[str, str]
 """Key, and what is wrong there."""
@@ -48,7 +49,9 @@ class ExpectedArray:
             yield name, f"expected the shape {self.shape}, found {header.shape}"
 
 
-def signal_flaws(headers: Mapping[str, ArrayHeader], robot: RobotRecord) -> Iterator[Inconsistency]:
+def signal_flaws(
+    headers: Mapping[str, ArrayHeader], robot: RobotDescription
+) -> Iterator[Inconsistency]:
     """What is wrong with the headers of a run's signals."""
     for name in PER_SAMPLE:
         if name not in headers:
@@ -63,7 +66,7 @@ def signal_flaws(headers: Mapping[str, ArrayHeader], robot: RobotRecord) -> Iter
     for name, header in headers.items():
         group = name.partition("/")[0]
         if group in (*PER_SAMPLE, *BY_NAME, *BY_PAIR):
-            yield from _expected(group, count, len(robot.joints)).flaw(name, header)
+            yield from _expected(group, count, len(robot.joint_names)).flaw(name, header)
 
 
 def _expected(group: str, samples: int, joints: int) -> ExpectedArray:
@@ -106,25 +109,37 @@ def _hull_flaws(key: str, record: ObjectRecord) -> Iterator[Inconsistency]:
             )
 
 
-def _robot_flaws(robot: RobotRecord) -> Iterator[Inconsistency]:
-    joints = {joint.name for joint in robot.joints}
-    for name, members in robot.groups.items():
-        yield from _unknown(f"robot.groups.{name}", members, joints, "joint")
+def _robot_flaws(robot: RobotDescription) -> Iterator[Inconsistency]:
+    links, later = set(robot.link_names), {joint.child for joint in robot.joints}
+    for index, joint in enumerate(robot.joints):
+        key = f"robot.joints[{index}]"
+        yield from _shape(f"{key}.axis", joint.axis, 3)
+        yield from _shape(f"{key}.pose.xyz", joint.pose.translation, 3)
+        yield from _unknown(f"{key}.parent", [joint.parent], links, "link")
+        yield from _unknown(f"{key}.child", [joint.child], links, "link")
+        if joint.parent in later:
+            yield f"{key}.parent", f"expected a link that is placed before '{joint.child}'"
+        later.discard(joint.child)
+        if joint.mimic is not None:
+            followed = [joint.mimic.joint]
+            yield from _unknown(f"{key}.mimic.joint", followed, robot.joint_names, "joint")
+    for name, group in robot.groups.items():
+        yield from _unknown(f"robot.groups.{name}", group.joint_names, robot.joint_names, "joint")
     if robot.arm_group:
         yield from _unknown("robot.arm_group", [robot.arm_group], robot.groups, "group")
-    for name, pose in robot.static_link_poses.items():
-        yield from _length(f"robot.static_link_poses.{name}", pose, 7)
-    for index, placement in enumerate(robot.placements):
-        key = f"robot.placements[{index}]"
-        yield from _length(f"{key}.pose", placement.pose, 7)
-        yield from _length(f"{key}.axis", placement.axis, 3)
-        if placement.parent in {later.link for later in robot.placements[index:]}:
-            yield f"{key}.parent", f"expected a link that is placed before '{placement.link}'"
-        if placement.joint:
-            yield from _unknown(f"{key}.joint", [placement.joint], joints, "joint")
-    if robot.gripper is not None:
-        yield from _unknown("robot.gripper.joint", [robot.gripper.joint], joints, "joint")
-        yield from _unknown("robot.gripper.group", [robot.gripper.group], robot.groups, "group")
+    hand = robot.gripper
+    if hand is not None:
+        yield from _unknown("robot.gripper.joint", [hand.joint], robot.joint_names, "joint")
+        yield from _unknown("robot.gripper.group", [hand.group], robot.groups, "group")
+        if len(hand.widths):
+            yield from _shape("robot.gripper.widths", hand.widths, len(hand.widths), 2)
+
+
+def _shape(key: str, array: FloatArray, *shape: int) -> Iterator[Inconsistency]:
+    if array.shape != shape:
+        yield key, f"expected the shape {shape}, found {array.shape}"
+    elif not np.isfinite(array).all():
+        yield key, "expected finite numbers"
 
 
 def _step_flaws(key: str, step: StepRecord, samples: int) -> Iterator[Inconsistency]:

@@ -54,6 +54,8 @@ def to_plain(value: Any, *, not_finite: NotFinite = "strings") -> Any:
             return str(value)
         case Mapping():
             mapping = cast("Mapping[Any, Any]", value)
+            if any(isinstance(key, tuple) for key in mapping):
+                return [[plain(key), plain(item)] for key, item in mapping.items()]
             return {str(key): plain(item) for key, item in mapping.items()}
         case list() | tuple():
             return [plain(item) for item in cast("list[Any]", value)]
@@ -112,7 +114,13 @@ def from_plain(plain: Any, kind: Any, key: str = "") -> Any:
         return _one_of(plain, arguments, key)
     if origin is tuple:
         return _tuple(plain, arguments, key)
+    if origin is frozenset:
+        return frozenset(_tuple(plain, (*arguments, ...), key))
+    if origin is np.ndarray:
+        return _array(plain, key)
     if origin is not None and issubclass(origin, Mapping):
+        if get_origin(arguments[0]) is tuple:
+            return dict(_tuple(plain or [], (tuple[arguments], ...), key))
         return {
             name: from_plain(item, arguments[1], f"{key}.{name}")
             for name, item in _mapping(plain, key).items()
@@ -130,6 +138,16 @@ def _scalar(plain: Any, kind: type, key: str) -> Any:
         return kind(plain)
     except OverflowError:
         raise PlainError(key, f"the number {_short(plain)} is too large") from None
+
+
+def _array(plain: Any, key: str) -> np.ndarray[Any, Any]:
+    """An array of floats from lists of one length at each depth, or from one number."""
+    if not isinstance(plain, list):
+        return np.array(_scalar(plain, float, key))
+    rows = [_array(each, f"{key}[{n}]") for n, each in enumerate(cast("list[Any]", plain))]
+    if len({row.shape for row in rows}) > 1:
+        raise PlainError(key, "expected lists of one length")
+    return np.array(rows, dtype=float)
 
 
 def _pose(plain: Any, key: str) -> SE3:

@@ -26,10 +26,10 @@ from harness.recording.consistency import (
     signal_flaws,
 )
 from harness.recording.files import FolderFiles, checked
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.npz_file import NpzError, NpzFile
-from harness.recording.older_runs import FORMAT, KNOWN_FORMATS, in_present_words
+from harness.recording.older_runs import FORMAT, KNOWN_FORMATS, in_present_form
 from harness.recording.plain import PlainError, from_plain
-from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Outcome, Run
 from harness.recording.signals import Signals
 from harness.recording.step_results import SavedDetails, SavedResult
@@ -117,7 +117,7 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
     """The run without its arrays, and the trajectories of its steps as run.json has them."""
     hints = get_type_hints(Run)
     with _damaged(path):
-        document = in_present_words(document)
+        document = in_present_form(document)
         steps = _mappings(document, "steps")
         empty = {"parts": ()}
         own = {"trajectory": None, "planner": empty, "explanation": empty, "result": empty}

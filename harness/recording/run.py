@@ -14,12 +14,10 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.recording.commands import CommandRecord
-from harness.recording.robot_record import (
-    MeshRecord,
-    RobotRecord,
-)
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.signals import CaptureRecord, ContactRecord, Signals, VideoRecord
 from harness.recording.step_record import StepRecord
+from harness.robot.description import RobotDescription
 
 TIME_RESOLUTION = 1e-9
 """Times nearer than this are the same [s]."""
@@ -157,7 +155,7 @@ class Run:
     file: str
     case: str
     seed: int
-    robot: RobotRecord
+    robot: RobotDescription
     objects: tuple[ObjectRecord, ...]
     attachments: tuple[AttachmentRecord, ...]
     steps: tuple[StepRecord, ...]

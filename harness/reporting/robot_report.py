@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from harness.core.printable import counted
-from harness.recording.robot_record import JointRecord
 from harness.reporting.terminal import Style
+from harness.robot.description import Joint
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class RobotReport:
 
     name: str
     source: str
-    joints: tuple[JointRecord, ...]
+    joints: tuple[Joint, ...]
     followers: Mapping[str, str]
     effort_sources: tuple[str, ...]
     groups: tuple[GroupLine, ...]

@@ -1,7 +1,7 @@
 """The robot as plain data: URDF, SRDF and robot.yaml combined, with its gripper.
 
 The planner (Pinocchio, from `urdf`) and the physics (MuJoCo, from `links` and `joints`, in doubles)
-are built from the same description.
+are built from the same description, and a run stores it.
 """
 
 from __future__ import annotations
@@ -93,6 +93,11 @@ class Joint(LinkJoint):
     is_velocity_assumed: bool = False
 
     @property
+    def is_mimic(self) -> bool:
+        """Whether it follows another joint."""
+        return self.mimic is not None
+
+    @property
     def position_unit(self) -> Literal["m", "rad"]:
         """The unit of its position: `rad` or `m`."""
         return "m" if self.kind == "prismatic" else "rad"
@@ -165,6 +170,11 @@ class Gripper:
     def links(self) -> tuple[str, ...]:
         """Finger links of both sides: the default touch_links of attached objects."""
         return tuple(link for side in self.sides.values() for link in side)
+
+    def gap_at(self, positions: FloatArray | float) -> FloatArray:
+        """The gap between the pads at positions of the joint [m]."""
+        rows = self.widths[np.argsort(self.widths[:, 0])]
+        return np.asarray(np.interp(positions, rows[:, 0], rows[:, 1]))
 
     @property
     def has_single_jaw(self) -> bool:
@@ -271,6 +281,17 @@ class RobotDescription:
         return frozenset(static)
 
     @cached_property
+    def static_link_poses(self) -> Mapping[str, FloatArray]:
+        """T_world_link of `static_links` (xyz, quat wxyz), shape (7,) each, `world` included."""
+        poses = LinkPoses(self.joints, self.start_positions(), self.static_links)
+        return {name: poses.rows(name)[0] for name in poses.rotations if name in self.static_links}
+
+    @cached_property
+    def link_visuals(self) -> Mapping[str, tuple[Shape, ...]]:
+        """Shapes for pictures, by link, of the links that have some."""
+        return {link.name: link.visuals for link in self.links if link.visuals}
+
+    @cached_property
     def shapeless_links(self) -> tuple[str, ...]:
         """Links that a joint moves and that nothing can touch.
 
@@ -294,6 +315,15 @@ class RobotDescription:
     def default_group(self) -> str:
         """Default group of steps: the arm, else the gripper."""
         return self.arm_group or (self.gripper.group if self.gripper else "")
+
+    @property
+    def arm_joints(self) -> tuple[str, ...]:
+        """Joints of the arm; every movable joint where the robot is a gripper alone."""
+        return self.group_joints(self.arm_group) or self.joint_names
+
+    def group_joints(self, group: str) -> tuple[str, ...]:
+        """Joints of a group, from base to tip; none where there is no such group."""
+        return self.groups[group].joint_names if group in self.groups else ()
 
     def group_indices(self, group: str) -> tuple[int, ...]:
         """Indices of a group's joints in description order."""

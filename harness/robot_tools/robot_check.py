@@ -23,7 +23,6 @@ from harness.planning.ik.trial import try_ik
 from harness.reporting.robot_report import GroupLine, RobotFinding, RobotReport
 from harness.robot.description import Joint, RobotDescription
 from harness.robot_tools import robot_findings as look_at
-from harness.session.record import robot_record
 
 KINEMATIC_SAMPLES = 20
 IK_SAMPLES = 100
@@ -70,7 +69,7 @@ def check_robot(
     report = RobotReport(
         name=description.name,
         source=source,
-        joints=robot_record(description, kinematics).joints,
+        joints=description.movable_joints,
         followers={joint.name: _follows(joint) for joint in description.movable_joints},
         effort_sources=tuple(dict.fromkeys(j.effort_source for j in driven if j.effort_source)),
         groups=_groups(description),

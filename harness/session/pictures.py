@@ -16,7 +16,7 @@ from harness.core.memory import free_memory
 from harness.judging.pictures import looks_of_expectations
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
-from harness.recording.robot_record import MeshRecord
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import Finding, Run
 from harness.recording.signals import CaptureRecord, Signals, VideoRecord
 from harness.recording.step_record import StepRecord

@@ -19,7 +19,6 @@ from harness.session.observation.findings import findings_of, notes_of_files, ov
 from harness.session.observation.observe import observed_signals, report_findings
 from harness.session.pictures import Captures, Drawings, with_picture_names
 from harness.session.prepare import Prepared
-from harness.session.record import robot_record
 from harness.session.run_request import RunRequest
 
 
@@ -92,7 +91,7 @@ def _recorded(
     program, kinematics, recorded = prepared.program, prepared.ports.kinematics, simulator.finish()
     believed = believed_poses(execution.beliefs, recorded.joint_positions, kinematics)
     signals = replace(recorded, object_poses={**recorded.object_poses, **believed})
-    robot = robot_record(program.description, kinematics)
+    robot = program.description
     steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
     return Run(
         scenario=program.title,

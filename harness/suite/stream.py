@@ -16,7 +16,7 @@ from pydantic_core import from_json
 
 from harness.core.errors import HarnessError
 from harness.core.inputs import content_hash
-from harness.recording.older_runs import in_present_words
+from harness.recording.older_runs import in_present_form
 from harness.recording.run import Outcome
 from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
@@ -365,7 +365,7 @@ def _older_entry(line: bytes) -> StreamEntry | None:
         plain = from_json(line)
         if plain["format"] not in KNOWN_FORMATS:
             return None
-        present = {**plain, "format": FORMAT, "result": in_present_words(plain["result"])}
+        present = {**plain, "format": FORMAT, "result": in_present_form(plain["result"])}
         return validator(StreamEntry).validate_python(present)
     except (ValueError, KeyError, TypeError):
         return None

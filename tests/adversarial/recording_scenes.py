@@ -93,7 +93,7 @@ def jumped(recording, _run):
 
 def second_publisher(recording, run):
     """A forgotten node goes on publishing the joints as they were at the start."""
-    columns = {joint.name: index for index, joint in enumerate(run.robot.joints)}
+    columns = {joint.name: index for index, joint in enumerate(run.robot.movable_joints)}
     arm = {name: columns[name] for name in run.robot.arm_joints}
     end = float(run.signals.times[-1])
     still = joint_state(run.signals, 0, arm)
@@ -115,17 +115,17 @@ def frames_of(late):
     """/tf shows the first joint as it was some seconds ago."""
 
     def change(recording, run):
-        [placement] = [each for each in run.robot.placements if each.joint == "joint1"]
-        names = {placement.parent, placement.link}
+        joint = run.robot.joint_by_name["joint1"]
+        names = {joint.parent, joint.child}
         poses = replayed_link_poses(run.robot, run.signals.joint_positions, names)
         count, end = len(run.signals.times), float(run.signals.times[-1])
         parent, child = (
-            np.broadcast_to(poses[name], (count, 7)) for name in (placement.parent, placement.link)
+            np.broadcast_to(poses[name], (count, 7)) for name in (joint.parent, joint.child)
         )
         edges = relative(parent, child)
         for time in np.arange(0.6, end, 0.02):
             row = int(np.searchsorted(run.signals.times, time - late))
-            content = {"transforms": [transform(placement.parent, placement.link, edges[row])]}
+            content = {"transforms": [transform(joint.parent, joint.child, edges[row])]}
             recording.add("/tf", "tf2_msgs/msg/TFMessage", float(time), content)
         return recording
 

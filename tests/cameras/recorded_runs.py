@@ -1,11 +1,12 @@
 """A recorded run without physics: a still arm, a simulated box, an imagined one."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from harness.core.geometry import Box, Plane, Shape
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
-from harness.recording.robot_record import RobotRecord
 from harness.recording.run import AttachmentRecord, ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
@@ -60,9 +61,7 @@ def a_run(description):
         StepRecord(f"step {i}", f"steps[{i}]", "wait", f"wait {i}", i, "passed", i, i, i, i + 1)
         for i in range(count)
     )
-    robot = RobotRecord(
-        description.name, (), {}, {}, "", description.tcp_link, description.base_link, (), ()
-    )
+    robot = replace(description, joints=(), groups={}, links=())
     imagined = ObjectRecord(
         "imagined",
         is_static=True,

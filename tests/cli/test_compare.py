@@ -122,7 +122,7 @@ def test_a_plain_number_has_no_unit(before, after, said):
 
 def test_runs_of_different_robots_are_compared_by_their_names():
     """Joints that one run has and the other has not are no reason to stop."""
-    other = replace(ROBOT, name="one_joint", joints=ROBOT.joints[:1], gripper=None)
+    other = replace(ROBOT, name="one_joint", joints=ROBOT.joints[:2], gripper=None)
     stored = [StoredRun(run, (), "passed", run.robot.name, {})
               for run in (make_run(), make_run(150, robot=other))]  # fmt: skip
     comparison = compare(*stored)

@@ -97,7 +97,10 @@ def test_an_array_of_another_length_shape_or_type_is_named(base, run, name, chan
     [
         (("robot", "joints", 1, "lower"), "low", 'joints[1].lower: expected a number, found "low"'),
         (("robot", "joints"), {"a": 1}, "robot.joints: expected a list, found a mapping"),
-        (("robot", "groups", "arm"), ["elbow"], "robot.groups.arm: there is no joint 'elbow'"),
+        (("robot", "groups", "arm", "joint_names"), ["elbow"], "arm: there is no joint 'elbow'"),
+        (("robot", "joints", 1, "axis"), [0, 1], "robot.joints[1].axis: expected the shape (3,)"),
+        (("robot", "joints", 1, "axis"), [0, [1]], "robot.joints[1].axis: expected lists of one"),
+        (("robot", "links", 0, "name"), "earth", "joints[0].parent: there is no link 'world'"),
         (("steps", 0, "end_index"), 10**6, "steps[0].start_index: expected indices within 0 to"),
         (("steps", 0, "status"), "perfect", "steps[0].status: expected one of passed"),
         (("steps", 0, "start_time"), "NaN", "steps[0].start_time: expected finite times"),

@@ -15,45 +15,72 @@ from harness.core.geometry import Box, Cylinder, Shape
 from harness.core.spatial import SE3
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
-from harness.recording.robot_record import GripperRecord, JointRecord, RobotRecord
 from harness.recording.run import AttachmentRecord, ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SavedDetails, SavedResult
+from harness.robot.description import (
+    Gripper,
+    Joint,
+    Link,
+    NamedState,
+    PlanningGroup,
+    RobotDescription,
+    fixed_joint,
+)
 from tests.approved import SAID, verdict_text
 
 DT = 0.01
+
+
+def joint(name, kind, parent, child, lower, upper, velocity, acceleration, effort):
+    """A joint about or along the z axis of its parent."""
+    limits = (lower, upper, velocity, acceleration, effort)
+    return Joint(name, kind, parent, child, SE3.identity(), np.array([0.0, 0.0, 1.0]), *limits)
+
+
 LINKS = ("world", "base_link", "arm_link", "palm", "left_finger", "right_finger")
 
-ROBOT = RobotRecord(
+POINTS = np.array([[0.0, 0.0], [0.03, 0.06]])
+
+ROBOT = RobotDescription(
     name="hand",
+    urdf="",
+    srdf="",
+    links=tuple(Link(name, None) for name in LINKS),
     joints=(
-        JointRecord("shoulder", "revolute", -1.0, 1.0, 2.0, 5.0, 10.0),
-        JointRecord("finger", "prismatic", 0.0, 0.03, 0.5, 1.0, 20.0),
+        fixed_joint("world_joint", "world", "base_link", SE3.from_xyz_rpy((0, 0, 0.5))),
+        joint("shoulder", "revolute", "base_link", "arm_link", -1.0, 1.0, 2.0, 5.0, 10.0),
+        fixed_joint("palm_joint", "arm_link", "palm", SE3.identity()),
+        joint("finger", "prismatic", "palm", "left_finger", 0.0, 0.03, 0.5, 1.0, 20.0),
+        fixed_joint("right_joint", "palm", "right_finger", SE3.identity()),
     ),
-    groups={"arm": ("shoulder",), "gripper": ("finger",)},
-    named_states={
-        "arm": {"home": {"shoulder": 0.0}},
-        "gripper": {"open": {"finger": 0.03}, "closed": {"finger": 0.0}},
+    groups={
+        "arm": PlanningGroup("arm", ("shoulder",)),
+        "gripper": PlanningGroup("gripper", ("finger",)),
     },
+    named_states=(
+        NamedState("home", "arm", {"shoulder": 0.0}),
+        NamedState("open", "gripper", {"finger": 0.03}),
+        NamedState("closed", "gripper", {"finger": 0.0}),
+    ),
+    allowed_collisions={("arm_link", "palm"): "Adjacent"},
     arm_group="arm",
-    tcp_link="palm",
-    base_link="base_link",
-    link_names=LINKS,
-    static_links=("world", "base_link"),
-    gripper=GripperRecord(
+    gripper=Gripper(
         "gripper",
         "finger",
         {"left": ("left_finger",), "right": ("right_finger",)},
+        {"left": "left_finger", "right": "right_finger"},
+        "palm",
         0.03,
         0.0,
-        ((0.0, 0.0), (0.03, 0.06)),
-        "palm",
+        10.0,
+        20.0,
+        POINTS,
     ),
-    static_link_poses={
-        "world": (0, 0, 0, 1, 0, 0, 0),
-        "base_link": (0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0),
-    },
+    tcp_link="palm",
+    base_link="base_link",
+    start_state={},
 )
 
 
@@ -85,10 +112,10 @@ def heights(z):
 
 def make_run(n=200, *, objects=(TABLE, BOX), steps=(), attachments=(), robot=ROBOT, **signals):
     """A run of n samples in which nothing moves or touches, but for what is given."""
-    columns = len(robot.joints)
+    columns = len(robot.joint_names)
     zero = np.zeros((n, columns))
     ajar = zero.copy()
-    ajar[:, -1] = 0.02  # the pads are 4 cm apart, as wide as the box
+    ajar[:, -1:] = 0.02  # the pads are 4 cm apart, as wide as the box
     poses = {"Table": at(n, (0, 0, -0.015)), "box": at(n, (0, 0, 0.02))}
     poses |= {"cylinder": at(n, (0, 0, 0.02))}
     names = {record.name for record in objects if record.in_simulation}

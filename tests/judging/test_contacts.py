@@ -93,10 +93,10 @@ def test_the_robot_touches_with_the_sum_of_its_links_and_holds_what_is_welded():
 def test_the_gap_of_the_pads_is_interpolated_from_the_grippers_widths():
     run = make_run(N)
     assert finger_gap(run) == pytest.approx(0.04)
-    unsorted = ((0.03, 0.06), (0.0, 0.0), (0.01, 0.04))
+    unsorted = np.array([(0.03, 0.06), (0.0, 0.0), (0.01, 0.04)])
     hand = replace(ROBOT.gripper, widths=unsorted)
     assert finger_gap(replace(run, robot=replace(ROBOT, gripper=hand))) == pytest.approx(0.05)
-    for odd in (replace(hand, widths=()), replace(hand, joint="thumb")):
+    for odd in (replace(hand, widths=np.zeros((0, 2))), replace(hand, joint="thumb")):
         with pytest.raises(NotObservable, match="widths are not known"):
             finger_gap(replace(run, robot=replace(ROBOT, gripper=odd)))
     with pytest.raises(NotObservable, match="no gripper"):

@@ -30,6 +30,7 @@ from harness.judging.hold import HOLD_TIME, why_not_between
 from harness.judging.temporal import eventually
 from harness.judging.window import window_of
 from harness.recording.run import Finding
+from harness.robot.description import NamedState, PlanningGroup
 from tests.judging.synthetic_run import (
     BOX,
     ROBOT,
@@ -375,12 +376,13 @@ def test_what_turned_in_its_place_stands_where_it_stood():
 
 
 def test_a_state_is_that_of_the_first_group_that_has_it():
-    states = {
-        "arm": {"home": {"shoulder": 0.0}},
-        "extra": {"park": {"shoulder": 0.5}, "home": {"shoulder": 0.9}},
-        "gripper": {"open": {"finger": 0.03}},
-    }
-    run = make_run(robot=replace(ROBOT, named_states=states))
+    states = (
+        *ROBOT.named_states,
+        NamedState("park", "extra", {"shoulder": 0.5}),
+        NamedState("home", "extra", {"shoulder": 0.9}),
+    )
+    groups = {**ROBOT.groups, "extra": PlanningGroup("extra", ("shoulder",))}
+    run = make_run(robot=replace(ROBOT, groups=groups, named_states=states))
     assert verdict(run, NamedTarget(state="home")).status == "passed"
     assert verdict(run, NamedTarget(state="park")).margin == pytest.approx(0.01 - 0.5)
     assert verdict(run, NamedTarget(state="park", group="arm")).status == "not observable"
@@ -389,7 +391,7 @@ def test_a_state_is_that_of_the_first_group_that_has_it():
 
 
 def test_a_joint_that_cannot_move_is_judged_by_its_tolerance():
-    shoulder, finger = ROBOT.joints
+    shoulder, finger = ROBOT.movable_joints
     fixed = replace(shoulder, lower=0.0, upper=0.0)
     run = make_run(robot=replace(ROBOT, joints=(fixed, finger)))
     for by, margin in ((0.0, 1e-3), (4e-4, 6e-4), (2e-3, -1e-3)):

@@ -32,7 +32,12 @@ WEIGHT = 0.98
 
 def gripping(effort, widths=((0.0, 0.0), (0.03, 0.06)), position=0.02):
     """A run in which the gripper's joint exerts an effort."""
-    run = make_run(N, robot=replace(ROBOT, gripper=replace(ROBOT.gripper, widths=widths)))
+    run = make_run(
+        N,
+        robot=replace(
+            ROBOT, gripper=replace(ROBOT.gripper, widths=np.array(widths).reshape(-1, 2))
+        ),
+    )
     efforts, positions = np.zeros((N, 2)), run.signals.joint_positions.copy()
     efforts[:, 0], efforts[:, 1], positions[:, 1] = 99.0, effort, position
     return changed(run, joint_efforts=efforts, joint_positions=positions)

@@ -28,6 +28,7 @@ from harness.judging.window import (
     window_of,
 )
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.robot.description import Mimic
 from tests.judging.synthetic_run import ROBOT, changed, make_run, step
 
 STEPS = (
@@ -205,9 +206,9 @@ def test_numbers_that_differ_are_written_with_digits_that_differ():
 
 
 def test_joints_that_may_rest_are_the_grippers_its_followers_and_idle_ones():
-    shoulder, finger = ROBOT.joints
+    shoulder, finger = ROBOT.movable_joints
     idle, driven = replace(shoulder, name="idle"), replace(shoulder, name="driven")
-    mimic = replace(finger, name="mimic", is_mimic=True)
+    mimic = replace(finger, name="mimic", mimic=Mimic("finger"))
     robot = replace(ROBOT, joints=(*ROBOT.joints, idle, driven, mimic))
     run = make_run(20, robot=robot)
     commands = run.signals.joint_commands.copy()
@@ -234,8 +235,8 @@ def test_joints_that_may_rest_are_the_grippers_its_followers_and_idle_ones():
     [("prismatic", False, 0.002), ("prismatic", True, 0.01), ("revolute", False, 0.01)],
 )
 def test_a_tolerance_that_is_not_given_is_smaller_for_joints_that_slide(kind, given, limit):
-    joint = replace(ROBOT.joints[0], kind=kind)
-    run = make_run(5, robot=replace(ROBOT, joints=(joint, ROBOT.joints[1])))
+    joint = replace(ROBOT.movable_joints[0], kind=kind)
+    run = make_run(5, robot=replace(ROBOT, joints=(joint, ROBOT.movable_joints[1])))
     for target, sign in ((limit * 0.99, 1), (limit * 1.01, -1), (-limit * 1.01, -1)):
         margins = near(window_of(run, ""), {"shoulder": target}, 0.01, given)
         assert (margins.values * sign > 0).all()
@@ -245,8 +246,8 @@ def test_a_tolerance_that_is_not_given_is_smaller_for_joints_that_slide(kind, gi
 
 
 def test_a_continuous_joint_is_off_by_the_shorter_way_and_the_worst_joint_counts():
-    endless = replace(ROBOT.joints[0], kind="continuous")
-    run = make_run(5, robot=replace(ROBOT, joints=(endless, ROBOT.joints[1])))
+    endless = replace(ROBOT.movable_joints[0], kind="continuous")
+    run = make_run(5, robot=replace(ROBOT, joints=(endless, ROBOT.movable_joints[1])))
     margins = near(window_of(run, ""), {"shoulder": 2 * np.pi - 0.1}, 0.2, is_given=True)
     assert margins.values == pytest.approx(0.1)
     both = near(window_of(run, ""), {"shoulder": 0.1, "finger": 0.0}, 0.2, is_given=True)

@@ -49,12 +49,9 @@ def moved(run, spec, rng, *, turns):
         replace(each, pose=tuple(poses(np.array([each.pose]))[0])) if each.pose else each
         for each in run.objects
     )
-    static = {
-        name: tuple(poses(np.array([pose]))[0])
-        for name, pose in run.robot.static_link_poses.items()
-        if name != KEPT_FRAME
-    }
-    robot = replace(run.robot, static_link_poses={**run.robot.static_link_poses, **static})
+    base, *others = run.robot.joints
+    pose = SE3.from_vector(poses(base.pose.as_vector()[None])[0])
+    robot = replace(run.robot, joints=(replace(base, pose=pose), *others))
     return replace(run, signals=signals, objects=objects, robot=robot), _in_world(spec, whole)
 
 
@@ -95,7 +92,7 @@ def renamed(run, spec):
     robot = run.robot
     names = {record.name for record in run.objects} | set(robot.link_names) - {KEPT_FRAME}
     names |= {joint.name for joint in robot.joints} | set(robot.groups)
-    names |= {state for states in robot.named_states.values() for state in states}
+    names |= {state.name for state in robot.named_states}
     names |= set(run.robot.gripper.sides) if run.robot.gripper else set()
     names -= {"gripper", ""}  # a word of expectations, and a group that a predicate looks up
     return _with_names(run, names), _with_names(spec, names)

@@ -1,22 +1,22 @@
 """Poses of links from a run alone, against Pinocchio's and MuJoCo's."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from harness.core.kinematics import LinkPoses
+from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.recording.consistency import run_flaws
-from harness.recording.link_poses import placement_poses, replayed_link_poses
-from harness.recording.robot_record import LinkPlacement
+from harness.recording.link_poses import replayed_link_poses
+from harness.robot.description import Link, fixed_joint
 from harness.robot.load import load_robot
-from harness.session.record import robot_record
 from harness.simulation.agreement import link_poses_in_physics
 from tests.judging.synthetic_run import ROBOT, make_run
 
-POSE = (0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0)
+POSE = SE3.from_xyz_rpy((0.0, 0.0, 0.1))
 ROBOTS = [
     {"model": "ur3e", "gripper": "rh_p12_rn_a", "base": {"xyz": [0.1, 0.2, 1.0]}},
     {"model": "open_manipulator_x"},
@@ -44,7 +44,7 @@ def assert_same(ours, theirs):
 def test_links_are_where_pinocchio_and_mujoco_put_them(description):
     samples = samples_of(description)
     kinematics = PinocchioKinematics(description)
-    poses = replayed_link_poses(robot_record(description, kinematics), samples)
+    poses = replayed_link_poses(description, samples)
     in_physics, _ = link_poses_in_physics(description, samples)
     assert set(poses) == set(description.link_names)
     for place, name in enumerate(description.link_names[1:]):
@@ -53,43 +53,31 @@ def test_links_are_where_pinocchio_and_mujoco_put_them(description):
         assert_same(poses[name], in_physics[:, place])
 
 
-def test_a_saved_run_has_the_kinematics_of_the_description(description):
-    samples = samples_of(description)
-    record = robot_record(description, PinocchioKinematics(description))
-    poses = LinkPoses(description.joints, samples)
-    for name, rows in replayed_link_poses(record, samples).items():
-        assert_same(rows, poses.rows(name))
-    moved = next(placement for placement in record.placements if placement.joint)
-    column = description.joint_index[moved.joint]
-    local = placement_poses(moved, samples[:, column])
-    carrier, link = (
-        LinkPoses(description.joints, samples).at(2)[each] for each in (moved.parent, moved.link)
-    )
-    np.testing.assert_allclose(local[2], (carrier.inverse() @ link).as_vector(), atol=1e-9)
-
-
 def test_one_joint_moves_its_link_as_the_whole_tree_does(description):
     row = samples_of(description)[3]
     poses = description.link_poses(row)
     for joint, position in zip(description.movable_joints, row, strict=True):
         expected = poses[joint.parent].inverse() @ poses[joint.child]
         np.testing.assert_allclose(joint.at(position).matrix(), expected.matrix(), atol=1e-9)
+        rows = joint.poses(np.array([0.0, position]))
+        np.testing.assert_allclose(rows[1], expected.as_vector(), atol=1e-9)
 
 
 def test_only_the_requested_links_come_back(tmp_path):
     description = load_robot(RobotSpec.model_validate({"model": "open_manipulator_x"}), tmp_path)
-    record = robot_record(description, PinocchioKinematics(description))
-    samples = np.zeros((3, len(record.joints)))
-    assert list(replayed_link_poses(record, samples, ["link3", "no_such_link"])) == ["link3"]
+    samples = np.zeros((3, len(description.joint_names)))
+    assert list(replayed_link_poses(description, samples, ["link3", "no_such_link"])) == ["link3"]
 
 
 @pytest.mark.parametrize("order", [(1, 0), (1, 2, 0), (0, 2, 1)])
 def test_a_link_that_is_placed_before_its_parent_is_a_flaw_of_the_file(order):
-    chain = [LinkPlacement("a", "world", POSE), LinkPlacement("b", "a", POSE)]
-    chain.append(LinkPlacement("c", "b", POSE))
-    run = make_run(robot=replace(ROBOT, placements=tuple(chain[each] for each in order)))
-    keys = [key for key, _ in run_flaws(run)]
+    names = ["world", "a", "b", "c"]
+    places = pairwise(names)
+    chain = [fixed_joint(f"to_{child}", parent, child, POSE) for parent, child in places]
+    robot = replace(ROBOT, links=tuple(Link(name, None) for name in names))
+    run = make_run(robot=replace(robot, joints=tuple(chain[each] for each in order)))
+    keys = [key for key, reason in run_flaws(run) if "placed before" in reason]
     assert keys
-    assert all(key.startswith("robot.placements[") for key in keys)
-    ordered = make_run(robot=replace(ROBOT, placements=tuple(chain)))
-    assert not [key for key, _ in run_flaws(ordered) if "placements" in key]
+    assert all(key.startswith("robot.joints[") for key in keys)
+    ordered = make_run(robot=replace(robot, joints=tuple(chain)))
+    assert not [reason for _, reason in run_flaws(ordered) if "placed before" in reason]

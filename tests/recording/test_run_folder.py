@@ -23,15 +23,16 @@ from harness.judging.placed import PlacedExpectation
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
 from harness.recording.explanation import recorded_explanation
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.older_runs import FORMAT
 from harness.recording.plain import to_plain
 from harness.recording.read_run import read_run
-from harness.recording.robot_record import MeshRecord
 from harness.recording.run import Finding
 from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import StoredRun
 from harness.recording.write_run import run_folder, write_run
+from harness.robot.description import Inertial, Link
 from tests.judging.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
 
 EXPECTED = [
@@ -54,6 +55,15 @@ def full_run():
     odd = replace(
         thing("ödd|na%me", Box((1, 2, 3))),
         shapes=tuple(Shape(geometry, pose, name="part") for geometry in shapes),
+    )
+    palm = Link("palm", Inertial(0.5, np.zeros(3), np.eye(3)), odd.shapes, odd.shapes[:1])
+    links = tuple(palm if each.name == "palm" else each for each in ROBOT.links)
+    robot = replace(
+        ROBOT,
+        urdf="<robot/>",
+        links=links,
+        cameras={"eye": Camera("eye", "palm", pose, width=4, height=2)},
+        position_only_groups=frozenset({"arm"}),
     )
     first, *others = run.steps
     times = np.array([0.0, 0.1])
@@ -78,7 +88,7 @@ def full_run():
     )
     return replace(
         run,
-        robot=replace(ROBOT, link_visuals={"palm": odd.shapes}, urdf="<robot/>"),
+        robot=robot,
         objects=(*run.objects, odd),
         steps=(first, *others),
         signals=signals,

@@ -6,13 +6,13 @@ import pytest
 
 from harness.core.camera import Camera
 from harness.core.geometry import Box
-from harness.recording.robot_record import JointRecord
 from harness.recording.run import Finding
 from harness.recording.signals import CaptureRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Measure, Verdict
 from harness.reporting.html.summary import SummaryPicture
 from harness.reporting.html.write import page_html
+from harness.robot.description import PlanningGroup
 from tests.judging.synthetic_run import TABLE, lift_run, step, thing
 
 TAKE_OVER = "document.title='taken'"
@@ -37,10 +37,11 @@ def hostile_run(name):
         ),
         contact_forces={(name, "box"): lift_run().signals.contact_forces["left_finger", "box"]},
     )
-    first, *others = run.robot.joints
-    joints = (replace(first, name=name), *others)
-    assert isinstance(first, JointRecord)
-    robot = replace(run.robot, name=name, joints=joints, groups={"arm": (name,)}, arm_group="arm")
+    joints = tuple(
+        replace(each, name=name) if each.name == "shoulder" else each for each in run.robot.joints
+    )
+    groups = {**run.robot.groups, "arm": PlanningGroup("arm", (name,))}
+    robot = replace(run.robot, name=name, joints=joints, groups=groups)
     return replace(
         run, scenario=name, file=f"{name}.yaml", case=name, robot=robot, source=f"{name}\n# {name}",
         findings=(Finding(name, name, 0.5, name),), versions={name: name, "mujoco": name},

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from harness.core.geometry import Box, Mesh
-from harness.recording.robot_record import MeshRecord
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import Finding
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
@@ -77,7 +77,7 @@ def test_every_recorded_signal_has_a_plot():
         frames={"palm": turning},
         clearances={("robot", "box"): np.full(n, 0.03)},
         planned_clearances={("robot", "box"): np.full(n, 0.02)},
-        joint_command_velocities=np.full((n, len(lift_run().robot.joints)), 0.5),
+        joint_command_velocities=np.full((n, len(lift_run().robot.movable_joints)), 0.5),
     )
     groups = {group.id: group for group in groups_of(run)}
     assert groups["planned_clearance"].series["robot and box"] == pytest.approx(20.0)
@@ -88,8 +88,8 @@ def test_every_recorded_signal_has_a_plot():
         values == pytest.approx(np.full(n, values[0]))
         for values in groups["velocity_error"].series.values()
     )
-    arm = set(run.robot.groups[run.robot.arm_group])
-    others = {joint.name for joint in run.robot.joints} - arm
+    arm = set(run.robot.arm_joints)
+    others = {joint.name for joint in run.robot.movable_joints} - arm
     assert set(groups["other_position"].series) == others
 
 

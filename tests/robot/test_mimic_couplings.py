@@ -56,7 +56,7 @@ def test_light_fingers_with_a_large_damping_stay_parallel_and_hold(tmp_path, dam
     assert np.abs(fingers - fingers[:, :1]).max() < 0.02
     assert not any(finding.kind == "coupling" for finding in saved.findings)
     # A recording in which one finger lags behind is reported.
-    name = [joint.name for joint in saved.robot.joints][-1]
+    name = list(saved.robot.joint_names)[-1]
     moved = saved.signals.joint_positions.copy()
     moved[500, -1] += 0.3
     lagging = replace(saved, signals=replace(saved.signals, joint_positions=moved))

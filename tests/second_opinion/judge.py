@@ -83,7 +83,7 @@ class Judge:
     def __post_init__(self) -> None:
         signals = self.run.signals
         self.times, self.step = signals.times, self.run.timestep
-        names = [joint.name for joint in self.run.robot.joints]
+        names = list(self.run.robot.joint_names)
         self.q = {name: signals.joint_positions[:, k] for k, name in enumerate(names)}
         self.pose = signals.object_poses["thing"]
         self.palm = np.column_stack([self.q["slide"], np.zeros(len(self.times)), self.q["lift"]])

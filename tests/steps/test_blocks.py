@@ -38,7 +38,7 @@ def test_arm_and_gripper_move_at_once(blocks):
     _, _, saved = blocks
     step = next(step for step in saved.steps if step.id == "up#1")
     rows = slice(step.start_index, step.end_index)
-    names = [joint.name for joint in saved.robot.joints]
+    names = list(saved.robot.joint_names)
     moving = abs(saved.signals.joint_velocities[rows]) > 0.05
     both = moving[:, names.index("elbow_joint")] & moving[:, names.index("rh_r1_joint")]
     assert both.sum() * saved.timestep > 0.5

@@ -20,7 +20,7 @@ def test_a_state_of_a_gripper_has_two_forms(tmp_path, robot, words):
     )
     result, record = run(tmp_path, steps, robot=robot)
     assert result.outcome == "passed", failures(result)
-    states = record.robot.named_states["gripper"]
+    states = record.robot.states_of("gripper")
     assert not set(words) & set(states)
 
 

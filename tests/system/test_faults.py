@@ -140,7 +140,7 @@ def test_a_stalled_joint_does_not_move_whatever_its_motor_does(tmp_path):
         "- ptp: {joints: {elbow_joint: 0}}\n  expect_error: CONTROL_FAILED",
     )
     stalled = saved.steps[2]
-    joint = [j.name for j in saved.robot.joints].index("elbow_joint")
+    joint = saved.robot.joint_index["elbow_joint"]
     rows = saved.signals.joint_positions[stalled.start_index : stalled.end_index, joint]
     assert rows.max() - rows.min() < 1e-4
 

@@ -43,7 +43,7 @@ class Effort(Predicate):
                 "<=",
                 detail=joint.name,
             )
-            for column, joint in enumerate(window.run.robot.joints)
+            for column, joint in enumerate(window.run.robot.movable_joints)
             if math.isfinite(joint.effort)
             and joint.effort > 0
             and is_measured(efforts[:, column], joint, "effort")

@@ -86,11 +86,11 @@ class GripperState(Predicate):
         if self.stalled is not None:
             return _stalled(self.stalled, window)
         if self.named_target is not None:
-            states = run.robot.named_states.get(hand.group, {})
+            states = run.robot.states_of(hand.group)
             state = states.get(stated_name(self.named_target, states))
             if state is None:
                 raise NotObservable(f"there is no named state '{self.named_target}' of the gripper")
-            return near(window, state, self.tolerance, given)
+            return near(window, state.positions, self.tolerance, given)
         if self.position is not None:
             return near(window, {hand.joint: self.position}, self.tolerance, given)
         width = self.width or 0.0

@@ -47,11 +47,11 @@ class NamedTarget(Predicate):
         """The worst joint's distance from the named state [rad or m]."""
         robot = window.run.robot
         hand = "" if robot.gripper is None else robot.gripper.group
-        every = [robot.arm_group, hand, *sorted(robot.named_states)]
+        every = [robot.arm_group, hand, *sorted(robot.groups)]
         for group in every if self.group is None else [self.group]:
-            states = robot.named_states.get(group, {})
+            states = robot.states_of(group)
             state = states.get(stated_name(self.state, states))
             if state is not None:
                 is_given = "tolerance" in self.model_fields_set
-                return near(window, state, self.tolerance, is_given)
+                return near(window, state.positions, self.tolerance, is_given)
         raise NotObservable(f"there is no named state '{self.state}' in this run")

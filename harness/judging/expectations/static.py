@@ -86,7 +86,7 @@ class Static(Predicate):
 
     def _of_joints(self, window: Window) -> list[Part]:
         parts: list[Part] = []
-        for column, joint in enumerate(window.run.robot.joints):
+        for column, joint in enumerate(window.run.robot.movable_joints):
             speed = np.abs(window.run.signals.joint_velocities[:, column])
             slides = joint.kind == "prismatic"
             limit = self.max_velocity if slides else self.max_angular_velocity

@@ -56,7 +56,7 @@ class TrackingError(Predicate):
         run = window.run
         hand = gripper_joints(run)
         parts: list[Part] = []
-        for column, joint in enumerate(run.robot.joints):
+        for column, joint in enumerate(run.robot.movable_joints):
             error = np.abs(
                 run.signals.joint_positions[:, column] - run.signals.joint_commands[:, column]
             )

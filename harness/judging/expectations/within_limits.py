@@ -16,8 +16,8 @@ from harness.judging.text import amounts
 from harness.judging.window import NotObservable, Window
 from harness.language.base import Flag
 from harness.language.expectation import Quantity
-from harness.recording.robot_record import JointRecord
 from harness.recording.verdict import Measure
+from harness.robot.description import Joint
 
 STOP_SOFTNESS = 0.02  # share of its range by which a joint that rests on its stop may sink into it
 
@@ -75,7 +75,7 @@ class WithinLimits(Predicate):
         """Positions, velocities, efforts and commanded accelerations, as shares of their limits."""
         parts: list[Part] = []
         hand, resting = gripper_joints(window.run), resting_joints(window.run)
-        for column, joint in enumerate(window.run.robot.joints):
+        for column, joint in enumerate(window.run.robot.movable_joints):
             if self.position:
                 parts += _position_parts(window, column, joint, joint.name in resting)
                 parts += _command_parts(window, column, joint)
@@ -97,7 +97,7 @@ class WithinLimits(Predicate):
         return all_of(window, parts, text, shown=3)
 
 
-def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: bool) -> list[Part]:
+def _position_parts(window: Window, column: int, joint: Joint, may_rest: bool) -> list[Part]:
     if not (math.isfinite(joint.lower) and math.isfinite(joint.upper)):
         return []
     recorded = window.run.signals.joint_positions[:, column]
@@ -108,7 +108,7 @@ def _position_parts(window: Window, column: int, joint: JointRecord, may_rest: b
     return _between(POSITION, values, joint, max(softness, POSITION_TOLERANCE[joint.position_unit]))
 
 
-def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part]:
+def _command_parts(window: Window, column: int, joint: Joint) -> list[Part]:
     """Commanded positions where they are beyond a limit, without a tolerance.
 
     One inside the limits does not count: a command at the limit is as good as any other, and its
@@ -128,9 +128,7 @@ def _command_parts(window: Window, column: int, joint: JointRecord) -> list[Part
     ]
 
 
-def _between(
-    quantity: Quantity, values: FloatArray, joint: JointRecord, slack: float
-) -> list[Part]:
+def _between(quantity: Quantity, values: FloatArray, joint: Joint, slack: float) -> list[Part]:
     scale, unit = 0.5 * (joint.upper - joint.lower), joint.position_unit
     lower, upper = joint.lower - slack, joint.upper + slack
     return [
@@ -139,7 +137,7 @@ def _between(
     ]
 
 
-def _rate_part(window: Window, column: int, joint: JointRecord, quantity: Quantity) -> list[Part]:
+def _rate_part(window: Window, column: int, joint: Joint, quantity: Quantity) -> list[Part]:
     signals, unit = window.run.signals, joint.position_unit
     match quantity.name:
         case "velocity":

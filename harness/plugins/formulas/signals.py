@@ -15,7 +15,7 @@ from harness.judging.joints import joint_column
 from harness.judging.poses import UP, frame_poses, frame_present, physical_poses
 from harness.judging.window import NotObservable, Window
 from harness.plugins.formulas.language.formula import Arithmetic, Const, Number, Signal
-from harness.recording.robot_record import JointRecord
+from harness.robot.description import Joint
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,5 +127,5 @@ def _joint(name: str, joint: str, window: Window) -> Values:
     return Values(window.cut(recorded)[:, column], unit)
 
 
-def _effort_unit(joint: JointRecord) -> str:
+def _effort_unit(joint: Joint) -> str:
     return "N" if joint.position_unit == "m" else "N m"

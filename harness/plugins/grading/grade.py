@@ -23,7 +23,6 @@ from harness.recording.verdict import Verdict
 from harness.recording.write_run import run_folder, write_document
 from harness.reporting.reporter import Reports
 from harness.session.prepare import Prepared, prepare
-from harness.session.record import robot_record
 
 
 @dataclass(frozen=True)
@@ -116,7 +115,6 @@ def grade_bag(
     prepared = prepare(scenario, overrides)
     program = prepared.program
     known = Recorded(
-        robot=robot_record(program.description, prepared.ports.kinematics),
         description=program.description,
         objects=program.all_objects(),
         at_start=frozenset(obj.name for obj in program.world.objects),

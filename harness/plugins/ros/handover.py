@@ -23,7 +23,6 @@ from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import RESOLVED
 from harness.reporting.result import CaseResult
 from harness.session.prepare import Prepared
-from harness.session.record import robot_record
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 from harness.session.start import Start, start_simulated
@@ -44,7 +43,7 @@ class HandOver(ABC):
     def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
         self.prepared, self.simulator = prepared, simulator
         self.cell = ExternalCell(simulator, prepared.program.controllers)
-        self.robot = robot_record(prepared.program.description, prepared.ports.kinematics)
+        self.robot = prepared.program.description
 
     @property
     def commands(self) -> tuple[CommandRecord, ...]:

@@ -21,6 +21,7 @@ from harness.plugins.ros.wiring import Wiring
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.frames import camera_edges
+from harness.robot.description import RobotDescription
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
@@ -31,8 +32,6 @@ from collections.abc import Iterable
 from harness.core.types import FloatArray
 from harness.plugins.ros.endpoints import LATCHED, Qos
 from harness.plugins.ros.interfaces import header, stamp
-from harness.recording.link_poses import placement_poses
-from harness.recording.robot_record import RobotRecord
 from harness.reporting.rosbag.frames import Edge, robot_edges, transform_stamped
 from harness.reporting.rosbag.messages import message
 
@@ -50,14 +49,12 @@ TF_EVERY = 2  # ticks between two messages of frames: 50 Hz
 class StateTopics:
     """Publishes the state of the robot after every tick."""
 
-    def __init__(self, graph: Graph, robot: RobotRecord, cameras: Iterable[Edge]) -> None:
+    def __init__(self, graph: Graph, robot: RobotDescription, cameras: Iterable[Edge]) -> None:
         """Advertise the topics, and publish what does not change, with the frames of cameras."""
-        names = [joint.name for joint in robot.joints]
-        self._moved = [placement for placement in robot.placements if placement.joint]
-        self._columns = [names.index(placement.joint) for placement in self._moved]
+        self._moved = robot.movable_joints
         self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", Qos(depth=1))
         self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
-        self._state = message("sensor_msgs/msg/JointState", name=names)
+        self._state = message("sensor_msgs/msg/JointState", name=robot.joint_names)
         self._tf = graph.advertise("/tf", TF, Qos(depth=100))
         static = graph.advertise("/tf_static", TF, LATCHED)
         fixed = [
@@ -81,12 +78,11 @@ class StateTopics:
         self._joints.publish(state)
         self._ticks += 1
         if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
-            moved = zip(self._moved, positions[self._columns, None], strict=True)
             transforms = [
                 transform_stamped(
-                    header(time, each.parent), each.link, placement_poses(each, position)[0]
+                    header(time, joint.parent), joint.child, joint.at(position).as_vector()
                 )
-                for each, position in moved
+                for joint, position in zip(self._moved, positions, strict=True)
             ]
             self._tf.publish(message(TF, transforms=transforms))
 

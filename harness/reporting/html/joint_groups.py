@@ -8,23 +8,23 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.recording.robot_record import GripperRecord, JointRecord
 from harness.recording.run import Run
 from harness.reporting.html.plot_group import MOST_SERIES, Group, Limit
+from harness.robot.description import Gripper, Joint
 
 
-def _arm(run: Run) -> list[tuple[int, JointRecord]]:
+def _arm(run: Run) -> list[tuple[int, Joint]]:
     """Columns and records of the arm's joints; of all of them where no group is the arm's."""
     names = run.robot.arm_joints
-    return [(i, joint) for i, joint in enumerate(run.robot.joints) if joint.name in names]
+    return [(i, joint) for i, joint in enumerate(run.robot.movable_joints) if joint.name in names]
 
 
-def _angle_unit(joints: Sequence[tuple[int, JointRecord]]) -> str:
+def _angle_unit(joints: Sequence[tuple[int, Joint]]) -> str:
     kinds = {joint.kind == "prismatic" for _, joint in joints}
     return {frozenset({True}): "mm", frozenset({False}): "°"}.get(frozenset(kinds), "° or mm")
 
 
-def _factor(joint: JointRecord) -> float:
+def _factor(joint: Joint) -> float:
     return 1e3 if joint.kind == "prismatic" else 180 / math.pi
 
 
@@ -104,15 +104,14 @@ def tracking(run: Run) -> Group:
 def gripper(run: Run) -> Group | None:
     """The gap between the pads where it is known, else the joint's position."""
     hand = run.robot.gripper
-    names = [joint.name for joint in run.robot.joints]
-    if hand is None or hand.joint not in names:
+    if hand is None or hand.joint not in run.robot.joint_index:
         return None
-    column = names.index(hand.joint)
+    column = run.robot.joint_index[hand.joint]
     actual = run.signals.joint_positions[:, column]
     command = run.signals.joint_commands[:, column]
-    if not hand.widths:
-        factor = _factor(run.robot.joints[column])
-        unit = "mm" if run.robot.joints[column].kind == "prismatic" else "°"
+    if not len(hand.widths):
+        factor = _factor(run.robot.movable_joints[column])
+        unit = "mm" if run.robot.movable_joints[column].kind == "prismatic" else "°"
         series = {"measured": factor * actual, "commanded": factor * command}
         return Group("gripper", "gripper", unit, series)
     opening, commanded = _opening(hand, actual), _opening(hand, command)
@@ -120,17 +119,18 @@ def gripper(run: Run) -> Group | None:
     return Group("gripper", "gripper opening", "mm", series)
 
 
-def _opening(hand: GripperRecord, positions: FloatArray) -> FloatArray:
+def _opening(hand: Gripper, positions: FloatArray) -> FloatArray:
     """Gap between the pads at joint positions [mm]."""
-    table = np.array(hand.widths)
-    return np.asarray(1e3 * np.interp(positions, table[:, 0], table[:, 1]), dtype=float)
+    return 1e3 * hand.gap_at(positions)
 
 
 def gripper_effort(run: Run) -> Group | None:
     """Effort of the gripper's joint, against its limit if it has one."""
     hand = run.robot.gripper
     joints = [
-        joint for joint in enumerate(run.robot.joints) if hand and joint[1].name == hand.joint
+        joint
+        for joint in enumerate(run.robot.movable_joints)
+        if hand and joint[1].name == hand.joint
     ]
     if not joints:
         return None
@@ -152,7 +152,7 @@ def velocity_errors(run: Run) -> Group:
 def other_positions(run: Run) -> Group:
     """Positions of the joints that are not the arm's: fingers and their followers."""
     arm = {column for column, _ in _arm(run)}
-    others = [(i, joint) for i, joint in enumerate(run.robot.joints) if i not in arm]
+    others = [(i, joint) for i, joint in enumerate(run.robot.movable_joints) if i not in arm]
     series = {
         joint.name: _factor(joint) * run.signals.joint_positions[:, i]
         for i, joint in others[:MOST_SERIES]

@@ -68,7 +68,7 @@ def _raw_poses(run: Run, step: StepRecord) -> FloatArray | None:
 def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
     """The state that explains a failure: the whole robot there, and how far it is from the goal."""
     nearest = recorded_explanation(step.explanation).nearest
-    names = [joint.name for joint in run.robot.joints]
+    names = run.robot.joint_names
     if nearest is None or not set(names) <= set(nearest.joint_positions):
         return None
     row = np.array([[nearest.joint_positions[name] for name in names]])

@@ -20,7 +20,7 @@ from harness.core.geometry import (
 )
 from harness.core.types import FloatArray, IntArray
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.robot_record import MeshRecord
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.reporting.html.packing import Packer, differences, zigzag
 

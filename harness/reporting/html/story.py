@@ -10,12 +10,12 @@ import numpy as np
 
 from harness.recording.plain import to_plain
 from harness.recording.plan_statistics import PlanStatistics
-from harness.recording.robot_record import JointRecord
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.margins import allowance_used
+from harness.robot.description import Joint
 
 TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}
 
@@ -139,10 +139,10 @@ def contact_facts(run: Run) -> list[dict[str, Any]]:
 
 def joint_facts(run: Run) -> list[dict[str, Any]]:
     """What each joint did against its limits."""
-    return [_joint(run, joint, column) for column, joint in enumerate(run.robot.joints)]
+    return [_joint(run, joint, column) for column, joint in enumerate(run.robot.movable_joints)]
 
 
-def _joint(run: Run, joint: JointRecord, column: int) -> dict[str, Any]:
+def _joint(run: Run, joint: Joint, column: int) -> dict[str, Any]:
     slides = joint.kind == "prismatic"
     factor = 1e3 if slides else 180 / math.pi
     positions = run.signals.joint_positions[:, column]

@@ -60,7 +60,7 @@ def slip(run: Run) -> Group:
     series: dict[str, FloatArray] = {}
     for held in run.attachments:
         actual = run.signals.object_poses.get(held.represents)
-        if actual is None or not any(p.link == held.link for p in run.robot.placements):
+        if actual is None or held.link not in run.robot.link_names:
             continue
         rows = np.flatnonzero((times >= held.start_time) & (times <= held.end_time))
         if not len(rows):

@@ -11,12 +11,11 @@ import numpy as np
 from harness.core.camera import Camera
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray, IntArray
-from harness.recording.link_poses import placement_poses
-from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Run
 from harness.reporting.rosbag.messages import header, message, transform
 from harness.reporting.rosbag.samples import Message, blocks
 from harness.reporting.rosbag.topics import TF, TF_STATIC
+from harness.robot.description import RobotDescription
 
 WORLD = "world"
 
@@ -44,19 +43,19 @@ def static_edges(run: Run) -> list[Edge]:
     ]
 
 
-def robot_edges(robot: RobotRecord) -> list[Edge]:
+def robot_edges(robot: RobotDescription) -> list[Edge]:
     """The root in the world, and the fixed joints."""
-    placements = robot.placements
-    children = {placement.link for placement in placements}
-    roots = dict.fromkeys(p.parent for p in placements if p.parent not in children)
+    children = {joint.child for joint in robot.joints}
+    roots = dict.fromkeys(each.parent for each in robot.joints if each.parent not in children)
+    fixed = [joint for joint in robot.joints if not joint.is_movable]
     return [
         *(Edge(WORLD, root, IDENTITY) for root in roots if root != WORLD),
-        *(Edge(p.parent, p.link, np.array(p.pose)) for p in placements if not p.joint),
+        *(Edge(joint.parent, joint.child, joint.pose.as_vector()) for joint in fixed),
     ]
 
 
 def camera_edges(
-    cameras: Sequence[Camera], robot: RobotRecord, objects: Collection[str]
+    cameras: Sequence[Camera], robot: RobotDescription, objects: Collection[str]
 ) -> Iterator[Edge]:
     """Optical frames that are no link of the robot already."""
     known = {WORLD, *robot.link_names, *objects}
@@ -93,13 +92,14 @@ def static_tf(run: Run) -> Message:
 
 def moving_tf(run: Run, indices: IntArray) -> Iterator[Message]:
     """Every moving joint and every free object that is there, at each sample."""
-    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
-    moved = [placement for placement in run.robot.placements if placement.joint]
+    moved = run.robot.movable_joints
     objects = moving_objects(run)
     for block in blocks(indices):
         positions = run.signals.joint_positions[block]
-        edges = [(p.parent, p.link) for p in moved] + [(WORLD, name) for name in objects]
-        poses = [placement_poses(p, positions[:, columns[p.joint]]) for p in moved]
+        edges = [(joint.parent, joint.child) for joint in moved] + [
+            (WORLD, name) for name in objects
+        ]
+        poses = [joint.poses(positions[:, column]) for column, joint in enumerate(moved)]
         poses += [run.signals.object_poses[name][block] for name in objects]
         if not poses:
             return

@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from harness.core.pose_arrays import IDENTITY
 from harness.recording.run import Run
 from harness.reporting.rosbag.frames import WORLD
 from harness.reporting.rosbag.topics import (
@@ -59,7 +60,7 @@ def _stack(panels: list[str], direction: str, share: int) -> Any:
 
 
 def _scene(run: Run) -> dict[str, Any]:
-    base = run.robot.static_link_poses.get(run.robot.base_link, (0.0, 0.0, 0.0))
+    base = run.robot.static_link_poses.get(run.robot.base_link, IDENTITY)
     return {
         "cameraState": {
             "perspective": True,
@@ -94,7 +95,7 @@ def _plot(run: Run, field: str) -> dict[str, Any]:
             "enabled": True,
             "timestampMethod": "headerStamp",
         }
-        for column, joint in enumerate(run.robot.joints)
+        for column, joint in enumerate(run.robot.movable_joints)
         if not joint.is_mimic
     ]
     return {
@@ -140,7 +141,7 @@ def rviz_configuration(run: Run) -> str:
             for video in run.videos
         ),
     ]  # fmt: skip
-    base = run.robot.static_link_poses.get(run.robot.base_link, (0.0, 0.0, 0.0))
+    base = run.robot.static_link_poses.get(run.robot.base_link, IDENTITY)
     focus = dict(zip("XYZ", (float(x) for x in base[:3]), strict=True))
     document = {
         "Panels": [

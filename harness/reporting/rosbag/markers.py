@@ -11,7 +11,7 @@ from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Rgba, Sha
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.recording.link_poses import planned_tcp_poses
-from harness.recording.robot_record import MeshRecord
+from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD, moving_objects

@@ -158,7 +158,9 @@ def trajectory_message(plan: JointTrajectory, **fields: Any) -> Any:
     )
 
 
-def joint_state(time: float, names: list[str], positions: FloatArray, **others: FloatArray) -> Any:
+def joint_state(
+    time: float, names: Sequence[str], positions: FloatArray, **others: FloatArray
+) -> Any:
     """Joints by name; `velocity` and `effort` stay empty where they are not given."""
     return message(
         "sensor_msgs/msg/JointState", header=header(time), name=names, position=positions, **others

@@ -68,7 +68,7 @@ def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:
     """The motion for RViz, from the joint positions at its beginning."""
     time = step.start_time
     index = min(step.start_index, len(run.signals.times) - 1)
-    names = [joint.name for joint in run.robot.joints]
+    names = run.robot.joint_names
     many, state = (
         "trajectory_msgs/msg/MultiDOFJointTrajectory",
         "sensor_msgs/msg/MultiDOFJointState",

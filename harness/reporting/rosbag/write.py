@@ -163,7 +163,7 @@ def _clock(run: Run, indices: IntArray) -> Iterator[Message]:
 def _measured_states(run: Run, indices: IntArray) -> Iterator[Message]:
     """Positions, velocities and efforts of every movable joint."""
     signals = run.signals
-    names = [joint.name for joint in run.robot.joints]
+    names = run.robot.joint_names
     for index in indices:
         time = float(signals.times[index])
         yield Message(
@@ -182,7 +182,7 @@ def _measured_states(run: Run, indices: IntArray) -> Iterator[Message]:
 def _commanded(run: Run, indices: IntArray) -> Iterator[Message]:
     """Positions and velocities of every joint that had a command."""
     signals = run.signals
-    names = np.array([joint.name for joint in run.robot.joints])
+    names = np.array(run.robot.joint_names)
     for index in indices:
         time, positions = float(signals.times[index]), signals.joint_commands[index]
         given = ~np.isnan(positions)

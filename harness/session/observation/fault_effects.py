@@ -11,10 +11,10 @@ import numpy as np
 from harness.core.types import BoolArray
 from harness.judging.body_motion import balls_of
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
-from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Finding, ObjectRecord
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
+from harness.robot.description import RobotDescription
 
 MOVING = 1e-3  # a body faster than this moves [m/s]
 COMMANDED = 1e-4  # a set point that changes by more is a command to move [rad or m]
@@ -45,7 +45,7 @@ class Effect:
 def with_receipts(
     steps: Sequence[StepRecord],
     signals: Signals,
-    robot: RobotRecord,
+    robot: RobotDescription,
     objects: Sequence[ObjectRecord],
 ) -> tuple[tuple[StepRecord, ...], tuple[Finding, ...]]:
     """The steps with a receipt on every fault, and a finding for each that had no effect."""
@@ -86,12 +86,12 @@ def _set_again(fault: InjectedFault, later: Sequence[StepRecord]) -> int | None:
 
 class _Record:
     def __init__(
-        self, signals: Signals, robot: RobotRecord, objects: Sequence[ObjectRecord]
+        self, signals: Signals, robot: RobotDescription, objects: Sequence[ObjectRecord]
     ) -> None:
         self.signals = signals
         self.robot = robot
         self.objects = {obj.name: obj for obj in objects}
-        self.joints = [joint.name for joint in robot.joints]
+        self.joints = robot.joint_names
         self.step_time = float(signals.times[1] - signals.times[0]) if len(signals.times) > 1 else 0
 
         self._effects: Mapping[FaultKind, Callable[[InjectedFault, slice], Effect]] = {
@@ -156,7 +156,7 @@ class _Record:
         if commanded <= COMMANDED:
             return Effect(False, "it was not commanded to move", is_over_time=True)
         moved = float(np.ptp(self.signals.joint_positions[rows, joint]))
-        unit = self.robot.joints[joint].position_unit
+        unit = self.robot.movable_joints[joint].position_unit
         return Effect(
             True, f"commanded to move by {commanded:.3g} {unit}, it moved by {moved:.2g} {unit}"
         )

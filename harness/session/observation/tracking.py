@@ -50,7 +50,7 @@ def as_commanded(run: Run, kinematics: Kinematics) -> Signals:
 
     Fingers stay where they were: one that presses lags its command.
     """
-    signals, joints = run.signals, run.robot.joints
+    signals, joints = run.signals, run.robot.movable_joints
     hand = gripper_joints(run)
     follows = np.array([joint.name not in hand for joint in joints])
     is_commanded = np.isfinite(signals.joint_commands) & follows
@@ -122,12 +122,12 @@ def _tracking(run: Run) -> tuple[Finding, ...]:
     errors = np.abs(signals.joint_positions - signals.joint_commands)
     errors = np.where(np.isfinite(errors), errors, 0.0)
     hand = gripper_joints(run)
-    for column, joint in enumerate(run.robot.joints):
+    for column, joint in enumerate(run.robot.movable_joints):
         if joint.name in hand:
             errors[:, column] = 0.0  # a gripper that presses lags its command
     row, column = (int(place) for place in np.unravel_index(int(np.argmax(errors)), errors.shape))
     worst = float(errors[row, column])
-    joint = run.robot.joints[column]
+    joint = run.robot.movable_joints[column]
     unit = joint.position_unit
     return (
         Finding(

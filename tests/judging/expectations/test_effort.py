@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.effort import Effort
+from harness.robot.description import Mimic
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Three
 from tests.judging.synthetic_run import ROBOT, make_run, verdict
@@ -23,9 +24,9 @@ def test_effort_is_a_share_of_the_limit():
 
 
 def test_a_joint_without_a_limit_or_a_record_of_its_own_is_left_out():
-    shoulder, finger = ROBOT.joints
+    shoulder, finger = ROBOT.movable_joints
     free = replace(shoulder, name="free", effort=np.inf)
-    mimic = replace(finger, name="mimic", is_mimic=True)
+    mimic = replace(finger, name="mimic", mimic=Mimic("finger"))
     robot = replace(ROBOT, joints=(shoulder, finger, free, mimic))
     efforts = np.tile([5.0, 4.0, 1e6, np.nan], (200, 1))
     more = {"joint_positions": np.zeros((200, 4)), "joint_velocities": np.zeros((200, 4))}

@@ -120,7 +120,9 @@ def test_fingers_that_press_from_the_same_side_hold_nothing():
 
 def test_the_gap_is_measured_where_the_fingers_touch():
     """Not by the table of the gripper, which may be that of other parts of the fingers."""
-    narrow = replace(ROBOT, gripper=replace(ROBOT.gripper, widths=((0.0, 0.0), (0.03, 0.01))))
+    narrow = replace(
+        ROBOT, gripper=replace(ROBOT.gripper, widths=np.array([(0.0, 0.0), (0.03, 0.01)]))
+    )
     run = replace(lift_run(), robot=narrow)
     assert verdict(run, Grasped(object="box")).status == "passed"
     near = presses(((0, -0.01, 0), (0, 1, 0)), ((0, 0.01, 0), (0, -1, 0)))

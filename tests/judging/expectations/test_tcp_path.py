@@ -10,8 +10,8 @@ from harness.core.trajectory import JointTrajectory
 from harness.judging.expectations.fraction import FractionCheck
 from harness.judging.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.judging.window import NotObservable
-from harness.recording.robot_record import LinkPlacement
 from harness.reporting.margins import allowance_used, margin_share
+from harness.robot.description import fixed_joint
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.synthetic_run import (
@@ -20,6 +20,7 @@ from tests.judging.synthetic_run import (
     changed,
     followed,
     heights,
+    joint,
     make_run,
     step,
     verdict,
@@ -135,10 +136,10 @@ def test_a_path_that_was_followed_to_its_end_has_the_largest_margin(at_least):
 
 def sliding(z, planned, verb="lin"):
     """A robot whose TCP slides along z by its joint `shoulder`; planned positions of a step."""
-    along = (0.0, 0.0, 1.0)
-    places = (
-        LinkPlacement("base_link", "world", (0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0)),
-        LinkPlacement("palm", "base_link", (0, 0, 0, 1, 0, 0, 0), "shoulder", True, along),
+    joints = (
+        fixed_joint("base_joint", "world", "base_link", SE3.from_xyz_rpy((0.1, 0.2, 0.3))),
+        joint("shoulder", "prismatic", "base_link", "palm", -1.0, 1.0, 2.0, 5.0, 10.0),
+        *ROBOT.joints[3:],
     )
     tcp = at(200, (0.1, 0.2, 0.3))
     tcp[:, 2] += z
@@ -147,7 +148,7 @@ def sliding(z, planned, verb="lin"):
     times = np.linspace(0, 1.99, len(planned))
     trajectory = JointTrajectory(("shoulder",), times, positions, still, still)
     moving = step("go", 0, 200, verb, trajectory=trajectory)
-    return make_run(tcp_pose=tcp, robot=replace(ROBOT, placements=places), steps=(moving,))
+    return make_run(tcp_pose=tcp, robot=replace(ROBOT, joints=joints), steps=(moving,))
 
 
 def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
@@ -167,13 +168,14 @@ def test_a_step_s_own_path_is_the_line_from_its_start_to_its_goal():
 @pytest.mark.parametrize("planned", [[0.0, 0.4, 1.5], [0.0, 0.2, 0.9, 1.2, 1.5]])
 def test_a_circ_step_s_own_path_is_the_arc_from_its_start_to_its_goal(planned):
     """The palm turns about the world's z axis, 0.2 m away from it."""
-    places = (
-        LinkPlacement("arm_link", "world", (0, 0, 0, 1, 0, 0, 0), "shoulder", False, (0, 0, 1)),
-        LinkPlacement("palm", "arm_link", (0.2, 0, 0, 1, 0, 0, 0)),
+    joints = (
+        joint("shoulder", "revolute", "world", "arm_link", -2.0, 2.0, 2.0, 5.0, 10.0),
+        fixed_joint("palm_joint", "arm_link", "palm", SE3.from_xyz_rpy((0.2, 0.0, 0.0))),
+        *ROBOT.joints[3:],
     )
     for last, status in ((1.5, "passed"), (1.4, "failed")):
         run = sliding(np.zeros(200), planned, "circ")
-        run = replace(run, robot=replace(ROBOT, placements=places))
+        run = replace(run, robot=replace(ROBOT, joints=joints))
         run = changed(run, tcp_pose=around(0.2, 0.0, last).signals.tcp_pose)
         assert verdict(run, TcpPath(), "go").status == status
     answer = verdict(

@@ -126,8 +126,8 @@ def joint_state(signals, row, columns):
 def students_recording(run, rate=50.0):
     """The run as a student's recorder would have seen it."""
     recording = Recording()
-    columns = {joint.name: column for column, joint in enumerate(run.robot.joints)}
-    arm = {name: columns[name] for name in run.robot.groups[run.robot.arm_group]}
+    columns = {joint.name: column for column, joint in enumerate(run.robot.movable_joints)}
+    arm = {name: columns[name] for name in run.robot.arm_joints}
     hand = {run.robot.gripper.joint: columns[run.robot.gripper.joint]}
     times = run.signals.times
     rows = np.searchsorted(times, np.arange(0, times[-1], 1 / rate) - 1e-9)

@@ -278,7 +278,7 @@ def gripper_run(recorded_run):
 
 def test_a_gripper_alone_is_graded_from_joint_states_and_from_frames(gripper_run, tmp_path):
     """A recorder of the gripper's joint alone, and one of the frames of its links."""
-    columns = {joint.name: i for i, joint in enumerate(gripper_run.robot.joints)}
+    columns = {joint.name: i for i, joint in enumerate(gripper_run.robot.movable_joints)}
     hand = {gripper_run.robot.gripper.joint: columns[gripper_run.robot.gripper.joint]}
     times = gripper_run.signals.times
     poses = replayed_link_poses(gripper_run.robot, gripper_run.signals.joint_positions)
@@ -287,8 +287,10 @@ def test_a_gripper_alone_is_graded_from_joint_states_and_from_frames(gripper_run
         state = joint_state(gripper_run.signals, row, hand)
         joints.add("/joint_states", "sensor_msgs/msg/JointState", float(times[row]), state)
         moved = [
-            transform(p.parent, p.link, relative(at(poses[p.parent], row), at(poses[p.link], row)))
-            for p in gripper_run.robot.placements
+            transform(
+                p.parent, p.child, relative(at(poses[p.parent], row), at(poses[p.child], row))
+            )
+            for p in gripper_run.robot.joints
         ]
         frames.add("/tf", "tf2_msgs/msg/TFMessage", float(times[row]), {"transforms": moved})
     file = tmp_path / "closed.scenario.yaml"

@@ -23,7 +23,7 @@ from tests.plugins.grading.recordings import (
 
 def test_joints_that_follow_another_are_where_that_one_puts_them(recording, stored, tmp_path):
     run = grade_bag(SCENARIO, recording.write(tmp_path / "student.mcap"), GAZEBO).run
-    followers = [n for n, joint in enumerate(run.robot.joints) if joint.is_mimic]
+    followers = [n for n, joint in enumerate(run.robot.movable_joints) if joint.is_mimic]
     rows = np.searchsorted(stored.run.signals.times, run.signals.times - 1e-6)
     assert len(followers) == 3
     assert np.allclose(
@@ -85,7 +85,7 @@ def test_frames_that_go_in_a_circle_are_reported_and_end(recording, tmp_path):
 
 
 def test_two_programs_that_publish_the_same_joints_are_noticed(recording, stored, tmp_path):
-    columns = {joint.name: index for index, joint in enumerate(stored.run.robot.joints)}
+    columns = {joint.name: index for index, joint in enumerate(stored.run.robot.movable_joints)}
     arm = {name: columns[name] for name in stored.run.robot.arm_joints}
     content = joint_state(stored.run.signals, 0, arm)
     for time in np.arange(4.01, 4.6, 0.02):
@@ -116,18 +116,16 @@ def test_frames_that_contradict_the_joint_states_are_noticed(
 ):
     """A frame of a joint as it was half a second ago is no frame of now; 20 ms ago it may be."""
     run = stored.run
-    (placement,) = [each for each in run.robot.placements if each.joint == "shoulder_pan_joint"]
-    poses = replayed_link_poses(
-        run.robot, run.signals.joint_positions, {placement.parent, placement.link}
-    )
+    joint = run.robot.joint_by_name["shoulder_pan_joint"]
+    poses = replayed_link_poses(run.robot, run.signals.joint_positions, {joint.parent, joint.child})
     parent, child = (
         np.broadcast_to(poses[name], (len(run.signals.times), 7))
-        for name in (placement.parent, placement.link)
+        for name in (joint.parent, joint.child)
     )
     edges = relative(parent, child)
     for time in np.arange(1.0, run.signals.times[-1], 0.02):
         row = int(np.searchsorted(run.signals.times, time - late))
-        content = {"transforms": [transform(placement.parent, placement.link, edges[row])]}
+        content = {"transforms": [transform(joint.parent, joint.child, edges[row])]}
         recording.add("/tf", "tf2_msgs/msg/TFMessage", float(time), content)
     grade = grade_bag(SCENARIO, recording.write(tmp_path / "late.mcap"), GAZEBO)
     assert any("contradict each other" in note for note in grade.notes) == is_doubted

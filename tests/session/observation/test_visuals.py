@@ -18,7 +18,9 @@ def test_each_mesh_of_links_and_objects_is_kept_once(tmp_path):
         trimesh.creation.box((number, 1.0, 1.0)).export(path)
         shapes.append(Shape(Mesh(path, (1.0, 1.0, 1.0))))
     part, other = shapes
-    robot = replace(ROBOT, link_visuals={"palm": (part,), "arm_link": (TABLE.shapes[0], part)})
+    drawn = {"palm": (part,), "arm_link": (TABLE.shapes[0], part)}
+    links = tuple(replace(link, visuals=drawn.get(link.name, ())) for link in ROBOT.links)
+    robot = replace(ROBOT, links=links)
     cup = replace(BOX, name="cup", visuals=(other, part))
     records = mesh_records(make_run(2, objects=(TABLE, cup), robot=robot))
     assert [Path(record.path) for record in records] == [shape.geometry.path for shape in shapes]

@@ -12,7 +12,6 @@ from harness.core.types import FloatArray
 from harness.plugins.grading.bag.clocks import Timeline
 from harness.plugins.grading.bag.content import BagContent, RecordedTrack, Tracks, joined_tracks
 from harness.plugins.grading.bag.sampling import Trace, first_of_each
-from harness.recording.robot_record import LinkPlacement
 from harness.robot.description import Joint, RobotDescription
 
 SLACK = {"revolute": 0.02, "continuous": 0.02, "prismatic": 0.002}
@@ -147,7 +146,6 @@ def traces_of(messages: Mapping[str, JointMessages]) -> JointTraces:
 
 def messages_of_frames(
     content: BagContent,
-    placements: Mapping[str, LinkPlacement],
     description: RobotDescription,
     timeline: Timeline,
 ) -> dict[str, JointMessages]:
@@ -158,15 +156,14 @@ def messages_of_frames(
         if track is None:
             continue
         seconds, is_judged = timeline.rows(track, "/tf")
-        placement = placements[joint.child]
-        moved = relative(np.array([placement.pose]), track.rows()[is_judged])
-        axis = np.array(placement.axis)
-        shift = moved[:, :3] if placement.slides else rotation_vector(moved[:, 3:])
+        slides = joint.kind == "prismatic"
+        moved = relative(joint.pose.as_vector()[None], track.rows()[is_judged])
+        shift = moved[:, :3] if slides else rotation_vector(moved[:, 3:])
         values = np.full((len(moved), 3), np.nan)
-        values[:, 0] = shift @ axis
+        values[:, 0] = shift @ joint.axis
         if len(values):
             messages = _in_order(joint, seconds[is_judged], values)
-            if not placement.slides:
+            if not slides:
                 messages.values[:, 0] = np.unwrap(messages.values[:, 0])
             found[joint.name] = messages
     return found
@@ -200,19 +197,19 @@ def joint_rows(traces: JointTraces, description: RobotDescription, times: FloatA
     return JointRows(*values)
 
 
-def foreign_links(content: BagContent, placements: Mapping[str, LinkPlacement]) -> list[str]:
-    """Differences between the recording's transforms and this robot's link placements.
+def foreign_links(content: BagContent, description: RobotDescription) -> list[str]:
+    """Differences between the recording's transforms and the links of this robot.
 
     The position of a link in its parent does not change while its revolute joint turns.
     """
     differences: list[str] = []
+    placed = {joint.child: joint for joint in description.joints if joint.kind != "prismatic"}
     for edges in (content.edges, content.static_edges):
         for (parent, child), track in sorted(edges.items()):
-            placement = placements.get(child)
-            if placement is None or placement.parent != parent or placement.slides:
+            joint = placed.get(child)
+            if joint is None or joint.parent != parent:
                 continue
-            place, recorded = np.array(placement.pose[:3]), track.rows()[0, :3]
-            apart = float(np.linalg.norm(recorded - place))
+            apart = float(np.linalg.norm(track.rows()[0, :3] - joint.pose.translation))
             if apart > 0.005:
                 differences.append(
                     f"the recording has {child} {1000 * apart:.0f} mm away from its place on"

@@ -40,7 +40,6 @@ from harness.plugins.grading.bag.missing import gaps, no_joints
 from harness.plugins.grading.bag.reader import read_bag
 from harness.plugins.grading.bag.sampling import Trace, gap_limit, sample_times
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.robot_record import RobotRecord
 from harness.recording.run import Finding, ObjectRecord, Run
 from harness.recording.signals import UNPUBLISHED, Signals
 from harness.robot.description import RobotDescription
@@ -69,7 +68,6 @@ class Recorded:
         gravity: Gravity in world axes [m/s^2].
     """
 
-    robot: RobotRecord
     description: RobotDescription
     objects: Sequence[WorldObject]
     at_start: frozenset[str]
@@ -93,25 +91,24 @@ class _Recording:
 
     def __init__(self, path: Path, topics: BagTopics, known: Recorded) -> None:
         self._path, self._known = path, known
-        robot, description = known.robot, known.description
+        description = known.description
         unknown = sorted(set(topics.joint_names.values()) - set(description.joint_names))
         if unknown:
             hint = f"joints: {', '.join(description.joint_names)}"
             raise bag_error(path, f"the robot has no joint '{unknown[0]}'", hint)
         self._content = content = read_bag(path, topics)
-        reference = reference_track(content, description, robot.arm_joints)
+        reference = reference_track(content, description, description.arm_joints)
         if reference is None:
-            raise no_joints(path, topics, content, robot.arm_joints)
+            raise no_joints(path, topics, content, description.arm_joints)
         self._timeline = timeline = Timeline(reference)
-        self._placements = {placement.link: placement for placement in robot.placements}
-        self._in_frames = messages_of_frames(content, self._placements, description, timeline)
+        self._in_frames = messages_of_frames(content, description, timeline)
         self._states = joint_messages(content.joints, description, timeline, topics.joint_states)
         if not self._states:
             content.notes.append("there are no joint states; the joints are read from /tf")
         self._messages = self._states or self._in_frames
         commands = joint_messages(content.commands, description, timeline, "/joint_commands")
         joints, commanded_joints = traces_of(self._messages), traces_of(commands)
-        self._frames = frames = Frames(content, robot.link_names, timeline)
+        self._frames = frames = Frames(content, description.link_names, timeline)
         self._shapes = {obj.name: obj.shapes for obj in known.objects if frames.knows(obj.name)}
         self._movable = [obj.name for obj in known.objects if not obj.is_static]
         moving = frames.moving(self._shapes)
@@ -122,7 +119,9 @@ class _Recording:
         self._refuse_too_many()
         self._measured = joint_rows(joints, description, times)
         self._commanded = joint_rows(commanded_joints, description, times)
-        self._links = replayed_link_poses(robot, self._measured.positions, self._links_needed())
+        self._links = replayed_link_poses(
+            description, self._measured.positions, self._links_needed()
+        )
         self._events = timed_events(content, timeline, float(times[0]))
         self._steps = steps_of(self._events, times, known.steps)
         self._present = {
@@ -133,17 +132,17 @@ class _Recording:
     def _refuse_too_many(self) -> None:
         known = self._known
         bodies = len(self._shapes) + len(known.frames) + 1
-        if len(self._times) * (5 * len(known.robot.joints) + 7 * bodies) > MOST_NUMBERS:
+        if len(self._times) * (5 * len(known.description.joint_names) + 7 * bodies) > MOST_NUMBERS:
             hint = "cut out what is to be graded, with `ros2 bag convert` for example"
             message = f"has messages at {len(self._times)} different times"
             raise bag_error(self._path, message, hint)
 
     def _links_needed(self) -> set[str]:
         """Links that expectations use, or that other frames are attached to."""
-        content, robot = self._content, set(self._known.robot.link_names)
+        content, robot = self._content, set(self._known.description.link_names)
         edges = [*content.edges, *content.static_edges, *content.objects]
         carriers = {parent for parent, child in edges if child not in robot}
-        return {self._known.robot.tcp_link, *self._known.frames, *(carriers & robot)}
+        return {self._known.description.tcp_link, *self._known.frames, *(carriers & robot)}
 
     def _object_poses(self, name: str) -> FloatArray:
         here = is_present(self._present[name], self._times)[:, None]
@@ -158,7 +157,7 @@ class _Recording:
             file=str(self._path),
             case="",
             seed=0,
-            robot=known.robot,
+            robot=known.description,
             objects=tuple(map(self._object_record, known.objects)),
             attachments=(),
             steps=self._steps,
@@ -185,19 +184,18 @@ class _Recording:
             joint_efforts=measured.efforts,
             joint_commands=commanded.positions,
             joint_command_velocities=commanded.velocities,
-            tcp_pose=links[known.robot.tcp_link],
+            tcp_pose=links[known.description.tcp_link],
             frames={name: links[name] for name in known.frames if name in links},
             object_poses=self._poses,
         )
 
     def _notes(self, signals: Signals) -> list[str]:
-        names = [joint.name for joint in self._known.robot.joints]
         return [
             *self._content.notes,
             *self._timeline.notes,
             *self._frames.notes,
-            *foreign_links(self._content, self._placements),
-            *gaps(names, self._movable, signals, self._present),
+            *foreign_links(self._content, self._known.description),
+            *gaps(self._known.description.joint_names, self._movable, signals, self._present),
         ]
 
     def _doubts(self) -> list[Doubt]:
@@ -219,7 +217,7 @@ class _Recording:
             shown = joint_rows(traces_of(self._in_frames), description, times)
             doubts += tf_doubts(description, times, self._measured, shown)
             if not any(doubt.kind == "publishers" for doubt in doubts):  # jumps are no motion
-                arm = self._messages.keys() & set(self._known.robot.arm_joints)
+                arm = self._messages.keys() & set(self._known.description.arm_joints)
                 doubts += velocity_doubts(
                     {name: each for name, each in self._messages.items() if name in arm}
                 )
