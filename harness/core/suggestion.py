@@ -12,7 +12,7 @@ SYNONYMS = {
     "xyz": ("position", "translation", "point"),
     "quat_xyzw": ("orientation", "quaternion", "quat"),
     "rpy": ("rotation", "euler", "angles"),
-    "pose": ("location", "origin"),
+    "pose": ("location", "origin", "position", "xyz", "translation"),
     "frame": ("frame_id", "reference_frame", "parent"),
     "static": ("fixed", "immovable"),
     "length": ("height",),
@@ -37,9 +37,9 @@ def nearest(word: str, valid: Iterable[str]) -> str | None:
     if plain in folded:
         return folded[plain]
     synonyms = {word: getattr(kind, "synonyms", ()) for word, kind in words.items()} | SYNONYMS
-    known = next((keyword for keyword, others in synonyms.items() if plain in others), None)
-    if known in words:
-        return known
+    for keyword in words:
+        if plain in synonyms.get(keyword, ()):
+            return keyword
     near = difflib.get_close_matches(plain, folded, 1, 0.6)
     return folded[near[0]] if near else None
 

@@ -50,6 +50,20 @@ def test_a_shape_of_moveit_is_answered_with_the_shape_as_a_key(shape, hint):
 
 
 @pytest.mark.parametrize(
+    ("keys", "intended"),
+    [
+        ("position: [1, 0, 1]", "pose"),
+        ("xyz: [1, 0, 1]", "pose"),
+        ("pose: {position: [1, 0, 1]}", "xyz"),
+        ("weight: 1", "mass"),
+    ],
+)
+def test_a_key_of_other_tools_is_answered_with_the_key_of_the_same_place(keys, intended):
+    found = problems(f"{HEAD}objects:\n  - {{name: part, box: {{size: [1, 1, 1]}}, {keys}}}\n")
+    assert f"did you mean `{intended}`?" in found[0][1]
+
+
+@pytest.mark.parametrize(
     "expectation", ["tcp_inside: {at_most: 90 cm}", "held_tightly: part", "tcp_pose_: {most: 1}"]
 )
 def test_an_unknown_word_is_one_problem_and_names_plug_ins(expectation):
