@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.plugins.test_steps_of_a_package import harness
+from tests.plugins.commands import harness
 
 PAGE = Path(__file__).parents[2].joinpath("docs/guides/python.md").read_text(encoding="utf-8")
 NOD = next(

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.plugins.commands import harness
+
 SOURCE = Path(__file__).with_name("remarks.py").read_text(encoding="utf-8")
 SCENARIO = """\
 scenario: Remarks
@@ -54,21 +56,6 @@ def install(library):
     (info / "entry_points.txt").write_text("[harness.plugins]\nremarks = remarks\n")
 
 
-def harness(folder, *arguments, path="", code=0):
-    """What a command prints, run in a folder with one more folder on Python's path."""
-    paths = os.pathsep.join([str(path), *sys.path])
-    done = subprocess.run(
-        [sys.executable, "-m", "harness.cli", *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": paths},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == code, done.stdout + done.stderr
-    return done.stdout + done.stderr
-
-
 def typed_result(run, library):
     """What the third step of a saved run reported, as the class of the plug-in gives it."""
     code = (
@@ -91,7 +78,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
     folder, library, package, options = plugged_in
 
     def said(*arguments, code=0):
-        return harness(folder, *arguments, *options, path=library, code=code)
+        return harness(folder, *arguments, *options, site=library, code=code)
 
     rows = [row.split(maxsplit=2) for row in said("list", "steps").splitlines()]
     assert ["remark", package, "Write a sentence about an object into the run's record."] in rows
@@ -121,7 +108,7 @@ def test_every_output_has_the_steps_of_a_plug_in(plugged_in):
 @pytest.mark.nightly
 def test_a_run_of_a_plug_in_s_steps_is_recorded_and_reported(plugged_in):
     folder, library, _, options = plugged_in
-    out = harness(folder, "run", "remarks.scenario.yaml", *options, path=library)
+    out = harness(folder, "run", "remarks.scenario.yaml", *options, site=library)
     assert "PASSED" in out.upper()
     (record,) = folder.glob("reports/**/run.json")
     steps = json.loads(record.read_text())["steps"]
@@ -173,7 +160,7 @@ def test_a_package_that_cannot_be_loaded_is_named_at_its_verb(tmp_path):
     (tmp_path / "remarks.scenario.yaml").write_text(SCENARIO, encoding="utf-8")
     (tmp_path / "remarks.py").write_text(f"import no_such_module\n{SOURCE}", encoding="utf-8")
     install(tmp_path)
-    said = harness(tmp_path, "check", "remarks.scenario.yaml", path=tmp_path, code=2)
+    said = harness(tmp_path, "check", "remarks.scenario.yaml", site=tmp_path, code=2)
     assert UNKNOWN in said
     words = " ".join(re.sub(r"\n +\| ", " ", said).split())
     assert (
@@ -216,7 +203,7 @@ def test_a_scenario_cannot_name_a_module(tmp_path):
     for key in ("plugin: remarks", "plugins: [remarks]", "HARNESS_PLUGINS: remarks"):
         text = SCENARIO.replace("robot:", f"{key}\nrobot:")
         (tmp_path / "remarks.scenario.yaml").write_text(text, encoding="utf-8")
-        said = harness(tmp_path, "check", "remarks.scenario.yaml", path=tmp_path, code=2)
+        said = harness(tmp_path, "check", "remarks.scenario.yaml", site=tmp_path, code=2)
         assert f"unknown key `{key.partition(':')[0]}`" in said
 
 

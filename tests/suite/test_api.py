@@ -1,9 +1,6 @@
 """Scenarios from Python: what the documentation shows runs, and mistakes are reported."""
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +18,7 @@ from harness.language.scenario import Scenario
 from harness.steps.move_to import MoveTo
 from harness.steps.wait import Wait
 from harness.suite.discovery import UsageError
+from tests import commands
 
 PAGE = data_folder("scenarios").parent / "docs/guides/python.md"
 BUNDLED = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))
@@ -47,14 +45,7 @@ def blocks_of_the_page(language):
 def run_with_plugins(folder):
     """A run of the scenarios of a folder, with the modules in it as plug-ins."""
     plugins = [word for path in folder.glob("*.py") for word in ("--plugin", path.name)]
-    done = subprocess.run(
-        [sys.executable, "-m", "harness.cli", "run", *plugins, "--no-report", "."],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = commands.harness("run", *plugins, "--no-report", ".", cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

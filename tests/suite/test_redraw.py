@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.suite.test_suite_run import harness, results
+from tests.commands import harness
+from tests.suite.test_suite_run import results
 
 POST = """\
 scenario: A cube next to a post

@@ -3,16 +3,17 @@
 import json
 import os
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from harness.core.registry import load_plugin
 from harness.core.resources import data_folder
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.stream import FILE, Stream, fingerprint, is_intact
+from tests.commands import forked, harness
 
 
 @pytest.fixture
@@ -131,11 +132,8 @@ def project(tmp_path_factory):
 
 
 def ran(folder, *more):
-    command = ["run", "a.scenario.yaml", "--no-page", "--plugin", "nod.py", *more]
-    done = subprocess.run(
-        [sys.executable, "-m", "harness.cli", *command], cwd=folder, capture_output=True,
-        text=True, check=False, env={**os.environ, "PYTHONPATH": str(folder)},
-    )  # fmt: skip
+    words = ["a.scenario.yaml", "--no-page", "--in-process", "--plugin", "nod.py", *more]
+    done = harness("run", *words, cwd=folder)
     return done.stdout + done.stderr
 
 
@@ -231,18 +229,15 @@ def test_what_appears_earlier_on_a_search_path_is_noticed(tmp_path, scenario, ap
 
 def is_known(folder):
     """Whether the result of a folder's scenario is from the files that stand there now."""
-    code = """if True:
-        from pathlib import Path
-        from harness.core.registry import load_plugin
-        from harness.session.run_request import RunRequest
-        from harness.suite.stream import Stream
-        load_plugin("nod.py")
-        found = Stream(Path("reports"), resume=True)
-        print([found._has_same_inputs(each) for each in found._inputs])
-    """
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True,
-                          check=True, env={**os.environ, "PYTHONPATH": str(folder)})  # fmt: skip
-    return json.loads(done.stdout.lower()) == [True]
+    return forked(same_inputs, folder).result == [True]
+
+
+def same_inputs(folder, _notify):
+    os.chdir(folder)
+    sys.path.insert(0, str(folder))
+    load_plugin("nod.py")
+    found = Stream(Path("reports"), resume=True)
+    return [found._has_same_inputs(each) for each in found._inputs]  # noqa: SLF001
 
 
 def test_the_copy_of_a_project_has_the_same_inputs(project, tmp_path):

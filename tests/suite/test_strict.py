@@ -1,10 +1,10 @@
 """Warnings of verdicts: notes of a run that passes, failures of a strict one."""
 
 import json
-import subprocess
-import sys
 
 import pytest
+
+from tests.commands import harness
 
 STILL = """\
 scenario: Nothing moves
@@ -19,20 +19,15 @@ WARNED = "eventually: {upright: cube}"
 PLAIN = "always: {upright: cube}"
 
 
-def harness(*words, cwd):
-    return subprocess.run(
-        [sys.executable, "-m", "harness.cli", *map(str, words)],
-        cwd=cwd, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-
-
 @pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(("expected", "code"), [(WARNED, 1), (PLAIN, 0)])
 def test_a_warning_fails_a_strict_run_and_no_other(expected, code, tmp_path):
     (tmp_path / "still.scenario.yaml").write_text(STILL.replace("EXPECT", expected))
-    loose = harness("run", "still.scenario.yaml", cwd=tmp_path)
+    loose = harness("run", "still.scenario.yaml", "--in-process", "--no-page", cwd=tmp_path)
     assert loose.returncode == 0
-    strict = harness("run", "still.scenario.yaml", "--strict", "--no-report", cwd=tmp_path)
+    strict = harness(
+        "run", "still.scenario.yaml", "--strict", "--no-report", "--in-process", cwd=tmp_path
+    )
     assert strict.returncode == code
     for done in (loose, strict):
         assert ("warning: already true at the start" in done.stdout) == bool(code)

@@ -1,10 +1,10 @@
 """Varied suites through the command line: rates, early ends, tables, going on, one sample alone."""
 
 import json
-import subprocess
-import sys
 
 import pytest
+
+from tests.commands import harness
 
 VARIED = """\
 scenario: Wait for a random time
@@ -31,13 +31,6 @@ parametrize:
   time: [0.05 s, 0.1 s, 0.2 s]
   unused: [1, 2]
 """
-
-
-def harness(*words, cwd):
-    return subprocess.run(
-        [sys.executable, "-m", "harness.cli", *map(str, words)],
-        cwd=cwd, capture_output=True, text=True, check=False,
-    )  # fmt: skip
 
 
 def results(*words, cwd):
@@ -69,7 +62,7 @@ def test_a_rate_counts_each_sample_once_whatever_its_order(sampled):
     assert (group["rate"]["passed"], group["rate"]["total"]) == (passed, 12)
     assert 0 < passed < 12
     assert found["exit_code"] == 1
-    alone = results(path, "--no-report", cwd=folder)
+    alone = results(path, "--no-report", "--in-process", cwd=folder)
     assert [case["digest"] for case in alone["cases"]] == [
         case["digest"] for case in found["cases"]
     ]
@@ -79,7 +72,7 @@ def test_a_rate_counts_each_sample_once_whatever_its_order(sampled):
 def test_a_failing_sample_runs_alone_to_the_same_digest_with_the_printed_command(sampled):
     folder, path, found = sampled
     worst = next(case for case in found["cases"] if case["outcome"] == "failed")
-    said = harness("run", path, "--no-report", cwd=folder).stdout
+    said = harness("run", path, "--no-report", "--in-process", cwd=folder).stdout
     [command] = [
         line.split("again:")[1].split()
         for line in said.splitlines()

@@ -3,7 +3,6 @@
 import json
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 from dataclasses import replace
@@ -14,10 +13,11 @@ import trimesh
 
 from harness.cli.main import main
 from harness.core.resources import data_folder
-from harness.plugins.campaigns.cluster.batch import Batch, Files, unpack_report
+from harness.plugins.campaigns.cluster.batch import Batch, Files, run_batch, unpack_report
 from harness.plugins.campaigns.cluster.named_files import named_files
 from harness.session.run_request import RunRequest
 from harness.suite.installation import Installation, installation
+from tests.commands import forked
 
 WORLD = """\
 world: table
@@ -36,24 +36,18 @@ expect:
 parametrize:
   time: [1 ms, 5 ms]
 """
-RUN = """
-import pickle, sys
-from harness.plugins.campaigns.cluster.batch import run_batch
-batch, files = pickle.load(sys.stdin.buffer)
-result = run_batch(batch, files)
-sys.stdout.buffer.write(pickle.dumps(result))
-"""
 
 
 def run_elsewhere(batch, files, cwd):
     """Run a batch as a node does: in another process, in another folder."""
-    import pickle
+    ended = forked(run_batch_in, cwd, batch, files)
+    assert ended.code == 0, ended.traceback
+    return ended.result
 
-    done = subprocess.run(
-        [sys.executable, "-c", RUN], cwd=cwd, input=pickle.dumps((batch, files)),
-        capture_output=True, check=True,
-    )  # fmt: skip
-    return pickle.loads(done.stdout)
+
+def run_batch_in(cwd, batch, files, _notify):
+    os.chdir(cwd)
+    return run_batch(batch, files)
 
 
 @pytest.fixture

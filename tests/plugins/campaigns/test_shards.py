@@ -1,11 +1,9 @@
 """A suite in parts on several machines, merged: the same results, page and rates as one run."""
 
 import json
-import os
 import re
 import shutil
 import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -17,6 +15,7 @@ from harness.plugins.campaigns.shards import Shard, shard_of
 from harness.suite.discovery import UsageError
 from harness.suite.plan import planned_cases
 from harness.suite.request import SuiteRequest
+from tests.commands import harness
 
 GUIDE = (Path(__file__).parents[3] / "docs/guides/many_machines.md").read_text(encoding="utf-8")
 SAMPLED = """\
@@ -47,14 +46,6 @@ parametrize:
 """
 
 
-def harness(*words, cwd, **environment):
-    return subprocess.run(
-        [sys.executable, "-m", "harness.cli", *map(str, words)],
-        cwd=cwd, capture_output=True, text=True, check=False,
-        env={**os.environ, **environment},
-    )  # fmt: skip
-
-
 def document(folder):
     return json.loads((folder / "results.json").read_text())
 
@@ -75,7 +66,7 @@ def parts(tmp_path_factory):
     for number in (1, 2, 3):
         part = harness(
             "run", ".", "--shard", f"{number}/3", "--report-dir", f"at{number}", "--no-page",
-            cwd=folder,
+            "--in-process", cwd=folder,
         )  # fmt: skip
         codes.append(part.returncode)
     assert whole.returncode == 1  # one case of the grid waits too long

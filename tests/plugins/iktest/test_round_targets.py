@@ -63,16 +63,17 @@ def wrong_at_the_shoulder(x, y, z, pitch):
     ]
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize(
-    ("ik", "kind", "name"),
+    ("ik", "kind", "name", "examples"),
     [
-        (refuses_sideways, "refuses a target within reach", "answers"),
-        (refuses_straight_ahead, "refuses a target within reach", "answers"),
-        (wrong_at_the_shoulder, "misses the position", "reaches"),
+        (refuses_sideways, "refuses a target within reach", "answers", 100),
+        (refuses_straight_ahead, "refuses a target within reach", "answers", 20),
+        (wrong_at_the_shoulder, "misses the position", "reaches", 100),
     ],
 )
-def test_round_targets_within_reach_are_judged_as_others_are(ik, kind, name):
-    report = run_ik_test(IkTest(ik, OM))
+def test_round_targets_within_reach_are_judged_as_others_are(ik, kind, name, examples):
+    report = run_ik_test(IkTest(ik, OM, examples=examples))
     assert (name, kind) in {(finding.property, finding.kind) for finding in report.findings}
 
 
