@@ -66,30 +66,17 @@ def terms_of(
     """
     holds = [each.for_ for each in fields if each.for_ is not None]
     withins = [each.within for each in fields if each.within is not None]
+    named = {each.during for each in fields if each.during is not None}
+    if len(named) > 1:
+        raise NotObservable(f"`during` names two steps: {' and '.join(sorted(named))}")
     return Terms(
         word,
         max(holds, default=None),
         min(withins, default=None),
-        one_step(tuple(each.during for each in fields), step),
+        next(iter(named), step),
         is_opposed,
         is_change,
     )
-
-
-def one_step(during: tuple[str | None, ...], step: str) -> str:
-    """The step that an expectation is judged over.
-
-    Args:
-        during: The `during` of each part, or None.
-        step: Where it stands, if none of them does.
-
-    Raises:
-        NotObservable: They name two.
-    """
-    named = {name for name in during if name is not None}
-    if len(named) > 1:
-        raise NotObservable(f"`during` names two steps: {' and '.join(sorted(named))}")
-    return next(iter(named), step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +144,7 @@ def decide(terms: Terms, window: Window, margins: MarginSignal) -> Verdict:
     try:
         decision = _decision(terms, window, series)
     except TooShort:
-        return _too_short(terms, series.times)
+        return too_short(terms, series.times)
     if not decision.holds and unknown.any():
         _refuse_unknown(terms, window, unknown, series, chosen)
     observed = Observed(int(known.sum()), int(unknown.sum()), margins.pairs)
@@ -315,7 +302,8 @@ def _nearest(values: FloatArray, times: FloatArray, progress: FloatArray | None)
     return temporal.eventually(known, times, progress=progress).index
 
 
-def _too_short(terms: Terms, times: FloatArray) -> Verdict:
+def too_short(terms: Terms, times: FloatArray) -> Verdict:
+    """The verdict where no sample leaves room for the required time."""
     hold, span = terms.hold or 0.0, float(times[-1] - times[0])
     reason = f"judged over {span:.3f} s, which leaves no room for {hold:.3f} s"
     if terms.within is not None:

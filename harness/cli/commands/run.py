@@ -6,6 +6,7 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -93,17 +94,13 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
         update_page = _page_updates(arguments, suite)
         from harness.cli.progress import ProgressLines, slow_work_on_stderr
 
-        if arguments.format == "json":
-            with only_json_on_stdout():
+        if arguments.format != "full":
+            is_json = arguments.format == "json"
+            with only_json_on_stdout() if is_json else nullcontext():
                 suite.collect(server, slow_work_on_stderr, update_page)
                 write_suite_files(arguments, suite, hooks)
                 show_interruption(arguments, suite, time.monotonic() - start)
-            return show_json(suite)
-        if arguments.format != "full":
-            suite.collect(server, slow_work_on_stderr, update_page)
-            write_suite_files(arguments, suite, hooks)
-            show_interruption(arguments, suite, time.monotonic() - start)
-            return show_lines(arguments, suite)
+            return show_json(suite) if is_json else show_lines(arguments, suite)
         from harness.reporting.terminal import Style
 
         names = _case_names(arguments, suite)

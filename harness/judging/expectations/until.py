@@ -13,10 +13,10 @@ from harness.core.types import FloatArray
 from harness.judging import temporal
 from harness.judging.expectation import InnerPredicate, Predicate, TemporalWord
 from harness.judging.margins import MarginSignal
-from harness.judging.temporal import TIME_RESOLUTION, TooShort, longest_hold
+from harness.judging.temporal import TIME_RESOLUTION, Decision, TooShort, longest_hold
 from harness.judging.text import amount
 from harness.judging.window import NotObservable, NotReached, Window, window_of
-from harness.judging.words import ALREADY_TRUE, one_step
+from harness.judging.words import ALREADY_TRUE, terms_of, too_short
 from harness.recording.run import Run
 from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning
 
@@ -47,35 +47,39 @@ class Until(TemporalWord):
             NotReached: One of the two was never there.
             NotObservable: The record lacks what they are about.
         """
-        holds = [value for value in (self.for_, self.until.for_) if value is not None]
-        withins = [value for value in (self.within, self.until.within) if value is not None]
-        hold, within = max(holds, default=None), min(withins, default=None)
-        during = one_step((self.during, self.predicate.during, self.until.during), step)
-        window = window_of(run, during)
+        terms = terms_of("until", [self, self.predicate, self.until], step, is_opposed=False)
+        window = window_of(run, terms.step)
+        times, hold = window.times, terms.hold
         first, second = self.predicate.margins(window), self.until.margins(window)
         low = [_low(margins, skipped) for margins, skipped in ((first, np.inf), (second, -np.inf))]
-        is_open = bool(window.cut_short) and _could_hold(low[0], low[1], window.times, hold, within)
+        unknown = first.unknown() | second.unknown()
+
+        def decide(margins: list[FloatArray], times: FloatArray) -> tuple[Decision, bool]:
+            first, second = margins
+            return temporal.until(first, second, times, hold, terms.within)
+
+        future = [temporal.with_future(margins, np.inf) for margins in low]
+        is_open = bool(window.cut_short) and decide(future, temporal.later(times))[0].holds
         try:
-            decision, is_second = temporal.until(low[0], low[1], window.times, hold, within)
+            decision, is_second = decide(low, times)
         except TooShort:
             if is_open:
                 raise NotReached(window.cut_short) from None
-            span = float(window.times[-1] - window.times[0])
-            reason = f"judged over {span:.3f} s, which leaves no room for {hold or 0.0:.3f} s"
-            last = float(window.times[-1])
-            return Verdict("", "failed", span - (hold or 0.0), "s", last, reason=reason)
-        if is_open and not decision.holds:
-            raise NotReached(window.cut_short)
+            return too_short(terms, times)
         if not decision.holds:
-            self._refuse_unknown((first, second), low, window, hold, within)
+            if is_open:
+                raise NotReached(window.cut_short)
+            best = [
+                np.where(m.unknown(), np.inf, v) for m, v in zip((first, second), low, strict=True)
+            ]
+            if decide(best, times)[0].holds:
+                count = int(unknown.sum())
+                raise NotObservable(f"{count} samples are not known, and would decide it")
         margins = second if is_second else first
         answer = self._worded(window, margins, decision, hold if is_second else None, is_second)
         return replace(
             answer,
-            observed=Observed(
-                int(np.sum(~(first.unknown() | second.unknown()))),
-                int(np.sum(first.unknown() | second.unknown())),
-            ),
+            observed=Observed(int((~unknown).sum()), int(unknown.sum())),
             warnings=self._came_at_once(low[1], window, hold) if decision.holds else (),
         )
 
@@ -92,27 +96,11 @@ class Until(TemporalWord):
         )
         return (VerdictWarning(ALREADY_TRUE, message),)
 
-    def _refuse_unknown(
-        self,
-        signals: tuple[MarginSignal, MarginSignal],
-        low: list[FloatArray],
-        window: Window,
-        hold: float | None,
-        within: float | None,
-    ) -> None:
-        """Refuse a verdict that favourable values of the unknown samples would reverse."""
-        unknown = [margins.unknown() for margins in signals]
-        best = [np.where(mask, np.inf, values) for mask, values in zip(unknown, low, strict=True)]
-        decision, _ = temporal.until(best[0], best[1], window.times, hold, within)
-        if decision.holds:
-            count = int((unknown[0] | unknown[1]).sum())
-            raise NotObservable(f"{count} samples are not known, and would decide it")
-
     def _worded(
         self,
         window: Window,
         margins: MarginSignal,
-        decision: temporal.Decision,
+        decision: Decision,
         hold: float | None,
         is_second: bool,
     ) -> Verdict:
@@ -125,11 +113,9 @@ class Until(TemporalWord):
             reason = f"{word} is not known, or not there, at t={time:.3f} s"
             return Verdict("", status, time=time, reason=reason)
         evidence = margins.evidence(decision.index)
-        margin, unit = (
-            (decision.value, margins.unit)
-            if evidence.margin is None
-            else (evidence.margin, evidence.unit)
-        )
+        margin, unit = decision.value, margins.unit
+        if evidence.margin is not None:
+            margin, unit = evidence.margin, evidence.unit
         at = f" at t={time:.3f} s" if evidence.is_moment else ""
         role = "came" if is_second else "held before it"
         if not decision.holds:
@@ -138,19 +124,6 @@ class Until(TemporalWord):
         reason = f"`{word}` {role}{lasting}: {evidence.text}{at}"
         measures = evidence.measures
         return Verdict("", status, margin + 0.0, unit, time, reason=reason, measures=measures)
-
-
-def _could_hold(
-    first: FloatArray,
-    second: FloatArray,
-    times: FloatArray,
-    hold: float | None,
-    within: float | None,
-) -> bool:
-    """Whether it holds if a window that was cut short continues in the best way."""
-    best = [temporal.with_future(margins, np.inf) for margins in (first, second)]
-    decision, _ = temporal.until(best[0], best[1], temporal.later(times), hold, within)
-    return decision.holds
 
 
 def _low(margins: MarginSignal, skipped: float) -> FloatArray:
