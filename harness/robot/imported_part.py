@@ -11,7 +11,7 @@ import numpy as np
 from harness.core.errors import RobotError, RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
-from harness.robot.acceleration import ACCELERATION, VELOCITY
+from harness.robot.assumed_limits import ACCELERATION, VELOCITY
 from harness.robot.compose import RobotPart
 from harness.robot.description import Joint, PlanningGroup
 from harness.robot.gripper.find_hand import hand_candidates, named_hand

@@ -19,11 +19,7 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import LARGEST_FILE, XmlElement, read_xml
 from harness.language.files.yaml_file import read_text
 from harness.language.scenario import RobotSpec
-from harness.robot.acceleration import (
-    with_assumed_limits_listed,
-    with_possible_accelerations,
-    without_placeholder_efforts,
-)
+from harness.robot.assumed_limits import with_assumed_limits_listed, with_plausible_efforts
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
 from harness.robot.collision_shapes import with_collision_modes, with_collision_shapes
@@ -142,8 +138,7 @@ def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) ->
     is_imported = spec.model is None and main is not None
     if is_imported:
         known |= {name for name, limits in spec.joint_limits.items() if limits.max_acceleration}
-        description = without_placeholder_efforts(description)
-        description = with_possible_accelerations(description, known)
+        description = with_plausible_efforts(description)
     description = with_options(description, spec)
     if is_imported:
         description = with_assumed_limits_listed(description, known)
