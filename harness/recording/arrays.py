@@ -34,8 +34,7 @@ BY_PAIR = (
     "link_overlaps",
 )
 GROUPS = frozenset(entry.name for entry in fields(Signals)) - {"clearance_cutoff"}
-COMPRESSION = 1
-"""Deflate level: 6 takes three times as long and saves a tenth on recorded doubles."""
+COMPRESSION = 1  # Deflate level: 6 takes three times as long and saves a tenth on recorded doubles
 
 
 def arrays_of(signals: Signals) -> dict[str, Array]:

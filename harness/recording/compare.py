@@ -282,10 +282,8 @@ def _findings(one: Run, two: Run) -> list[Change]:
     return changes
 
 
-NONE = "-"
-"""Stands for what one of two runs does not have."""
-MOST = 20
-"""Changes that are listed one by one."""
+NONE = "-"  # Stands for what one of two runs does not have
+MOST = 20  # Changes that are listed one by one
 
 
 def line_changes(one: Run, two: Run) -> list[tuple[str, str]]:

@@ -13,8 +13,7 @@ from typing import IO, Any
 import numpy as np
 
 Array = np.ndarray[Any, Any]
-LARGEST = 2 * 2**30
-"""Of all arrays of a file together, unpacked [bytes]."""
+LARGEST = 2 * 2**30  # Of all arrays of a file together, unpacked [bytes]
 SUFFIX = ".npy"
 
 

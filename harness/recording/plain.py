@@ -24,8 +24,7 @@ NotFinite = Literal["null", "strings"]
 GEOMETRIES = {kind.__name__.lower(): kind for kind in (Box, Capsule, Cylinder, Mesh, Plane, Sphere)}
 NOT_NUMBERS = {"NaN": math.nan, "Infinity": math.inf, "-Infinity": -math.inf}
 SCALARS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
-QUOTED = 60
-"""Characters of a value that an error quotes."""
+QUOTED = 60  # Characters of a value that an error quotes
 
 
 def to_plain(value: Any, *, not_finite: NotFinite = "strings") -> Any:

@@ -45,8 +45,7 @@ from harness.recording.stored_run import (
 )
 from harness.recording.verdict import Verdict
 
-LONE_SURROGATE = "\\ud"
-"""How JSON writes half of a character, which no file or terminal can hold."""
+LONE_SURROGATE = "\\ud"  # How JSON writes half of a character, which no file or terminal can hold
 NEEDED = tuple(
     entry.name
     for entry in fields(Run)
@@ -56,8 +55,7 @@ NEEDED = tuple(
 _NOTHING = np.zeros(0)
 NO_SIGNALS = Signals(_NOTHING, _NOTHING, _NOTHING, _NOTHING, _NOTHING, _NOTHING, tcp_pose=_NOTHING)
 """Until the arrays are read."""
-MOST_FLAWS = 20
-"""Problems of a damaged run that are listed."""
+MOST_FLAWS = 20  # Problems of a damaged run that are listed
 
 
 def read_run(folder: Path) -> StoredRun:

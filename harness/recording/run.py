@@ -19,8 +19,7 @@ from harness.recording.signals import CaptureRecord, ContactRecord, Signals, Vid
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
-TIME_RESOLUTION = 1e-9
-"""Times nearer than this are the same [s]."""
+TIME_RESOLUTION = 1e-9  # Times nearer than this are the same [s]
 Outcome = Literal["passed", "failed", "invalid", "error"]
 
 

@@ -22,8 +22,7 @@ VELOCITY = (1.5, "rad/s"), (0.2, "m/s")
 SAMPLES = 60
 """Random configurations, the same in every run, in which the efforts against gravity are known."""
 
-LEAST_JOINTS = 3
-"""Fewest joints of an arm whose equal effort limits are no coincidence."""
+LEAST_JOINTS = 3  # Fewest joints of an arm whose equal effort limits are no coincidence
 
 
 def with_plausible_efforts(description: RobotDescription) -> RobotDescription:

@@ -21,8 +21,7 @@ JOINTS = {
 }
 """Joint of each section of the file, as in ur_description's kinematics_params."""
 
-FARTHEST = 0.05
-"""Largest rotation of the flange by a calibration of the same robot and axes [rad]."""
+FARTHEST = 0.05  # Largest rotation of the flange by a calibration of the same robot and axes [rad]
 
 FARTHEST_REACH = 0.02
 """Largest displacement of the flange by a calibration of the same robot and axes [m]."""

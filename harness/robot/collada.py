@@ -8,8 +8,7 @@ from functools import cache
 from harness.core.errors import RobotError, SpecError
 from harness.language.files.xml_file import XmlElement, parse_xml
 
-HEADER = 20_000
-"""The first bytes of a file, which have its unit."""
+HEADER = 20_000  # The first bytes of a file, which have its unit
 
 UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
 ROOT = b"<COLLADA"

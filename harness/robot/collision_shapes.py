@@ -13,14 +13,12 @@ from harness.core.suggestion import did_you_mean
 from harness.robot.description import Link, RobotDescription
 from harness.robot.mesh_file import decomposition_of
 
-LEAST_LENGTH = 0.05
-"""Shorter links are not compared with their collision shapes [m]."""
+LEAST_LENGTH = 0.05  # Shorter links are not compared with their collision shapes [m]
 
 LEAST_SHARE = 0.02
 """Of a link's length: smaller collision shapes are a mistake in units, most likely."""
 
-DEFAULT_MODE: CollisionMode = "parts"
-"""How meshes collide where nothing is stated."""
+DEFAULT_MODE: CollisionMode = "parts"  # How meshes collide where nothing is stated
 
 
 def collision_shapes(

@@ -23,8 +23,7 @@ from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf
 
-DAMPED_SHARE = 0.5
-"""Share of a joint's effort that its damping may take at the velocity limit."""
+DAMPED_SHARE = 0.5  # Share of a joint's effort that its damping may take at the velocity limit
 
 START_STATES = ("home", "ready", "start", "default", "init", "rest")
 """Names of start states of an imported arm, in order of preference."""

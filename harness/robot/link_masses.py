@@ -11,13 +11,11 @@ from harness.core.solids import TRIANGLE_SLACK
 from harness.robot.description import Inertial, Link, RobotDescription
 from harness.robot.urdf.links import corrected_note
 
-LONGEST_GYRATION = 2.0
-"""Radius of gyration that no link of an arm exceeds [m]."""
+LONGEST_GYRATION = 2.0  # Radius of gyration that no link of an arm exceeds [m]
 
 MANY = 3
 
-FEATHER = 1e-3
-"""Lighter links are frames that have a mass because a library requires one [kg]."""
+FEATHER = 1e-3  # Lighter links are frames that have a mass because a library requires one [kg]
 
 
 def mass_problems(description: RobotDescription) -> list[str]:

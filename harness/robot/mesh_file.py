@@ -31,8 +31,7 @@ from harness.robot.decomposition.convex_parts import Decomposition, stored_decom
 
 SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".glb")
 KINDS = "STL, OBJ, DAE, PLY or GLB"
-LARGEST_FILE = 64_000_000
-"""Largest mesh file [bytes]."""
+LARGEST_FILE = 64_000_000  # Largest mesh file [bytes]
 
 FLAT = 1e-6
 """Thickness below which a mesh is flat, as a share of its extent: coordinates in single precision

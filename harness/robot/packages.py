@@ -23,8 +23,7 @@ DEEPEST = 4
 HIGHEST = 3
 """Levels above a robot's file at which a folder of a package's name is taken as the package."""
 MOST_FOLDERS = 5_000
-DESCRIPTIONS = ("urdf", "xacro", "robots")
-"""Usual folders of the descriptions in a package."""
+DESCRIPTIONS = ("urdf", "xacro", "robots")  # Usual folders of the descriptions in a package
 
 LARGEST_MANIFEST = 200_000
 NAME = re.compile(rb"<name>\s*([\w.-]+)\s*</name>")

@@ -15,8 +15,7 @@ from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sp
 from harness.core.types import FloatArray
 from harness.robot.mesh_file import convex_hull, exact_surface
 
-DOT = 1e-6
-"""Radius of the sphere that stands for a point, since Coal has none [m]."""
+DOT = 1e-6  # Radius of the sphere that stands for a point, since Coal has none [m]
 
 
 def coal_geometry(shape: Shape) -> Any:

@@ -19,8 +19,7 @@ from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
 
 TEMPLATES = Path(__file__).parent / "templates"
-MOST_RUNS = 3
-"""Scenarios of a kind that are run; each takes seconds."""
+MOST_RUNS = 3  # Scenarios of a kind that are run; each takes seconds
 PICK_SECONDS = 40.0
 """Wall time after which no further pick is tried, so that a motion is found within a minute [s]."""
 

@@ -27,12 +27,10 @@ TOO_OFTEN = 0.9
 """Part of the configurations that collide from which a description is wrong and not crowded."""
 
 PLACEHOLDER_EFFORT = 1000.0
-MOST_TURNS = 10
-"""Turns of a revolute joint from which its limits are in degrees in all likelihood."""
+MOST_TURNS = 10  # Turns of a revolute joint from which its limits are in degrees in all likelihood
 SHOWN_EXCESS = 5e-5
 """Excess of a mesh's collision shapes from which the mesh has a line of its own [m]."""
-LARGEST_LINK = 10.0
-"""Length of a shape from which it is in millimetres in all likelihood [m]."""
+LARGEST_LINK = 10.0  # Length of a shape from which it is in millimetres in all likelihood [m]
 
 
 def forward_kinematics(

@@ -17,28 +17,22 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.description import Gripper, RobotDescription
 from harness.robot_tools.robot_findings import moving_mass
 
-SAMPLES = 5000
-"""Random configurations that measure the reach."""
+SAMPLES = 5000  # Random configurations that measure the reach
 
 DISTANCES, HEIGHTS = (0.25, 0.35, 0.45, 0.55, 0.65), (0.03, 0.1, 0.2, 0.35, 0.5)
 """Distances from the base and heights above it where the box is tried, as shares of the reach."""
 
-NEAR = 0.08
-"""Distance up to which a random configuration shows that a place is reached, likewise."""
+NEAR = 0.08  # Distance up to which a random configuration shows that a place is reached, likewise
 
 DOWNWARD = math.radians(10)
 """Angle between the gripper and the vertical up to which it points downward, roughly [rad]."""
 
-MOST_PLACES = 6
-"""Places of the box that are tried in a direction."""
-
-CLEAR = 0.25
-"""Distance of the box from the hand at the start, as a share of the reach."""
+MOST_PLACES = 6  # Places of the box that are tried in a direction
+CLEAR = 0.25  # Distance of the box from the hand at the start, as a share of the reach
 
 HEADINGS = (0.0, 0.5 * math.pi)
 SHORTEST_APPROACH = 0.03  # [m]
-LEAST_LIFT = 0.6
-"""Shortest lift as a share of the longest; half of it is expected."""
+LEAST_LIFT = 0.6  # Shortest lift as a share of the longest; half of it is expected
 WIDEST_BOX, TALLEST_BOX = 0.05, 0.08  # [m]
 JAW_TURN = 0.35
 """Angle by which a single jaw is open at the width of the box; more, and it presses down [rad]."""
@@ -55,17 +49,10 @@ GAP_STEP = 1e-3
 """Change of the gap between the pads over which the gripper's transmission is measured [m]."""
 MOTIONS = 10
 
-MARGIN = 0.02
-"""Distance of joint goals from the limits, as a share of the range."""
-
-FREE_ROTATION = 6
-"""Joints of an arm that reaches any rotation."""
-
-DIGITS = 4
-"""Decimals of joint positions in the file."""
-
-PADDING = 0.002
-"""Distance of bodies at the start [m], as planning keeps by default."""
+MARGIN = 0.02  # Distance of joint goals from the limits, as a share of the range
+FREE_ROTATION = 6  # Joints of an arm that reaches any rotation
+DIGITS = 4  # Decimals of joint positions in the file
+PADDING = 0.002  # Distance of bodies at the start [m], as planning keeps by default
 
 FLOOR_CLEARANCE = 0.05
 """Height of the lowest moving link above the floor at the start, at least [m]."""

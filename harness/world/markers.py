@@ -16,11 +16,8 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.language.markers import MarkerSpec
 
-THICKNESS = 0.001
-"""Of the plate [m]."""
-
-INK = 0.0002
-"""Thickness of the black boxes, half of it above the plate [m]."""
+THICKNESS = 0.001  # Of the plate [m]
+INK = 0.0002  # Thickness of the black boxes, half of it above the plate [m]
 
 WHITE, BLACK = (0.95, 0.95, 0.95, 1.0), (0.03, 0.03, 0.03, 1.0)
 

@@ -12,8 +12,7 @@ from harness.core.spatial import SE3, rotation_from_quat_wxyz, rotation_from_rpy
 from harness.core.types import FloatArray
 from harness.language.poses import Pose
 
-DECIMALS = 12
-"""Decimals of metres and quaternion components; finer differences are rounding errors."""
+DECIMALS = 12  # Decimals of metres and quaternion components; finer differences are rounding errors
 
 
 def rounded(value: float) -> float:
@@ -43,8 +42,7 @@ def facing(normal: FloatArray) -> FloatArray:
     return rotation_from_quat_wxyz((1 + z, -y, x, 0.0))
 
 
-LEAST_NORMAL = 1e-9
-"""Length of the normal of a plane below which it has no direction."""
+LEAST_NORMAL = 1e-9  # Length of the normal of a plane below which it has no direction
 THICK_PLANE = "a plane is solid below its surface; MoveIt's is thin"
 
 

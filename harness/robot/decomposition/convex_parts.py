@@ -15,8 +15,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.core.user_cache import cached, store
 
-METHOD = 4
-"""Version of the decomposition; parts of another version are computed again."""
+METHOD = 4  # Version of the decomposition; parts of another version are computed again
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,45 +21,29 @@ from harness.core.types import BoolArray, FloatArray
 from harness.robot.decomposition.convex_parts import Decomposition
 from harness.robot.decomposition.solid_grid import SolidGrid, solid_grid
 
-HULL_TOLERANCE = 0.01
-"""The excess up to which the convex hull of the whole mesh is good enough [m]."""
-
-TOLERANCE = 0.005
-"""The excess up to which a part is good enough, where the hull is not [m]."""
-
-SMALL = 0.1
-"""A mesh whose longest side is shorter has proportionally smaller tolerances [m]."""
-
-FINENESS = 1 / 5
-"""Edge of a voxel as a share of the tolerance."""
+HULL_TOLERANCE = 0.01  # The excess up to which the convex hull of the whole mesh is good enough [m]
+TOLERANCE = 0.005  # The excess up to which a part is good enough, where the hull is not [m]
+SMALL = 0.1  # A mesh whose longest side is shorter has proportionally smaller tolerances [m]
+FINENESS = 1 / 5  # Edge of a voxel as a share of the tolerance
 
 DIAGONAL = np.sqrt(3.0)
 """Distances between voxels, in edges, are off by at most as much from those between points."""
 
-MOST_PARTS = 24
-"""Largest number of parts of a mesh."""
-
-MOST_PIECES = 32
-"""Largest number of pieces before they are merged."""
-
-THINNEST = 0.001
-"""Thickness of parts that are thinner, such as the walls of an open mesh [m]."""
+MOST_PARTS = 24  # Largest number of parts of a mesh
+MOST_PIECES = 32  # Largest number of pieces before they are merged
+THINNEST = 0.001  # Thickness of parts that are thinner, such as the walls of an open mesh [m]
 
 POSITIONS = np.linspace(0.1, 0.9, 9)
 """Where a piece is cut along each normal, as shares of its extent."""
 
-SAME_VOLUME = 1e-6
-"""Share of the hull's volume by which that of a convex mesh may differ."""
-
-CORNER_TOLERANCE = 1e-4
-"""Height above the faces of a hull up to which its corners are left out [m]."""
+SAME_VOLUME = 1e-6  # Share of the hull's volume by which that of a convex mesh may differ
+CORNER_TOLERANCE = 1e-4  # Height above the faces of a hull up to which its corners are left out [m]
 
 NEARLY = 0.3
 """Height as a share of the largest from which a corner is kept at once with the highest."""
 
 NO_TRIANGLES = np.zeros((0, 3, 3))
-FLUSH = 1e-9
-"""Distance from a cut below which a corner is on it [m]."""
+FLUSH = 1e-9  # Distance from a cut below which a corner is on it [m]
 
 _H = np.sqrt(0.5)
 NORMALS = np.array(
@@ -70,11 +54,8 @@ NORMALS = np.array(
 )
 """Normals of the cuts: the axes, and half way between two of them; and those of large faces."""
 
-SAME_NORMAL = 0.99
-"""Cosine of the angle below which two normals differ."""
-
-MOST_FACES = 6
-"""Largest number of normals of faces of a piece along which it is cut."""
+SAME_NORMAL = 0.99  # Cosine of the angle below which two normals differ
+MOST_FACES = 6  # Largest number of normals of faces of a piece along which it is cut
 
 
 def _spread_directions(count: int) -> FloatArray:
@@ -96,8 +77,7 @@ MOST_EMPTY = 20_000
 FEW_SAMPLES, MANY_SAMPLES = 200, 2_000
 """Numbers of points with which cuts are compared, first all and then the best."""
 
-GOOD_CUTS = 10
-"""Number of cuts that are compared with many points."""
+GOOD_CUTS = 10  # Number of cuts that are compared with many points
 
 PEEL = 0.5
 """What a volume that is not cut into convex parts yet costs, next to that of its empty space."""

@@ -9,20 +9,14 @@ from scipy import ndimage
 
 from harness.core.types import BoolArray, FloatArray, IntArray
 
-MOST_VOXELS = 1_000_000
-"""Largest number of voxels of a grid."""
+MOST_VOXELS = 1_000_000  # Largest number of voxels of a grid
 
 MOST_POINTS = 10_000_000
 """Approximate largest number of points on the surface; each takes about 100 bytes meanwhile."""
 
-FINEST = 0.0005
-"""Smallest edge of a voxel [m]."""
-
-POINTS_PER_EDGE = 3
-"""Points on the surface for each edge of a voxel, so that none is missed."""
-
-BORDER = 2
-"""Empty voxels around the mesh."""
+FINEST = 0.0005  # Smallest edge of a voxel [m]
+POINTS_PER_EDGE = 3  # Points on the surface for each edge of a voxel, so that none is missed
+BORDER = 2  # Empty voxels around the mesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,7 @@ from harness.robot.description import PlanningGroup
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.urdf.urdf import Urdf
 
-HAND = "gripper"
-"""Name of the group of a hand that no SRDF names."""
+HAND = "gripper"  # Name of the group of a hand that no SRDF names
 
 
 def named_hand(

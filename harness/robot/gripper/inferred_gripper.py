@@ -21,20 +21,11 @@ from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
 
-SAMPLES = 11
-"""Number of joint positions at which the gap between the pads is measured."""
-
-GRIP_FORCE = 20.0
-"""Default force of each pad [N]."""
-
-PAD_FRICTION = 1.0
-"""Sliding friction coefficient of pads whose file has none."""
-
-LEAST_TRAVEL = 0.002
-"""Smallest change of the gap of a hand that can grasp [m]."""
-
-CLOSED_JAW = 0.01
-"""Largest gap between a closed jaw and the palm [m]."""
+SAMPLES = 11  # Number of joint positions at which the gap between the pads is measured
+GRIP_FORCE = 20.0  # Default force of each pad [N]
+PAD_FRICTION = 1.0  # Sliding friction coefficient of pads whose file has none
+LEAST_TRAVEL = 0.002  # Smallest change of the gap of a hand that can grasp [m]
+CLOSED_JAW = 0.01  # Largest gap between a closed jaw and the palm [m]
 
 WIDE = 0.99
 """Share of the largest gap at which a hand counts as open: a jaw can turn on without opening."""
@@ -42,8 +33,7 @@ WIDE = 0.99
 SHARED_RANGE = 0.5
 """Share of the larger range of two alike fingers above which they can follow each other."""
 
-MOST_CORNERS = 24
-"""Largest number of corners on each side of a plane whose edges across it are cut."""
+MOST_CORNERS = 24  # Largest number of corners on each side of a plane whose edges across it are cut
 
 STATES = {"open": ("open", "opened"), "closed": ("close", "closed")}
 

@@ -33,8 +33,7 @@ The height of a cube's texture covers six sides.
 NAMES = ("name", "class", "childclass", "model", "body", "mesh", "joint", "material")
 """Attributes that are names, so that `nan` is one."""
 
-MOST_COPIES = 1000
-"""Most copies by all `<replicate>` together."""
+MOST_COPIES = 1000  # Most copies by all `<replicate>` together
 
 UNUSED = {
     "composite": "deformable bodies are not read",

@@ -13,14 +13,9 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.robot.description import Mimic
 
-POSITIONS = 9
-"""Positions of the driven joint at which a linkage is settled."""
-
-SETTLING = 1.0
-"""Simulated time in which a linkage comes to rest at each position [s]."""
-
-HELD = 1e3
-"""Inertia of the driven joint while a linkage settles [kg m^2]."""
+POSITIONS = 9  # Positions of the driven joint at which a linkage is settled
+SETTLING = 1.0  # Simulated time in which a linkage comes to rest at each position [s]
+HELD = 1e3  # Inertia of the driven joint while a linkage settles [kg m^2]
 
 TOLERANCE = 0.1
 """Largest deviation of a joint of a linkage from a straight line, in the unit of the joint."""

@@ -18,11 +18,8 @@ from harness.robot.mesh_file import SUFFIXES
 from harness.robot.mjcf.joints import mjcf_pose
 from harness.robot.urdf.links import corrected_note, possible_moments
 
-SHARE = 1e-3
-"""Share of a body's mass that each link between two of its joints gets."""
-
-RADIUS = 0.01
-"""Radius of such a link, which is a solid sphere [m]."""
+SHARE = 1e-3  # Share of a body's mass that each link between two of its joints gets
+RADIUS = 0.01  # Radius of such a link, which is a solid sphere [m]
 
 
 def body_link(spec: Any, model: Any, folder: Path, body: int, name: str, notes: list[str]) -> Link:

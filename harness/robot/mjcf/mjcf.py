@@ -23,11 +23,8 @@ from harness.robot.srdf.srdf import link_pair
 from harness.robot.tree import free_name, in_tree_order
 from harness.robot.urdf.urdf import Urdf
 
-ROOT = "robot_world"
-"""The link to which the bodies of MJCF's world body are fixed."""
-
-UNNAMED = "MuJoCo Model"
-"""MuJoCo's name of a model without a name."""
+ROOT = "robot_world"  # The link to which the bodies of MJCF's world body are fixed
+UNNAMED = "MuJoCo Model"  # MuJoCo's name of a model without a name
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,7 @@ from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf
 
-DEFAULT_GROUP = "arm"
-"""Name of the group of a robot without an SRDF."""
+DEFAULT_GROUP = "arm"  # Name of the group of a robot without an SRDF
 
 FINGER_NAMES = re.compile(r"jaw|finger|claw|pinch", re.IGNORECASE)
 """Names by which a single movable jaw differs from an arm's last joint.
@@ -22,14 +21,9 @@ A whole tool that a wrist turns can be called a gripper too: a jaw is then carri
 closes on the link that carries it.
 """
 
-HAND_NAMES = re.compile(r"grip|hand|palm", re.IGNORECASE)
-"""Names of the body of a hand."""
-
-LEAST_ARM = 2
-"""Fewest joints that remain when a jaw is left out."""
-
-MOST_FINGER_JOINTS = 4
-"""Most joints of a finger, as of an Allegro hand."""
+HAND_NAMES = re.compile(r"grip|hand|palm", re.IGNORECASE)  # Names of the body of a hand
+LEAST_ARM = 2  # Fewest joints that remain when a jaw is left out
+MOST_FINGER_JOINTS = 4  # Most joints of a finger, as of an Allegro hand
 
 
 def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:

@@ -7,8 +7,7 @@ import math
 from harness.language.base import LARGEST_NUMBER
 from harness.language.files.xml_file import XmlElement
 
-COEFFICIENTS = ("mu1", "mu2")
-"""Sliding friction along the two directions of a surface."""
+COEFFICIENTS = ("mu1", "mu2")  # Sliding friction along the two directions of a surface
 
 
 def link_frictions(root: XmlElement) -> dict[str, float]:

@@ -21,8 +21,7 @@ KINDS: dict[str, JointKind] = {
 }
 FREE = ("floating", "planar")
 
-MOST_TURNS = 4
-"""Turns from zero that are no mistake in a revolute joint."""
+MOST_TURNS = 4  # Turns from zero that are no mistake in a revolute joint
 
 
 def placeholder_limits(joints: Sequence[XmlElement]) -> list[str]:

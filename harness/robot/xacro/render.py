@@ -23,8 +23,7 @@ from harness.robot.xacro.symbols import Table, Text, is_property_name, truth
 from harness.robot.xacro.values import Budget, Exhausted, ExpressionError
 
 PREFIX = "xacro:"
-STEPS_OF_ELEMENT = 20
-"""Steps that an element counts as."""
+STEPS_OF_ELEMENT = 20  # Steps that an element counts as
 
 OTHERS = ("gazebo", "ros2_control", "transmission")
 """Elements of a robot that are for other programs."""
