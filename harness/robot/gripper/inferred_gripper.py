@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,10 +15,10 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
-from harness.robot.description import Joint, Link, Mimic, NamedState, PlanningGroup
+from harness.robot.description import Joint, Mimic, NamedState, PlanningGroup
 from harness.robot.mesh_file import hull_of, is_flat
 from harness.robot.robot_yaml import FingerSide, GripperFacts
-from harness.robot.solids import DOT, box_corners, coal_geometry, hull_corners
+from harness.robot.solids import DOT, coal_geometry, hull_corners
 from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
@@ -33,7 +35,6 @@ WIDE = 0.99
 SHARED_RANGE = 0.5
 """Share of the larger range of two alike fingers above which they can follow each other."""
 
-MOST_CORNERS = 24  # Largest number of corners on each side of a plane whose edges across it are cut
 
 STATES = {"open": ("open", "opened"), "closed": ("close", "closed")}
 
@@ -199,134 +200,122 @@ def _fingers(urdf: Urdf, joint: Joint) -> list[tuple[Joint, tuple[str, ...]]]:
 
 
 class _Hand:
-    """The hand's solids at joint positions, in palm axes.
+    """Where the solids of a hand are at joint positions, in palm axes.
 
     Attributes:
         out: Direction from the palm to the fingers, shape (3,).
     """
 
     def __init__(self, urdf: Urdf, joint: Joint, palm: str) -> None:
-        self.urdf, self.joint, self.palm = urdf, joint, palm
-        self.out = np.zeros(3)
-        self._links: Mapping[str, Link] = {link.name: link for link in urdf.links}
-        self._poses: dict[float, dict[str, SE3]] = {}
-        self._parts: dict[str, list[tuple[Any, SE3]]] = {}
+        self.joint, self.palm, self.out = joint, palm, np.zeros(3)
+        self._shapes = {link.name: link.collisions for link in urdf.links}
+        self._poses = cache(lambda position: urdf_poses(urdf, {joint.name: position}))
+        self._pads: dict[str, list[tuple[Any, SE3]]] = {}
 
     def has_shape(self, link: str) -> bool:
-        return bool(self._links[link].collisions)
+        return bool(self._shapes[link])
 
     def pose(self, link: str, position: float) -> SE3:
         """T_palm_link."""
-        if position not in self._poses:
-            self._poses[position] = urdf_poses(self.urdf, {self.joint.name: position})
-        poses = self._poses[position]
+        poses = self._poses(position)
         return poses[self.palm].inverse() @ poses[link]
 
-    def solids(self, link: str, position: float) -> list[tuple[Any, SE3]]:
-        """Coal's geometries of a link with their T_palm_shape."""
+    def corners(self, link: str, position: float) -> list[FloatArray]:
+        """The corners of each solid of a link [m], shape (n, 3) each."""
         pose = self.pose(link, position)
-        return [(coal_geometry(s), pose @ s.pose) for s in self._links[link].collisions]
-
-    def parts(self, link: str, *, is_jaw: bool) -> list[tuple[Any, SE3]]:
-        """The convex parts of a pad that close on objects, with their T_link_shape.
-
-        Of a jaw that turns, it is what is farther from the hinge than half of its reach.
-        """
-        if link not in self._parts:
-            shapes = convex_shapes(self._links[link].collisions)
-            self._parts[link] = [(coal_geometry(shape), shape.pose) for shape in shapes]
-            corners = [pose.apply(hull_corners(solid)) for solid, pose in self._parts[link]]
-            if is_jaw and (hinge := self._hinge(link)) is not None:
-                origin, axis = hinge
-                arms = np.concatenate(corners) - origin
-                arms = arms - np.outer(arms @ axis, axis)
-                farthest = max(arms, key=np.linalg.norm)
-                farthest = farthest / np.linalg.norm(farthest)
-                self._parts[link] = _outer_half(corners, farthest, farthest @ origin)
-        return self._parts[link]
-
-    def keep_outer_half(self, link: str) -> None:
-        """Measure gaps of a finger that slides from the outer half of what is beyond the palm."""
-        corners = [
-            pose.apply(hull_corners(solid)) for solid, pose in self.parts(link, is_jaw=False)
+        return [
+            (pose @ shape.pose).apply(hull_corners(coal_geometry(shape)))
+            for shape in self._shapes[link]
         ]
-        out = self.pose(link, self.joint.lower).rotation.T @ self.out
-        self._parts[link] = _outer_half(corners, out, self._end_of_palm(link))
-
-    def _end_of_palm(self, link: str) -> float:
-        """How far out from a link's origin the palm extends [m]; -inf for one without shapes."""
-        lower = self.joint.lower
-        ends = [
-            float(np.max(pose.apply(hull_corners(solid)) @ self.out))
-            for solid, pose in self.solids(self.palm, lower)
-        ]
-        return max(ends, default=-np.inf) - float(self.pose(link, lower).translation @ self.out)
-
-    def _hinge(self, link: str) -> tuple[FloatArray, FloatArray] | None:
-        """Origin [m] and axis of the hinge on which a jaw turns, link axes; None for the palm."""
-        if self.joint.kind == "prismatic" or link == self.palm:
-            return None
-        lower = self.joint.lower
-        at = self.pose(link, lower).inverse() @ self.pose(self.joint.child, lower)
-        return at.translation, at.rotation @ self.joint.axis
 
     def middle(self, link: str, position: float) -> FloatArray:
         """Mean of the boxes around a link's solids, shape (3,)."""
-        return np.mean([np.mean(box, axis=0) for box in self.boxes(link, position)], axis=0)
+        ends = [(each.min(axis=0), each.max(axis=0)) for each in self.corners(link, position)]
+        return np.mean(ends, axis=(0, 1))
 
-    def boxes(self, link: str, position: float) -> list[FloatArray]:
-        """Lowest and highest corner of each solid, palm axes, shape (2, 3)."""
-        found: list[FloatArray] = []
-        for solid, pose in self.solids(link, position):
-            corners = pose.apply(box_corners(solid))
-            found.append(np.array([corners.min(axis=0), corners.max(axis=0)]))
-        return found
+    def reach(self, link: str, position: float) -> float:
+        """How far out a link extends [m]; -inf for one without shapes."""
+        ends = [float((each @ self.out).max()) for each in self.corners(link, position)]
+        return max(ends, default=-np.inf)
+
+    def pad(self, link: str) -> list[tuple[Any, SE3]]:
+        """The convex parts of a pad with their T_link_shape, or what was kept of them."""
+        if link not in self._pads:
+            shapes = convex_shapes(self._shapes[link])
+            self._pads[link] = [(coal_geometry(shape), shape.pose) for shape in shapes]
+        return self._pads[link]
+
+    def keep_outer_half(self, link: str) -> None:
+        """Measure gaps of a finger that slides from the outer half of what is beyond the palm."""
+        pose = self.pose(link, self.joint.lower)
+        start = self.reach(self.palm, self.joint.lower) - float(pose.translation @ self.out)
+        self._keep(link, pose.rotation.T @ self.out, start)
+
+    def keep_far_from_hinge(self, link: str) -> None:
+        """Measure gaps of a jaw that turns from what is farther away than half of its reach."""
+        lower = self.joint.lower
+        hinge = self.pose(link, lower).inverse() @ self.pose(self.joint.child, lower)
+        axis = hinge.rotation @ self.joint.axis
+        arms = np.concatenate([pose.apply(hull_corners(solid)) for solid, pose in self.pad(link)])
+        arms = arms - hinge.translation
+        arms = arms - np.outer(arms @ axis, axis)
+        farthest = max(arms, key=np.linalg.norm)
+        farthest = farthest / np.linalg.norm(farthest)
+        self._keep(link, farthest, float(farthest @ hinge.translation))
+
+    def _keep(self, link: str, out: FloatArray, start: float) -> None:
+        """Keep of a pad what is beyond the middle between a start and its farthest corner.
+
+        Args:
+            link: The link of the pad.
+            out: The unit vector along which distances count, link axes.
+            start: The distance where the half begins; before the parts, their nearest corner [m].
+        """
+        parts = [pose.apply(hull_corners(solid)) for solid, pose in self.pad(link)]
+        ends = np.concatenate([points @ out for points in parts])
+        low, high = float(ends.min()), float(ends.max())
+        middle = 0.5 * (high + (start if low < start < high else low))
+        cut = [_above(points, points @ out - middle) for points in parts]
+        solids = [points for points in cut if len(points) > 3 and not is_flat(points)]
+        self._pads[link] = [(hull_of(points), SE3.identity()) for points in solids]
 
     def gap(self, pads: tuple[str, str], position: float) -> float:
-        """Distance between two links' parts, 0 where they overlap [m]."""
-        poses = [self.pose(pad, position) for pad in pads]
+        """Distance between the parts of two pads, 0 where they overlap [m]."""
         first, second = (
-            [(solid, pose @ place) for solid, place in self.parts(pad, is_jaw=self.palm in pads)]
-            for pad, pose in zip(pads, poses, strict=True)
+            [(solid, self.pose(pad, position) @ place) for solid, place in self.pad(pad)]
+            for pad in pads
         )
-        nearest = np.inf
-        for solid, pose in first:
-            for other, other_pose in second:
-                nearest = min(nearest, _distance(solid, pose, other, other_pose))
-                if nearest <= 0:
-                    return 0.0
-        return nearest
+        pairs = product(first, second)
+        return max(min((_distance(*one, *other) for one, other in pairs), default=np.inf), 0.0)
 
-    def center(self, pads: tuple[str, ...], position: float) -> FloatArray:
+    def center(self, pads: tuple[str, str], position: float) -> FloatArray:
         """Midpoint between the pads' centres; where a single jaw meets the palm, shape (3,)."""
-        if self.palm in pads:
-            return self._meeting(next(pad for pad in pads if pad != self.palm), position)
-        return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
-
-    def _meeting(self, jaw: str, position: float) -> FloatArray:
-        """Middle of the jaw's corners that touch the palm or nearly do, shape (3,)."""
-        import coal
-
-        at, palm = self.pose(jaw, position), self.parts(self.palm, is_jaw=True)
+        if self.palm not in pads:
+            return 0.5 * (self.middle(pads[0], position) + self.middle(pads[1], position))
+        jaw = next(pad for pad in pads if pad != self.palm)
+        at, dot = self.pose(jaw, position), _dot()
         pairs = [
             (_distance(solid, at @ place, *part), (at @ place).apply(hull_corners(solid)), part)
-            for solid, place in self.parts(jaw, is_jaw=True)
-            for part in palm
+            for solid, place in self.pad(jaw)
+            for part in self.pad(self.palm)
         ]
         most = min(distance for distance, _, _ in pairs) + LEAST_TRAVEL
-        dot = coal.Sphere(DOT)
-        meeting = np.array(
-            [
-                corner
-                for distance, corners, part in pairs
-                if distance <= most
-                for corner in corners
-                if _distance(*part, dot, SE3(np.eye(3), corner)) <= most
-            ]
-        )
-        if not len(meeting):  # edges or faces are nearest
+        meeting = [
+            corner
+            for distance, corners, part in pairs
+            if distance <= most
+            for corner in corners
+            if _distance(*part, dot, SE3(np.eye(3), corner)) <= most
+        ]
+        if not meeting:  # edges or faces are nearest
             return self.middle(jaw, position)
-        return 0.5 * (meeting.min(axis=0) + meeting.max(axis=0))
+        return 0.5 * (np.min(meeting, axis=0) + np.max(meeting, axis=0))
+
+
+def _dot() -> Any:
+    import coal
+
+    return coal.Sphere(DOT)
 
 
 def _distance(first: Any, first_pose: SE3, second: Any, second_pose: SE3) -> float:
@@ -339,36 +328,12 @@ def _distance(first: Any, first_pose: SE3, second: Any, second_pose: SE3) -> flo
     return float(result.min_distance)
 
 
-def _outer_half(
-    parts: Sequence[FloatArray], out: FloatArray, start: float
-) -> list[tuple[Any, SE3]]:
-    """What of convex parts (N, 3) is beyond the middle between a start and the farthest corner.
-
-    Args:
-        parts: Corners of the parts.
-        out: The unit vector along which distances count.
-        start: The distance where the half begins; before the parts, their nearest corner.
-    """
-    heights = [points @ out for points in parts]
-    low, high = (end(map(end, heights)) for end in (min, max))
-    middle = 0.5 * (high + (start if low < start < high else low))
-    cut = [_above(points, each - middle) for points, each in zip(parts, heights, strict=True)]
-    solids = [points for points in cut if len(points) > 3 and not is_flat(points)]
-    return [(hull_of(points), SE3.identity()) for points in solids]
-
-
 def _above(points: FloatArray, heights: FloatArray) -> FloatArray:
-    """The corners of what of a convex body is above a plane, from its corners and their heights.
-
-    Where the body has many corners, some stand for all where edges cross the plane.
-    """
-    high, low = (
-        np.flatnonzero(side)[:: 1 + int(side.sum()) // MOST_CORNERS]
-        for side in (heights > 0, heights <= 0)
-    )
+    """The corners of what of a convex body is above a plane, from its corners and their heights."""
+    high, low = np.flatnonzero(heights > 0), np.flatnonzero(heights <= 0)
     share = (heights[high][:, None] / (heights[high][:, None] - heights[low]))[..., None]
     crossed = points[high][:, None] + share * (points[low] - points[high][:, None])
-    return np.concatenate([points[heights > 0], crossed.reshape(-1, 3)])
+    return np.concatenate([points[high], crossed.reshape(-1, 3)])
 
 
 def _sides(hand: _Hand, fingers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
@@ -401,24 +366,29 @@ def _pads(
 ) -> tuple[tuple[str, str], FloatArray]:
     """The link of each side that touches objects, and the gap between them at positions."""
     fingers = [link for side in sides for link in side if link != hand.palm]
+    has_palm, slides = any(hand.palm in side for side in sides), hand.joint.kind == "prismatic"
     middle = 0.5 * (hand.joint.lower + hand.joint.upper)
     out = np.mean([hand.middle(link, middle) for link in fingers], axis=0)
-    is_pad = any(hand.palm in links for links in sides)
     if (
         hand.has_shape(hand.palm)
-        and not is_pad
+        and not has_palm
         and out @ (out - hand.middle(hand.palm, middle)) < 0
     ):
         out = -out  # the palm has its origin at the fingertips
     hand.out = out / max(float(np.linalg.norm(out)), 1e-9)
-    first, second = (_outermost(hand, links, middle) for links in sides)
+    if has_palm and not slides:  # a jaw always touches at its hinge
+        for link in fingers:
+            hand.keep_far_from_hinge(link)
+    first, second = (
+        sorted(side, key=lambda link: hand.reach(link, middle), reverse=True) for side in sides
+    )
     ranks = [(n, m) for n in range(len(first)) for m in range(len(second))]
     ranks.sort(key=lambda rank: (abs(rank[0] - rank[1]), sum(rank)))  # alike fingers, alike pads
     for pads in ((first[n], second[m]) for n, m in ranks):
         gaps = [hand.gap(pads, float(position)) for position in positions]
         if np.ptp(gaps) < LEAST_TRAVEL:
             continue
-        if hand.joint.kind == "prismatic" and hand.palm not in pads and hand.out.any():
+        if slides and not has_palm and hand.out.any():
             for pad in pads:
                 hand.keep_outer_half(pad)
             gaps = [hand.gap(pads, float(position)) for position in positions]
@@ -426,25 +396,12 @@ def _pads(
     raise NoGripperError(f"the gap between {first[0]} and {second[0]} does not change")
 
 
-def _outermost(hand: _Hand, links: tuple[str, ...], position: float) -> list[str]:
-    """The links of a side, the one that extends farthest from the palm first."""
-
-    def reach(link: str) -> float:
-        boxes = hand.boxes(link, position)
-        return max(float(np.maximum(low * hand.out, high * hand.out).sum()) for low, high in boxes)
-
-    return sorted(links, key=reach, reverse=True)
-
-
 def _friction(urdf: Urdf, group: str, pads: Sequence[str], notes: list[str]) -> float:
     """The sliding friction coefficient of the pads: the smaller one where they differ."""
-    stated = [urdf.frictions[pad] for pad in pads if pad in urdf.frictions]
-    if not stated:
-        return PAD_FRICTION
-    if len(stated) < len(pads):
-        stated.append(PAD_FRICTION)
-    notes.append(f"gripper '{group}': its pads have the friction {min(stated):g} of <gazebo>")
-    return min(stated)
+    known = [urdf.frictions.get(pad, PAD_FRICTION) for pad in pads]
+    if urdf.frictions.keys() & set(pads):
+        notes.append(f"gripper '{group}': its pads have the friction {min(known):g} of <gazebo>")
+    return min(known)
 
 
 def _with_states(srdf: Srdf, facts: GripperFacts, notes: list[str]) -> Srdf:
