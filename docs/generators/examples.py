@@ -31,7 +31,7 @@ COLUMNS = 110
 """Width to which printed lines are broken, as a terminal does."""
 
 BLOCK = re.compile(r"(?ms)^(?:`(?P<file>[\w./-]+)`:\n\n)?```(?P<language>\w+)\n(?P<text>.*?)^```$")
-TIMES = re.compile(r"(?: at [\d.]+x real time)|(?: in [\d.]+ s$)", re.MULTILINE)
+TIMES = re.compile(r"(?: at [\d.]+x real time)|(?: in [\d.]+ ?s$)", re.MULTILINE)
 VARYING = re.compile(r"\d+\.\d+|digest [0-9a-f]+")
 
 
@@ -80,9 +80,13 @@ def comparable(text: str) -> str:
 
 
 def _run(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """A command of the shell, with the programs of this environment; both streams as one."""
+    """A command of the shell, with the programs of this environment; both streams as one.
+
+    Raises:
+        RuntimeError: A program crashed; the text has its output.
+    """
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    return subprocess.run(
+    done = subprocess.run(
         ["bash", "-c", command],
         cwd=folder,
         env={**os.environ, "PATH": path},
@@ -91,6 +95,9 @@ def _run(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
         text=True,
         check=False,
     )
+    if "Traceback (most recent call last)" in done.stdout:
+        raise RuntimeError(f"$ {command}\n{done.stdout}")
+    return done
 
 
 def _shown(printed: str) -> str:

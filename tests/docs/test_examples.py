@@ -18,6 +18,7 @@ from docs.generators.examples import (
     printed_again,
     shown,
 )
+from harness.cli.main import parser_of
 from harness.language.schema import schema_text
 
 EVERY_PAGE = sorted(
@@ -28,7 +29,7 @@ EVERY_PAGE = sorted(
         *PAGES,
     }
 )
-IN_DEFAULT_RUN = ["start.md"]
+IN_DEFAULT_RUN = ["planning.md"]
 SCHEMA = jsonschema.Draft7Validator(json.loads(schema_text()))
 OWN_WORDS = ("python.md", "extending.md")
 """Pages whose scenarios have words of plug-ins; other tests run them."""
@@ -45,7 +46,7 @@ def harness_commands(page):
         if block["language"] != "sh" and not shows:
             continue
         for line in shown(block["text"]) if shows else commands(block["text"]):
-            for part in re.split(r"\s(?:&&|\|)\s", line):
+            for part in re.split(r"\s(?:&&|\|)\s|;\s", line):
                 known = re.sub(r"\s>.*", "", re.sub(r"\$\w+", "2", part))  # variables of a shell
                 words = shlex.split(known, comments=True)
                 names = [number for number, word in enumerate(words) if word.endswith("harness")]
@@ -83,6 +84,19 @@ def is_set_up(block):
     )
 
 
+def test_the_steps_next_to_the_calls_of_moveit_are_those_of_the_lesson():
+    page = (ROOT / "docs/howto/from_moveit.md").read_text(encoding="utf-8")
+    shown = re.findall(r"(?m)^\| \d+ \| .* \| `(.*)` \|$", page)
+    lesson = ROOT / "scenarios/lessons/03_ur_sixteen_steps.scenario.yaml"
+    steps = yaml.safe_load(lesson.read_text(encoding="utf-8"))["steps"]
+    numbered = [step for step in steps if step.get("id", "").startswith("step_")]
+    for step in numbered:
+        del step["id"]
+        step.pop("expect", None)
+    assert [yaml.safe_load(step) for step in shown] == numbered
+    assert len(shown) == 16
+
+
 def test_a_page_that_shows_something_else_is_found(tmp_path):
     page = "`a.txt`:\n\n```text\nfirst\n```\n\n```text\n$ cat a.txt\nsecond\n```\n"
     assert printed_again(page, tmp_path) == page.replace("second", "first")
@@ -98,10 +112,8 @@ def test_every_command_of_a_page_is_one_that_the_program_takes(page, capsys):
 
 def refusal_of(words, capsys):
     """What the command line says against the words of a command; nothing is carried out."""
-    from harness.cli.main import _parser
-
     try:
-        _parser(words).parse_args(words)
+        parser_of(words).parse_args(words)
     except SystemExit as end:
         return capsys.readouterr().err if end.code else ""
     return ""
@@ -118,7 +130,7 @@ def described(block):
     if text.startswith("- "):
         text = f"steps:\n{text}"
     content = yaml.safe_load(text)
-    if {*content} & {"jobs", "kind", "arm"}:
+    if {*content} & {"jobs", "kind", "arm", "assignment"}:
         return None
     return {"scenario": "x", "robot": "ur3e", "steps": [{"wait": 1}], **content}
 
