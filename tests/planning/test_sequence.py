@@ -290,7 +290,8 @@ def test_repeated_waypoints_change_nothing(cell, repeated, off):
     ]
     first, second = (plan.result.plain() for plan in plans)
     assert second["fraction"] == 1
-    assert second["deviation"] == pytest.approx(first["deviation"], abs=1e-5)
+    # durations a step of 2 ms apart put the set points elsewhere on the rounded corner
+    assert second["deviation"] == pytest.approx(first["deviation"], abs=5e-5)
     assert places(cell, plans[1])[-1] == pytest.approx(plain[-1].position, abs=1e-6)
     assert plans[1].trajectory.duration == pytest.approx(plans[0].trajectory.duration, abs=0.01)
 

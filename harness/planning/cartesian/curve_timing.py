@@ -15,17 +15,11 @@ from harness.core.types import FloatArray, IntArray
 from harness.planning.cartesian.link_timing import CENTRIPETAL_SHARE, LinkRates
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.timing.joint_spline import JointSpline
-from harness.planning.timing.limits import (
-    Limits,
-    TimingError,
-    sampled_within_limits,
-    stretched,
-)
-from harness.planning.timing.profiles import on_grid, resting
+from harness.planning.timing.limits import Limits, joint_motion, sampled_within_limits
+from harness.planning.timing.profiles import resting
 from harness.planning.timing.toppra_passes import Bounds
 from harness.planning.timing.toppra_solver import fastest
 
-_MOST_STRETCHES = 8
 _TINY = 1e-9
 
 
@@ -58,16 +52,12 @@ def time_curve(
     grid = spline.grid()
     knots = np.minimum(np.searchsorted(spline.knots, grid, side="right") - 1, len(spline.knots) - 1)
     timed, total = fastest(spline, limits, grid, _link_bounds(curve, space, grid, knots))
-    base, length, excess = timed, total, np.inf
-    for _ in range(_MOST_STRETCHES):
-        trajectory = sampled_within_limits(joint_names, timed, total, limits)
-        trajectory.positions[[0, -1]] = spline.samples[[0, -1]]
-        excess = link_excess(curve, space, trajectory)
-        if excess <= 1.0:
-            return trajectory
-        total = on_grid(total * excess * 1.001)
-        timed = stretched(base, length, total)
-    raise TimingError(f"{curve.link} exceeds its Cartesian limits by a factor of {excess:.3g}")
+    motion = joint_motion(timed, total)
+    trajectory = sampled_within_limits(
+        joint_names, motion, total, limits, lambda points: link_excess(curve, space, points)
+    )
+    trajectory.positions[[0, -1]] = spline.samples[[0, -1]]
+    return trajectory
 
 
 def nearest_knots(spline: JointSpline, trajectory: JointTrajectory) -> IntArray:

@@ -13,15 +13,8 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.tracing import LinkPath, Trace
 from harness.planning.timing.joint_spline import CubicSpline
-from harness.planning.timing.limits import (
-    Limits,
-    TimingError,
-    largest_jerk,
-    sampled_within_limits,
-    slowed_to_limits,
-    time_grid,
-)
-from harness.planning.timing.profiles import Curve, Trapezoid, on_grid, smoothed
+from harness.planning.timing.limits import Limits, sampled_within_limits
+from harness.planning.timing.profiles import GRID, Curve, Trapezoid, smoothed
 from harness.ports.motion_planning import PlanningOptions
 from harness.ports.motions import CartesianLimits
 
@@ -41,8 +34,6 @@ CARTESIAN_TOLERANCE = 5e-3
 
 Profile = tuple[FloatArray, ...]
 """A parameter, its rate and its acceleration, (N,) each."""
-
-_MOST_EASINGS = 30
 
 
 @dataclass(frozen=True)
@@ -110,41 +101,23 @@ def time_on_path(
     spline = CubicSpline.even(traced.positions).evaluate
     for _ in range(2):  # gentler ramps and a lower middle, before everything is slowed down
         profile = Trapezoid.fastest(1.0, rate, change)
-        _, velocities, accelerations = _along(spline, profile)(time_grid(profile.duration)[:-1])
+        _, velocities, accelerations = _along(spline, profile)(
+            np.arange(0.0, profile.duration, GRID)
+        )
         rate /= max(1.0, float(np.max(np.abs(velocities) / limits.velocity)))
         change /= max(1.0, float(np.max(np.abs(accelerations) / limits.acceleration)))
     profile = Trapezoid.fastest(1.0, rate, change)
-    curve, total = _gentle(spline, profile, limits)
-    return sampled_within_limits(joint_names, curve, total, limits)
-
-
-def _gentle(spline: Curve, profile: Trapezoid, limits: Limits) -> tuple[Curve, float]:
-    """The profile along the spline, its ramps smoothed until the jerk limit is kept.
-
-    Easing the profile, and not the joints' motion, keeps the link on its way.
-    """
-    curve, total = slowed_to_limits(_along(spline, profile), profile.duration, limits)
-    if not np.isfinite(limits.jerk):
-        return curve, total
 
     def rows(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         s, rate, change = profile(times)
         return s[:, None], rate[:, None], change[:, None]
 
-    window = on_grid(float(np.abs(curve(time_grid(total))[2]).max()) / limits.jerk)
-    for _ in range(_MOST_EASINGS):
-        eased = smoothed(rows, profile.duration, window)
+    def motion(window: float) -> Curve:
+        """The profile is smoothed, not the joints' motion: that keeps the link on its path."""
+        eased = smoothed(rows, profile.duration, window) if window else rows
+        return _along(spline, lambda times: tuple(part[:, 0] for part in eased(times)))
 
-        def columns(times: FloatArray, eased: Curve = eased) -> Profile:
-            return tuple(part[:, 0] for part in eased(times))
-
-        length = profile.duration + window
-        curve, total = slowed_to_limits(_along(spline, columns), length, limits)
-        jerk = largest_jerk(curve, total)
-        if jerk <= limits.jerk:
-            return curve, total
-        window = on_grid(window * min(max(jerk / limits.jerk, 1.1), 2.0))
-    raise TimingError(f"the jerk stays above {limits.jerk:g} however long it is spread")
+    return sampled_within_limits(joint_names, motion, profile.duration, limits)
 
 
 def _along(spline: Curve, profile: Callable[[FloatArray], Profile]) -> Curve:

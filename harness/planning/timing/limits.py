@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -10,16 +11,27 @@ import numpy as np
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.timing.profiles import GRID, SAMPLE_PERIOD, Curve, on_grid, sample, smoothed
+from harness.planning.timing.profiles import (
+    GRID,
+    SAMPLE_PERIOD,
+    Curve,
+    on_grid,
+    sample,
+    smoothed,
+)
 from harness.recording.motion_failures import TrajectoryFailure
 
-EFFORT_PERIOD = 10
-"""Every so many samples of the time grid the efforts are computed: every 20 ms."""
+EFFORT_SAMPLES = 2
+"""Efforts are computed at every second set point, 20 ms apart: they change slowly."""
 
 SMOOTHED_PERIODS = 3
-"""Periods between set points over which jumps of the acceleration are spread."""
+"""Periods between set points over which jumps of the acceleration are spread: over two of them the
+cubic still exceeds it."""
 
-_MOST_STRETCHES = 20
+_MOST_STRETCHES = 60  # attempts; few motions need more than five
+
+SmoothedOver = Callable[[float], Curve]
+"""A motion smoothed over a window [s], by which it lasts longer; 0 for the motion as it is."""
 
 
 class TimingError(Exception):
@@ -84,16 +96,16 @@ class Limits:
         bounded = np.where(np.isfinite(velocity), velocity, 2 * np.pi)
         return cls(bounded * velocity_scaling, acceleration * accel, commanded=acceleration)
 
-    def excess(self, velocities: FloatArray, accelerations: FloatArray) -> float:
-        """How many times slower a motion (N, dof) must be; below 1 when it keeps both."""
-        fast = float(np.max(np.abs(velocities) / self.velocity))
-        hard = float(np.sqrt(np.max(np.abs(accelerations) / self.acceleration)))
+    def excess(self, trajectory: JointTrajectory) -> float:
+        """How many times slower set points must be; at most 1 when they keep the limits."""
+        fast = float(np.max(np.abs(trajectory.velocities) / self.velocity))
+        hard = float(np.sqrt(np.max(np.abs(trajectory.accelerations) / self.acceleration)))
         return max(fast, hard)
 
     def effort_excess(
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
     ) -> float:
-        """How many times slower a motion (N, dof) must be for its efforts; at most 1 when it is.
+        """How many times slower states (N, dof) must be for their efforts; at most 1 if they fit.
 
         Raises:
             TimingError: Standing still takes too much effort already.
@@ -112,94 +124,81 @@ class Limits:
         return float(np.sqrt(np.max(np.abs(total - standing) / room)))
 
 
-def within_limits(curve: Curve, duration: float, limits: Limits) -> tuple[Curve, float]:
-    """A curve slowed until it keeps the limits on every sample, and smoothed to the jerk limit.
+def sampled_within_limits(
+    joint_names: tuple[str, ...],
+    smoothed_over: SmoothedOver,
+    duration: float,
+    limits: Limits,
+    link_excess: Callable[[JointTrajectory], float] = lambda _: 0.0,
+) -> JointTrajectory:
+    """Set points of a motion, run more slowly until they and the commands between them keep limits.
 
-    Returns:
-        The curve and its duration, a whole multiple of the grid [s].
+    A controller interpolates set points by cubics. Where the acceleration of the motion jumps
+    between two of them, the cubic accelerates up to 1.5 times as much. Such a motion is first
+    smoothed over the periods between set points, and one whose jerk is too large over a longer
+    window; then it is slowed by what remains.
 
-    Raises:
-        TimingError: Stretching does not help.
-    """
-    slowed, total = slowed_to_limits(curve, duration, limits)
-    if not np.isfinite(limits.jerk):
-        return slowed, total
-    _, _, accelerations = slowed(time_grid(total))
-    window = on_grid(float(np.abs(accelerations).max()) / limits.jerk)
-    for _ in range(_MOST_STRETCHES):
-        mean = smoothed(slowed, total, window)
-        jerk = largest_jerk(mean, total + window)
-        if jerk <= limits.jerk:
-            break
-        window = on_grid(max(window * min(jerk / limits.jerk, 2.0), window + GRID))
-    else:
-        raise TimingError(f"the jerk stays above {limits.jerk:g} however long it is spread")
-    return slowed_to_limits(mean, total + window, limits)
-
-
-def slowed_to_limits(curve: Curve, duration: float, limits: Limits) -> tuple[Curve, float]:
-    """A curve run more slowly, until every sample of the time grid keeps the limits.
-
-    Returns:
-        The slower curve and its duration, a whole multiple of the grid [s].
+    Args:
+        joint_names: The joint names of the columns.
+        smoothed_over: The motion, at rest at both ends.
+        duration: Its duration without smoothing [s].
+        limits: The limits of the joints.
+        link_excess: How many times slower the set points must be for other limits.
 
     Raises:
-        TimingError: Stretching does not help: the curve is not smooth enough.
+        TimingError: Neither smoothing nor slowing helps.
     """
-    total, excess = on_grid(duration), np.inf
+    window, length, total = 0.0, duration, on_grid(duration)
+    curve, excess = smoothed_over(window), np.inf
     for _ in range(_MOST_STRETCHES):
-        slowed = stretched(curve, duration, total)
-        positions, velocities, accelerations = slowed(time_grid(total))
-        excess = limits.excess(velocities, accelerations)
-        some = slice(None, None, EFFORT_PERIOD)
-        effort = limits.effort_excess(positions[some], velocities[some], accelerations[some])
-        excess = max(excess, effort)
+        trajectory = sample(joint_names, stretched(curve, length, total), total)
+        between = _excess_between(trajectory, limits)
+        needed = _smoothing(trajectory, limits, window, between)
+        if needed > window:
+            slower, window, length = total / length, needed, duration + needed
+            curve, total = smoothed_over(window), on_grid(slower * length)
+            continue
+        excess = max(between, limits.excess(trajectory), link_excess(trajectory))
         if excess <= 1.0 + 1e-9:
-            return slowed, total
+            some = slice(None, None, EFFORT_SAMPLES)
+            states = trajectory.positions, trajectory.velocities, trajectory.accelerations
+            excess = limits.effort_excess(*(rows[some] for rows in states))
+        if excess <= 1.0 + 1e-9:
+            return trajectory
         total = on_grid(max(total * excess, total + GRID))
     raise TimingError(f"the limits are exceeded {excess:.3g} times however slow the motion is")
 
 
-def sampled_within_limits(
-    joint_names: tuple[str, ...], curve: Curve, duration: float, limits: Limits
-) -> JointTrajectory:
-    """Set points of a curve, run more slowly until commands between them keep the limits as well.
-
-    A controller interpolates set points by cubics. Where the acceleration of the curve jumps
-    between two of them, the cubic accelerates up to 1.5 times as much. Such a curve is first
-    smoothed over the periods between set points, and then slowed by what remains.
-    """
-    trajectory = sample(joint_names, curve, duration)
-    if _interpolated_excess(trajectory, limits) <= 1.0 + 1e-9:
-        return trajectory
-    mean = smoothed(curve, duration, SMOOTHED_PERIODS * SAMPLE_PERIOD)
-    length = total = duration + SMOOTHED_PERIODS * SAMPLE_PERIOD
-    while True:
-        trajectory = sample(joint_names, stretched(mean, length, total), total)
-        excess = _interpolated_excess(trajectory, limits)
-        if excess <= 1.0 + 1e-9:
-            return trajectory
-        total = on_grid(max(total * np.sqrt(excess), total + GRID))
+def joint_motion(curve: Curve, duration: float) -> SmoothedOver:
+    """A motion whose joints are smoothed each by itself."""
+    return lambda window: smoothed(curve, duration, window) if window else curve
 
 
-def _interpolated_excess(trajectory: JointTrajectory, limits: Limits) -> float:
-    """How many times the cubics between set points exceed the accelerations of the joints."""
-    if limits.commanded is None or len(trajectory.times) < 2:
+def _smoothing(trajectory: JointTrajectory, limits: Limits, window: float, between: float) -> float:
+    """The window [s] over which a motion, smoothed over another one now, is to be smoothed."""
+    if np.isfinite(limits.jerk):
+        rest = np.zeros_like(trajectory.accelerations[:1])
+        inner = np.concatenate([rest, trajectory.accelerations[1:-1], rest])
+        steps = np.diff(trajectory.times)[:, None]
+        jerk = float(np.abs(np.diff(inner, axis=0) / steps).max())
+        if jerk > limits.jerk * (1 + 1e-9):
+            ramp = float(np.abs(trajectory.accelerations).max()) / limits.jerk
+            wider = min(window * jerk / limits.jerk, 2.0 * window)
+            return on_grid(max(wider, window + GRID) if window else ramp)
+    return max(window, SMOOTHED_PERIODS * SAMPLE_PERIOD) if between > 1.0 + 1e-9 else window
+
+
+def _excess_between(trajectory: JointTrajectory, limits: Limits) -> float:
+    """How many times slower a motion must be for the cubics between its set points."""
+    if limits.commanded is None:
         return 0.0
     step = np.diff(trajectory.times)[:, None]
     mean = np.diff(trajectory.positions, axis=0) / step
     before, after = trajectory.velocities[:-1], trajectory.velocities[1:]
     first = (6.0 * mean - 4.0 * before - 2.0 * after) / step
     last = (-6.0 * mean + 2.0 * before + 4.0 * after) / step
-    return float(np.max(np.maximum(np.abs(first), np.abs(last)) / limits.commanded))
-
-
-def largest_jerk(curve: Curve, total: float) -> float:
-    """Largest jerk of a joint between samples of the time grid, at rest before and after."""
-    _, _, accelerations = curve(time_grid(total))
-    rest = np.zeros_like(accelerations[:1])
-    changes = np.diff(np.concatenate([rest, accelerations[1:-1], rest]), axis=0)
-    return float(np.abs(changes).max()) / GRID
+    largest = np.maximum(np.abs(first), np.abs(last))
+    return float(np.sqrt(np.max(largest / limits.commanded)))
 
 
 def stretched(curve: Curve, duration: float, total: float) -> Curve:
@@ -211,9 +210,3 @@ def stretched(curve: Curve, duration: float, total: float) -> Curve:
         return positions, velocities * factor, accelerations * factor**2
 
     return slowed
-
-
-def time_grid(total: float) -> FloatArray:
-    """Every sample of the time grid from 0 to a duration on it [s]."""
-    grid: FloatArray = np.arange(round(total / GRID) + 1, dtype=np.float64) * GRID
-    return grid

@@ -212,7 +212,7 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
         L. Biagiotti, C. Melchiorri, "FIR filters for online trajectory planning with time- and
         frequency-domain specifications", Control Engineering Practice 20(12), 2012.
     """
-    count = max(1, int(np.ceil(duration / GRID)))
+    count = max(1, int(np.ceil(2 * duration / SAMPLE_PERIOD)))
     knots: FloatArray = np.linspace(0.0, duration, count + 1)
     step = duration / count
     at, rates, _ = curve(knots)
@@ -238,10 +238,8 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
 
     def mean(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         times = np.asarray(times, dtype=float)
-        now, before = states(times), states(times - window)
-        positions, velocities, accelerations = (
-            (later - earlier) / window for later, earlier in zip(now, before, strict=True)
-        )
-        return positions, velocities, accelerations
+        count, both = len(times), states(np.concatenate([times, times - window]))
+        integral, positions, velocities = ((x[:count] - x[count:]) / window for x in both)
+        return integral, positions, velocities
 
     return mean

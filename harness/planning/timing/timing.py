@@ -11,7 +11,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.timing.limits import Limits as Limits
 from harness.planning.timing.limits import TimingError as TimingError
-from harness.planning.timing.limits import sampled_within_limits, slowed_to_limits
+from harness.planning.timing.limits import joint_motion, sampled_within_limits
 from harness.planning.timing.profiles import JerkLimited, Trapezoid, resting, straight_curve
 from harness.planning.timing.toppra_solver import fastest
 
@@ -84,11 +84,11 @@ class BlendedPath:
         grid[0], grid[-1] = 0.0, self.length
         return grid
 
-    def blends(self) -> list[FloatArray]:
-        """Positions along each blend, shape (`POINTS_PER_PIECE` + 1, dof)."""
+    def outline(self) -> FloatArray:
+        """Positions at both ends and at five points of each blend, shape (K, dof)."""
         first, last = self.breaks[1:-1:2], self.breaks[2:-1:2]
-        grids = np.linspace(first, last, POINTS_PER_PIECE + 1, axis=1)
-        return [self.evaluate(grid)[0] for grid in grids]
+        on_blends = np.linspace(first, last, 5, axis=1).ravel()
+        return self.evaluate(np.concatenate([[0.0], on_blends, [self.length]]))[0]
 
 
 def _alternating(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -120,8 +120,8 @@ def time_straight(
     else:
         profile = Trapezoid.fastest(1.0, velocity, acceleration)
     line = straight_curve(first, second, profile)
-    curve, total = slowed_to_limits(line, profile.duration, limits)
-    trajectory = sampled_within_limits(joint_names, curve, total, limits)
+    motion = joint_motion(line, profile.duration)
+    trajectory = sampled_within_limits(joint_names, motion, profile.duration, limits)
     trajectory.positions[-1] = second
     return trajectory
 
@@ -160,12 +160,13 @@ def time_blended(
     Args:
         joint_names: The joint names of the columns.
         path: The polyline with its rounded corners.
-        limits: Kept on every 2 ms sample: the times are stretched where TOPP-RA exceeds them.
+        limits: Kept on every set point: the times are stretched where TOPP-RA exceeds them.
 
     Raises:
         TimingError: TOPP-RA has no solution.
     """
     curve, total = fastest(path, limits, path.grid())
-    trajectory = sampled_within_limits(joint_names, curve, total, limits)
+    motion = joint_motion(curve, total)
+    trajectory = sampled_within_limits(joint_names, motion, total, limits)
     trajectory.positions[[0, -1]] = path.ends
     return trajectory

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.timing.limits import (
-    EFFORT_PERIOD,
-    Limits,
-    TimingError,
-    time_grid,
-    within_limits,
-)
+from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import Curve
 from harness.planning.timing.toppra_passes import Bounds, squared_rates
 
@@ -35,10 +29,9 @@ class JointCurve(Protocol):
 def fastest(
     path: JointCurve, limits: Limits, grid: FloatArray, link_bounds: Bounds | None = None
 ) -> tuple[Curve, float]:
-    """The fastest motion along a path that keeps the limits, and its duration [s].
+    """The fastest motion along a path that keeps the limits at the grid points; its duration [s].
 
-    It is TOPP-RA's solution, slowed and smoothed as `within_limits` does. Effort limits take part
-    only where the solution without them breaks them.
+    Effort limits take part only where the solution without them breaks them.
 
     Raises:
         TimingError: There is no solution.
@@ -47,12 +40,13 @@ def fastest(
     bounds = [joint_bounds(states, limits)]
     if link_bounds is not None:
         bounds.append(link_bounds)
-    weightless = replace(limits, dynamics=None)
-    curve, duration = within_limits(*_solve(path, bounds, grid), weightless)
-    if limits.effort_excess(*curve(time_grid(duration)[::EFFORT_PERIOD])) > 1.0:
-        bounds.append(_effort_bounds(states, limits))
-        return within_limits(*_solve(path, bounds, grid), limits)
-    return curve, duration
+    rates = _rates(bounds, grid)
+    positions, first, second = states
+    growths = np.append(0.5 * np.diff(rates**2) / np.diff(grid), 0.0)[:, None]
+    velocities, squares = first * rates[:, None], (rates**2)[:, None]
+    if limits.effort_excess(positions, velocities, second * squares + first * growths) > 1.0:
+        rates = _rates([*bounds, _effort_bounds(states, limits)], grid)
+    return _timed(path, grid, rates)
 
 
 def joint_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Limits) -> Bounds:
@@ -75,11 +69,11 @@ def _effort_bounds(states: tuple[FloatArray, FloatArray, FloatArray], limits: Li
     return Bounds(speeds, bends, standing, np.minimum(dynamics.limits, UNLIMITED_EFFORT))
 
 
-def _solve(path: JointCurve, bounds: list[Bounds], grid: FloatArray) -> tuple[Curve, float]:
-    rates = squared_rates(bounds, grid)
-    if rates is None:
+def _rates(bounds: Sequence[Bounds], grid: FloatArray) -> FloatArray:
+    squares = squared_rates(bounds, grid)
+    if squares is None:
         raise TimingError("TOPP-RA found no times under the limits")
-    return _timed(path, grid, np.sqrt(rates))
+    return np.sqrt(squares)
 
 
 def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve, float]:
