@@ -29,6 +29,7 @@ from harness.ports.goals import (
 from harness.ports.motions import ArcPoint
 from harness.ports.motions import CartesianLimits as LinkLimits
 from harness.robot.description import RobotDescription
+from harness.robot.task_space import TaskSpace
 
 DEFAULT_TOLERANCE = GoalTolerance()
 
@@ -53,10 +54,9 @@ def group_of(cell: Cell, group: str | None) -> str:
     return cell.description.default_group if group is None else group
 
 
-def arm_has_six_joints(description: RobotDescription, group: str | None) -> bool:
-    """Whether the arm can reach any pose near it, not only positions at a pitch."""
-    name = description.default_group if group is None else group
-    return len(description.groups[name].joint_names) >= 6
+def task_space_of(description: RobotDescription, group: str | None) -> TaskSpace:
+    """What a step's planning group can hold of a pose."""
+    return description.groups[description.default_group if group is None else group].task_space
 
 
 def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:

@@ -37,8 +37,6 @@ IN_ONE_PLACE = 1e-4
 """Distance up to which two points are in one place [m]."""
 HEADINGS = 4
 """Corrections of a gripper's heading, which follows from where its TCP is."""
-PITCH_JOINTS = 4
-"""Joints of an arm that can choose a pitch, and nothing else of a rotation."""
 UP = np.array([0.0, 0.0, 1.0])
 EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 """Turns about the vertical, least first, half a turn being as good as none [rad]."""
@@ -239,10 +237,11 @@ def _width_across(obj: WorldObject, cell: Cell) -> float:
 def is_grasped_by_pitch(cell: Cell, group: str) -> bool:
     """Whether a position and the pitch of the TCP's x axis state an arm's grasp.
 
-    They do for up to four joints, if the gripper points along that axis.
+    They do where the arm can hold no tilt, if the gripper points along that axis.
     """
-    joints = len(cell.description.groups[group].joint_names)
-    return joints <= PITCH_JOINTS and gripper_axes(cell)[0][0] > math.cos(math.radians(MAX_LEAN))
+    if cell.description.groups[group].task_space.holds_tilt:
+        return False
+    return float(gripper_axes(cell)[0][0]) > math.cos(math.radians(MAX_LEAN))
 
 
 def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:

@@ -18,6 +18,7 @@ from harness.core.geometry import Shape
 from harness.core.kinematics import LinkJoint, LinkPoses
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.robot.task_space import TaskSpace
 
 WORLD = "world"
 """Name of the root link of every composed robot, in which poses are in world coordinates."""
@@ -122,6 +123,11 @@ class PlanningGroup:
     joint_names: tuple[str, ...]
     base_link: str = ""
     tip_link: str = ""
+
+    @cached_property
+    def task_space(self) -> TaskSpace:
+        """The parts of its tip's pose that it can hold."""
+        return TaskSpace.of_joints(len(self.joint_names))
 
 
 @dataclass(frozen=True)

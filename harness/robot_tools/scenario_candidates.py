@@ -50,7 +50,6 @@ GAP_STEP = 1e-3
 MOTIONS = 10
 
 MARGIN = 0.02  # Distance of joint goals from the limits, as a share of the range
-FREE_ROTATION = 6  # Joints of an arm that reaches any rotation
 DIGITS = 4  # Decimals of joint positions in the file
 PADDING = 0.002  # Distance of bodies at the start [m], as planning keeps by default
 
@@ -169,7 +168,7 @@ class Candidates:
         )
         cosine = -along[:, 2]
         weights = np.exp(-((np.arccos(np.clip(cosine, -1.0, 1.0)) / DOWNWARD) ** 2))
-        if len(description.groups[description.arm_group].joint_names) < FREE_ROTATION:
+        if not description.groups[description.arm_group].task_space.holds_pose:
             weights[:] = 1.0
         reached = np.column_stack([np.hypot(away[:, 0], away[:, 1]), away[:, 2]])
 

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.closing import closing_obstacles
-from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
+from harness.cell.goals import TcpGoal, group_of, task_space_of
 from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import (
     check_opening,
@@ -142,7 +142,11 @@ class Pick(Step):
             at.check_pose(self.grasp_pose, "grasp_pose")
         group = at.scope.check_group(self.group, at.key("group"))
         known = group in at.scope.description.groups
-        if self.pitch is not None and known and arm_has_six_joints(at.scope.description, group):
+        if (
+            self.pitch is not None
+            and known
+            and task_space_of(at.scope.description, group).holds_pose
+        ):
             at.scope.problems.add(
                 at.key("pitch"),
                 "`pitch` is for arms of fewer than six joints, and this one reaches any rotation",
@@ -337,7 +341,7 @@ def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
     if given is not None and step.grasp_pose is not None and step.grasp_pose.has_rotation:
         return [TcpGoal(world_pose_spec(given))]
     obj, object_pose = cell.presence[step.object].obj, cell.frame(step.object)
-    if arm_has_six_joints(cell.description, step.group):
+    if task_space_of(cell.description, step.group).holds_pose:
         poses = (
             top_grasps(obj, object_pose, cell)
             if given is None
@@ -365,7 +369,7 @@ def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
 
 def as_reached(goal: TcpGoal, group: str, cell: Cell) -> TcpGoal:
     """A pose goal with the heading that an arm of few joints has there; other goals as they are."""
-    if not isinstance(goal.target, Pose) or arm_has_six_joints(cell.description, group):
+    if not isinstance(goal.target, Pose) or task_space_of(cell.description, group).holds_pose:
         return goal
     link, pose = cell.description.tcp_link, goal.target.se3()
     start, near = cell.planning_start(), PoseGoal(link, pose, orientation_tolerance=MAX_TURN)

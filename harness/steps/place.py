@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
-from harness.cell.goals import TcpGoal, arm_has_six_joints, group_of
+from harness.cell.goals import TcpGoal, group_of, task_space_of
 from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
 from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch
 from harness.cell.program import ProgramStep
@@ -292,7 +292,7 @@ def _equal_poses(name: str, stated: SE3, step: Place, cell: Cell) -> list[SE3]:
     An arm of fewer than six joints turns the object as it reaches there: it has one way.
     """
     is_turned = step.pose is not None and step.pose.has_rotation
-    if is_turned or not arm_has_six_joints(cell.description, step.group):
+    if is_turned or not task_space_of(cell.description, step.group).holds_pose:
         return [stated]
     obj = cell.presence[name].obj
     count = equal_turns((*obj.shapes, *obj.visuals), stated.rotation) or TURNS_OF_ROUND
@@ -319,7 +319,7 @@ def _tcp_goal(name: str, target: SE3, step: Place, cell: Cell) -> TcpGoal:
     start = cell.planning_start()
     tcp = cell.kinematics.link_pose(start, cell.description.tcp_link)
     tcp_to_object = tcp.inverse() @ cell.scene.object_pose(name, start)
-    if arm_has_six_joints(cell.description, step.group):
+    if task_space_of(cell.description, step.group).holds_pose:
         return TcpGoal(world_pose_spec(target @ tcp_to_object.inverse()))
     if is_grasped_by_pitch(cell, group_of(cell, step.group)):
         pitch = pitch_of(tcp.rotation)

@@ -111,7 +111,7 @@ def _follow(
             traced = trace(line, task.checker, start, path_options.max_step, path_options.jump)
             if not traced.reached_end:
                 continue
-        if task.space.dof < 6:
+        if not task.space.task_space.holds_pose:
             pose = motions.pose(traced.positions[-1], line.link)
         name = f"the line to waypoint {index + 1}"
         legs.append(Leg(line.link, task.checker, traced.positions, line, rates, name))

@@ -93,7 +93,7 @@ def link_excess(curve: RatedCurve, space: GroupSpace, trajectory: JointTrajector
         some = [rate for rate in rates if rate is not None]
         speed = max(rate.velocity for rate in some)
         worst = max(worst, float(np.linalg.norm(velocities[row])) / speed)
-        if space.dof >= 6:
+        if space.task_space.holds_pose:
             turning = poses[row].distance_to(poses[row + 1])[1] / step
             worst = max(worst, turning / max(rate.turning for rate in some))
         if row and curve.rates[near[row - 1]] is not None:
@@ -117,7 +117,7 @@ def _link_bounds(
     speed = np.maximum(np.linalg.norm(shifts, axis=1), _TINY)
     along = (bends * shifts).sum(axis=1) / speed
     across = np.linalg.norm(bends - (along / speed)[:, None] * shifts, axis=1)
-    turning = np.linalg.norm(turns, axis=1) if space.dof >= 6 else np.zeros(len(grid))
+    turning = np.linalg.norm(turns, axis=1) * space.task_space.holds_pose
     turning_bend = np.gradient(turning, grid)
     allowed = np.array(
         [

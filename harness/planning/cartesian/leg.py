@@ -15,10 +15,11 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.cartesian.linear_path import POINT
 from harness.planning.cartesian.link_timing import LinkRates
-from harness.planning.cartesian.tracing import SOLVED, LinkPath, link_goal
+from harness.planning.cartesian.tracing import SOLVED, LinkPath
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
+from harness.planning.ik.task import part_of_pose
 from harness.planning.timing.joint_spline import CubicSpline
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import BlendFailure
@@ -158,7 +159,7 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
         before, after = leaves + u * (1 - leaves), u * enters
         pose = _between(first.pose(before), second.pose(after), u)
         guess = 2 * positions[-1] - positions[-2] if len(positions) > 1 else positions[-1]
-        if _is_redundant(checker.space.dof):
+        if checker.space.task_space.has_choice:
             start, end = first.at(np.array([before]))[0], second.at(np.array([after]))[0]
             guess = start + _weight(u) * (end - start)
         positions.append(_follow(first, pose, guess, checker))
@@ -172,11 +173,6 @@ def transition(first: Leg, second: Leg, radius: float, checker: MotionChecker) -
         )
     positions[-1] = last
     return Transition(leaves, enters, np.array(positions))
-
-
-def _is_redundant(dof: int) -> bool:
-    """Whether an arm may have more joints than `link_goal` fixes: five do with a vertical tool."""
-    return dof > 6 or dof == 5
 
 
 def _weight(u: float) -> float:
@@ -194,7 +190,8 @@ def _between(first: SE3, second: SE3, u: float) -> SE3:
 
 def _follow(leg: Leg, pose: SE3, guess: FloatArray, checker: MotionChecker) -> FloatArray:
     """The free joint positions that bring the link to a pose, next to a guess."""
-    task = LinkTask(checker.space, link_goal(leg.link, pose, checker.space.dof))
+    goal = part_of_pose(checker.space.task_space, leg.link, pose)
+    task = LinkTask(checker.space, goal)
     found, error = task.polish(guess, iterations=20)
     space = checker.space
     if error > SOLVED or np.any(found < space.lower) or np.any(found > space.upper):

@@ -18,7 +18,7 @@ from harness.planning.cartesian.link_motion import (
     LinkMotions,
 )
 from harness.planning.cartesian.link_timing import LinkRates
-from harness.planning.cartesian.tracing import Trace
+from harness.planning.cartesian.tracing import Trace, off_path
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import joined, time_straight
@@ -144,9 +144,7 @@ def _check_ways(
         if path is None:
             continue
         pose = motions.pose(positions, path.link)
-        share, shift = path.nearest(pose)
-        turn = path.pose(min(max(share, 0.0), 1.0)).distance_to(pose)[1]
-        turn = turn if motions.task.space.dof >= 6 else 0.0
+        shift, turn = off_path(path, pose, motions.task.space.task_space)
         if shift > POSITION_DEVIATION or turn > ORIENTATION_DEVIATION:
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",

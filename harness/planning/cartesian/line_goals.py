@@ -10,7 +10,6 @@ import pinocchio as pin
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.task import TILT_JOINTS
 from harness.planning.task import PlanningTask
 from harness.ports.goals import Goal, JointGoal, PoseGoal, PositionGoal
 
@@ -21,7 +20,7 @@ def end_pose(
     """Convert a goal to the end pose of a Cartesian path.
 
     Joint positions stand for the TCP pose that they produce, as in Pilz's LIN. A position goal
-    keeps the link's orientation except for a requested pitch; with fewer than six joints the yaw
+    keeps the link's orientation except for a requested pitch; what the group cannot hold
     follows from the position.
 
     Args:
@@ -38,10 +37,11 @@ def end_pose(
         return PoseGoal(link, kinematics.link_pose(task.space.whole(goal.positions), link))
     now = kinematics.link_pose(whole, goal.link)
     turned = now.rotation if goal.pitch is None else pitched(now.rotation, goal.pitch)
-    if task.space.dof < 6:
+    held = task.space.task_space
+    if not held.holds_pose:
         pitch = pitch_of(now.rotation) if goal.pitch is None else goal.pitch
         reduced = PositionGoal(goal.link, goal.position, pitch)
-        if task.space.dof == TILT_JOINTS:
+        if held.holds_tilt:
             reduced = PoseGoal(goal.link, SE3(turned, np.asarray(goal.position)))
         solutions = kinematics.solve(task.space.group, reduced, whole, task.options.seed)
         if solutions:

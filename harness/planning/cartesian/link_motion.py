@@ -20,7 +20,7 @@ from harness.planning.cartesian.link_timing import (
     link_motion,
     time_on_path,
 )
-from harness.planning.cartesian.tracing import CODES, STEP_LENGTH, LinkPath, Trace, deviation, trace
+from harness.planning.cartesian.tracing import CODES, STEP_LENGTH, LinkPath, Trace, off_path, trace
 from harness.planning.goals.goals import find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics, meets_tolerance
 from harness.planning.task import PlanningTask
@@ -174,12 +174,9 @@ class LinkMotions:
         Raises:
             PlanningFailed: INVALID_MOTION_PLAN, more than it may.
         """
-        shift, turn = deviation(
-            path,
-            trajectory,
-            lambda positions: self.pose(positions, path.link),
-            pitch_only=self.task.space.dof < 6,
-        )
+        held = self.task.space.task_space
+        poses = (self.pose(positions, path.link) for positions in trajectory.positions)
+        shift, turn = np.max([off_path(path, pose, held) for pose in poses], axis=0).tolist()
         if shift > POSITION_DEVIATION or turn > ORIENTATION_DEVIATION:
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
@@ -198,7 +195,10 @@ class LinkMotions:
             PlanningFailed: INVALID_MOTION_PLAN, when they exceed the Cartesian limits.
         """
         motion = link_motion(trajectory, lambda positions: self.pose(positions, link))
-        if motion.excess(rates, turns=self.task.space.dof >= 6) > 1 + CARTESIAN_TOLERANCE:
+        if (
+            motion.excess(rates, turns=self.task.space.task_space.holds_pose)
+            > 1 + CARTESIAN_TOLERANCE
+        ):
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
                 f"{link} would move at {motion.velocity:.4f} m/s (at most {rates.velocity:.4f}), "

@@ -4,24 +4,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from harness.core.errors import ErrorCode
-from harness.core.spatial import SE3, pitch_of
-from harness.core.trajectory import JointTrajectory
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
-from harness.planning.ik.numeric import LinkGoal, LinkTask, TiltGoal
-from harness.planning.ik.task import TILT_JOINTS, WHOLE_POSE_JOINTS
+from harness.planning.ik.numeric import LinkTask
+from harness.planning.ik.task import part_of_pose
 from harness.planning.timing.joint_spline import CubicSpline
-from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.motions import JumpThreshold
 from harness.recording.motion_failures import TraceFailure
+from harness.robot.task_space import TaskSpace
 
 STEP_LENGTH = 0.005
 """Distance between the poses that are solved on a way [m]."""
@@ -134,8 +132,7 @@ def trace(
 ) -> Trace:
     """Follow a way from the start's branch of inverse kinematics until its end, or what stops it.
 
-    The yaw of arms with fewer than six joints follows from the position; those of four keep the
-    pitch alone.
+    What the group cannot hold of the link's poses follows from the rest.
 
     Where a curve through the joint positions leaves the way between them, as near a singularity,
     the poses are taken nearer to each other; the trace ends where that does not help.
@@ -187,7 +184,8 @@ def _attempt(
     parameters = np.linspace(0.0, 1.0, count * stride + 1)
     positions = [np.asarray(start, dtype=float)]
     for number in range(1, len(parameters)):
-        goal = link_goal(path.link, path.pose(float(parameters[number])), space.dof)
+        pose = path.pose(float(parameters[number]))
+        goal = part_of_pose(space.task_space, path.link, pose)
         task = LinkTask(space, goal)
         guess = 2 * positions[-1] - positions[-2] if number > 1 else positions[-1]
         found, error = task.polish(guess, iterations=20)
@@ -211,15 +209,6 @@ def _off_between(path: LinkPath, traced: Trace, checker: MotionChecker) -> Float
             for positions in between
         ]
     )
-
-
-def link_goal(link: str, pose: SE3, dof: int) -> LinkGoal | TiltGoal:
-    """What the joints must do for a pose: all of it, or what few of them can choose."""
-    if dof >= WHOLE_POSE_JOINTS:
-        return PoseGoal(link, pose)
-    if dof == TILT_JOINTS:
-        return TiltGoal.of(link, pose)
-    return PositionGoal(link, pose.translation, pitch_of(pose.rotation))
 
 
 def _stopped(
@@ -258,25 +247,7 @@ def _stopped(
     return None
 
 
-def deviation(
-    path: LinkPath,
-    trajectory: JointTrajectory,
-    pose_of: Callable[[FloatArray], SE3],
-    *,
-    pitch_only: bool,
-) -> tuple[float, float]:
-    """Largest distance [m] and turn [rad] of a trajectory's link from its way.
-
-    With `pitch_only` (arms of fewer than six joints) the turn is the difference of pitch.
-    """
-    worst_shift, worst_turn = 0.0, 0.0
-    for positions in trajectory.positions:
-        pose = pose_of(positions)
-        share, shift = path.nearest(pose)
-        expected = path.pose(min(max(share, 0.0), 1.0))
-        if pitch_only:
-            turn = abs(pitch_of(pose.rotation) - pitch_of(expected.rotation))
-        else:
-            turn = expected.distance_to(pose)[1]
-        worst_shift, worst_turn = max(worst_shift, shift), max(worst_turn, turn)
-    return worst_shift, worst_turn
+def off_path(path: LinkPath, pose: SE3, held: TaskSpace) -> tuple[float, float]:
+    """Distance [m] and turn [rad] of a pose from its path, as far as the group can hold them."""
+    share, shift = path.nearest(pose)
+    return shift, held.turn_between(path.pose(min(max(share, 0.0), 1.0)), pose)

@@ -19,7 +19,7 @@ from harness.planning.ik.answer import (
 )
 from harness.planning.ik.nearest_pose import distance_to_goal
 from harness.planning.ik.numeric import LinkGoal, LinkTask
-from harness.planning.ik.task import WHOLE_POSE_JOINTS, task_of
+from harness.planning.ik.task import task_of
 from harness.planning.ik.third_party import solve_with_third_party
 from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.planning.model.turns import is_within, turns_from
@@ -99,7 +99,7 @@ class PinocchioKinematics:
             tuple(outside),
             result.excess,
             solver.name,
-            task_of(space.dof, goal),
+            task_of(space.task_space, goal),
             tuple(missed),
             tuple(refused),
         )
@@ -219,8 +219,8 @@ def _reaching(
         pose = request.link_pose(positions)
         shift, turn = distance_to_goal(request.goal, pose)
         at_the_point = shift <= request.goal.position_tolerance
-        has_few_joints = space.dof < WHOLE_POSE_JOINTS and isinstance(request.goal, PoseGoal)
-        if meets_tolerance(request.goal, pose) or (has_few_joints and at_the_point):
+        is_part = isinstance(request.goal, PoseGoal) and not space.task_space.holds_pose
+        if meets_tolerance(request.goal, pose) or (is_part and at_the_point):
             kept.append(positions)
         else:
             refused.append(RefusedSolution(positions, shift, turn))

@@ -104,6 +104,7 @@ class GroupSpace:
         acceleration: The acceleration limits, shape (dof,).
         metric: Weights of joint-space distances, shape (dof,).
         leverage: Share of the arm's reach that each joint moves, 0.1 to 1, shape (dof,).
+        task_space: The parts of a link's pose that the group can hold.
         wraps: Whether a whole turn brings each joint to the same place, shape (dof,).
     """
 
@@ -112,6 +113,7 @@ class GroupSpace:
         self.robot = robot
         self.group = group
         self.joint_names = description.groups[group].joint_names
+        self.task_space = description.groups[group].task_space
         joints = [description.joint_by_name[name] for name in self.joint_names]
         self.lower: FloatArray = np.array([joint.lower for joint in joints], dtype=float)
         self.upper: FloatArray = np.array([joint.upper for joint in joints], dtype=float)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import ClassVar, cast
 
-from harness.core.spatial import pitch_of
 from harness.planning.ik.numeric import TiltGoal, solve_numeric
-from harness.planning.ik.task import PITCH_JOINTS, TILT_JOINTS, WHOLE_POSE_JOINTS
+from harness.planning.ik.task import part_of_pose
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports.goals import PoseGoal, PositionGoal
+from harness.ports.goals import PoseGoal
 from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 
 
@@ -19,17 +18,17 @@ class NumericSolver(IkSolver):
     name: ClassVar[str] = "numeric"
 
     def solve(self, request: IkRequest) -> IkResult:
-        """Solve for the goal; an arm of few joints for the part of a pose that it can choose."""
+        """Solve for the goal; for the part of a pose that the group can hold."""
         goal, space = request.goal, cast("GroupSpace", request.space)
         search = partial(
             solve_numeric, seed_positions=request.seed_positions, enough=request.enough
         )
-        if isinstance(goal, PoseGoal) and space.dof == TILT_JOINTS:
-            part = TiltGoal.of(goal.link, goal.pose)
+        part = goal
+        if isinstance(goal, PoseGoal) and not space.task_space.holds_pose:
+            part = part_of_pose(space.task_space, goal.link, goal.pose)
+        if isinstance(part, TiltGoal):
             return IkResult(tuple(search(space, goal, part=part)))
         found = search(space, goal)
-        if isinstance(goal, PoseGoal) and not found and space.dof < WHOLE_POSE_JOINTS:
-            pitch = pitch_of(goal.pose.rotation) if space.dof >= PITCH_JOINTS else None
-            point = PositionGoal(goal.link, goal.pose.translation, pitch)
-            found = search(space, point)
+        if not found and part is not goal:
+            found = search(space, part)
         return IkResult(tuple(found))
