@@ -100,13 +100,14 @@ def never_held(run: Run) -> tuple[str, ...]:
 
 def _belief_alone(run: Run, record: AttachmentRecord) -> Finding | None:
     """An attachment of something in the physics that no finger holds."""
-    name = record.represents
-    if not _is_physical(run, name):
+    name, until = record.represents, min(record.end_time, run.duration)
+    if not _is_physical(run, name) or until <= record.start_time:
         return None
     return Finding(
         "held",
-        f"the planner believed that it held {name}; the fingers never did, and an attachment"
-        " carries nothing in the physics: close the gripper on it first, as `grasp` does",
+        f"the planner believed that it held {name} from {record.start_time:.2f} s to {until:.2f} s;"
+        " the fingers did not meanwhile, and an attachment carries nothing in the physics: close"
+        " the gripper on it first, as `grasp` does",
         record.start_time,
         values={"object": name, "believed": True, "held": False},
     )

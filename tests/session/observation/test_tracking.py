@@ -180,9 +180,15 @@ def test_an_object_that_the_fingers_never_held_is_a_belief():
     [belief] = findings(make_run(attachments=[attachment("box", 20, 80)]), "held")
     assert belief.values == {"object": "box", "believed": True, "held": False}
     assert belief.time == pytest.approx(0.2)
+    assert "from 0.20 s to 0.80 s; the fingers did not meanwhile" in belief.message
     planner_only = replace(BOX, in_simulation=False)
     run = make_run(objects=(TABLE, planner_only), attachments=[attachment("box", 20, 80)])
     assert findings(run, "held") == []
+
+
+def test_an_attachment_that_lasts_no_time_is_no_belief():
+    assert findings(make_run(attachments=[attachment("box", 20, 20)]), "held") == []
+    assert findings(make_run(attachments=[attachment("box", 100, 100)]), "held") == []
 
 
 def test_a_pair_without_distances_in_a_motion_does_not_hide_the_next_one():

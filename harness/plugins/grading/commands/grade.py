@@ -117,7 +117,7 @@ class GradeCommand(Command):
         if arguments.json:
             say_json(_document(grade))
             return _code(grade)
-        _print_grade(grade)
+        print_grade(grade)
         if folder is not None:
             say(f"report: {folder}")
         return _code(grade)
@@ -169,7 +169,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
         for step in case.steps:
             if step.status == "failed":
                 say(f"{step.id} failed, {step.error_code}: {step.message}")
-        _print_grade(grade)
+        print_grade(grade)
         if code != _code(grade):
             say("not passed: every point is earned, but a step failed")
         if case.report_dir:
@@ -182,7 +182,8 @@ def _code(grade: Grade) -> int:
     return 0 if grade.is_full else EXIT_CODES["failed"]
 
 
-def _print_grade(grade: Grade) -> None:
+def print_grade(grade: Grade) -> None:
+    """Print each expectation with its points and its reason, and the sum."""
     from harness.reporting.terminal import Style, measure_text, verdict_line
 
     style = Style.of(sys.stdout)

@@ -1,0 +1,167 @@
+"""The course: its command, and its exercises as a student meets them."""
+
+import json
+import os
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+
+from docs import ROOT
+from docs.generators.course import FOLDER, LEFT_OUT, checked, index, mistakes, page_of, with_regions
+from harness.cli.main import main
+from harness.core.resources import data_folder
+from harness.plugins.grading.course import exercises
+
+COURSE = data_folder("scenarios") / "course"
+EXERCISES = {exercise.folder_name: exercise for exercise in exercises().values()}
+DECIMALS = re.compile(r"-?\d+\.\d+(e-?\d+)?")
+POINTS = re.compile(r"(?m)^([\d.]+) of ([\d.]+) points")
+INVALID = re.compile(r"(?m)^\S+\.yaml:\d+:\d+: ")
+FULL = "10 of 10 points"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.nightly(but=["01_joint_angles", "02_gripper", "03_grasp"])
+@pytest.mark.parametrize("name", [name for name in EXERCISES if name != "12_ros2_node"])
+def test_the_answer_earns_every_point(name):
+    [answer] = (COURSE / name).glob("answer.*")
+    printed = checked(EXERCISES[name], answer)
+    assert FULL in printed, printed
+
+
+@pytest.mark.nightly(but=["02_gripper"])
+@pytest.mark.parametrize("name", [name for name in EXERCISES if name != "12_ros2_node"])
+def test_the_page_shows_what_the_start_and_each_mistake_leave(name):
+    exercise = EXERCISES[name]
+    page = page_of(exercise).read_text(encoding="utf-8")
+    made = with_regions(exercise)
+    assert DECIMALS.sub("#", page) == DECIMALS.sub("#", made), (
+        "the page is out of date; write it again: python -m docs.generators.course " + name
+    )
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_the_start_and_each_mistake_lose_points_for_a_reason_on_the_page(name):
+    page = page_of(EXERCISES[name]).read_text(encoding="utf-8")
+    blocks = re.findall(r"(?ms)^```text\n(.*?)^```$", page)
+    files = mistakes(EXERCISES[name])
+    assert 2 <= len(files) <= 3
+    assert len(blocks) == 1 + len(files)
+    for block in blocks:
+        found = POINTS.search(block)
+        assert found is None or float(found[1]) < float(found[2]) == 10
+        assert INVALID.search(block) or re.search(r"(?m)^✗|FAILED", block)
+        assert not any(LEFT_OUT.fullmatch(line) for line in block.splitlines())
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_an_exercise_has_what_a_course_needs(name):
+    model = EXERCISES[name].assignment.model
+    assert 30 <= model.minutes <= 120
+    assert model.description.endswith(".")
+    assert model.points in (None, 10)
+
+
+def test_the_first_page_lists_the_exercises_and_there_are_twelve():
+    assert (FOLDER / "README.md").read_text(encoding="utf-8") == index()
+    assert len(EXERCISES) == 12
+
+
+def sh(page):
+    """The commands of a page, in order."""
+    text = (FOLDER / page).read_text(encoding="utf-8")
+    blocks = re.findall(r"(?ms)^```sh\n(.*?)^```$", text)
+    return [line for block in blocks for line in block.splitlines()]
+
+
+def test_the_commands_of_the_first_page_and_of_the_teachers_page_run(here, capsys):
+    shutil.copytree(COURSE / "02_gripper", here / "my_course/01_sort_the_cans")
+    codes = {"course": 0, "start": 0, "check": 1, "view": 0}
+    for line in [*sh("README.md"), *sh("teachers.md")]:
+        words = shlex.split(line, comments=False)[1:]
+        part = words[1] if words[0] == "course" and len(words) > 1 else words[0]
+        options = ["--no-open"] if part in ("check", "view") else []
+        assert main([*words, *options]) == codes[part], line
+    printed = capsys.readouterr().out
+    assert "4 of 10 points" in printed
+    assert "reports/course/03_grasp/report.html#t=3.791" in printed
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_the_commands_of_a_page_are_those_of_its_exercise(here, name):
+    start, check = sh(f"{name}.md")
+    assert main(shlex.split(start)[1:]) == 0
+    assert check == f"harness course check {name}"
+    assert [path.name for path in (here / name).iterdir()] == [EXERCISES[name].file_name]
+
+
+def test_starting_twice_refuses_to_overwrite(here, capsys):
+    assert main(["course", "start", "2", "work"]) == 0
+    (here / "work/gripper.scenario.yaml").write_text("mine")
+    assert main(["course", "start", "2", "work"]) == 2
+    assert "exists already; nothing was written" in capsys.readouterr().err
+    assert (here / "work/gripper.scenario.yaml").read_text() == "mine"
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["start", "13"], "there is no exercise '13': give a number from 1 to 12"),
+        (["start", "."], "there is no such file"),
+        (["check"], "holds no exercise"),
+        (["check", "nowhere"], "holds no exercise"),
+        (["check", "both"], "name one of the files"),
+        (["check", "--assignment", "nowhere"], "there is no such file"),
+    ],
+)
+def test_wrong_usage_is_explained(capsys, words, reason):
+    for number in ("2", "3"):
+        main(["course", "start", number, "both"])
+    capsys.readouterr()
+    assert main(["course", *words]) == 2
+    assert reason in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("here")
+def test_a_list_and_a_check_have_json(capsys):
+    assert main(["course", "list", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert [each["number"] for each in listed] == [*range(1, 13)]
+    main(["course", "start", "2", "."])
+    capsys.readouterr()
+    assert main(["course", "check", "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert (found["earned"], found["points"], found["outcome"]) == (4, 10, "failed")
+
+
+def test_a_students_expectations_earn_nothing(here, capsys):
+    main(["course", "start", "2", "."])
+    file = here / "gripper.scenario.yaml"
+    text = file.read_text()
+    steps, expect = text.split("expect:\n")
+    own = "\n    expect: [{duration: {at_most: 60 s, points: 50}}]"
+    file.write_text(
+        steps.replace("id: wide", f"id: wide{own}") + "expect: [{duration: 60 s, points: 9}]\n"
+    )
+    assert main(["course", "check", "--no-open"]) == 1
+    assert "4 of 10 points" in capsys.readouterr().out
+    assert "points" in expect
+
+
+@pytest.mark.needs_ros
+@pytest.mark.parametrize(("file", "earned"), [("start.py", "5"), ("answer.py", "10")])
+def test_the_node_of_the_course_earns_its_points(monkeypatch, file, earned):
+    python = os.environ.get("HARNESS_ROS_PYTHON", "")
+    if python:
+        monkeypatch.setenv("PATH", str(Path(python).parent), prepend=os.pathsep)
+    exercise = EXERCISES["12_ros2_node"]
+    assert f"{earned} of 10 points" in checked(exercise, ROOT / exercise.start.parent / file)
