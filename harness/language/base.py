@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, cast
+from typing import Annotated, Any, ClassVar, Self, cast
 
 from pydantic import (
     AfterValidator,
@@ -73,10 +73,14 @@ class SpecModel(BaseModel):
         short: The field that a bare value stands for: `- gripper: open` is short for
             `- gripper: {named_target: open}`; empty where there is none.
         short_is_list: Whether that field is a list, and one value alone a list of one.
+        one_of: Fields of which exactly one is given.
+        some_of: Fields of which at least one is given.
     """
 
     short: ClassVar[str] = ""
     short_is_list: ClassVar[bool] = False
+    one_of: ClassVar[tuple[str, ...]] = ()
+    some_of: ClassVar[tuple[str, ...]] = ()
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
@@ -105,6 +109,17 @@ class SpecModel(BaseModel):
             return value
         is_one = cls.short_is_list and not isinstance(given, list | tuple)
         return {cls.short: [value] if is_one else value}
+
+    @model_validator(mode="after")
+    def _alternatives(self) -> Self:
+        for keys, number, most in (
+            (self.one_of, "exactly one", 1),
+            (self.some_of, "at least one", len(self.some_of)),
+        ):
+            if keys and not 1 <= sum(getattr(self, key) is not None for key in keys) <= most:
+                *first, last = (f"`{key}`" for key in keys)
+                raise ValueError(f"{number} of {', '.join(first)} and {last} is needed")
+        return self
 
 
 Number = Annotated[float, Strict()]

@@ -134,6 +134,8 @@ class LineFields(GoalFields):
 class ArcFields(LineFields):
     """An arc of the link to a goal, through `interim` or about `center`."""
 
+    one_of = ("interim", "center")
+
     interim: Position | None = Field(
         default=None,
         description="The arc passes through this point; it may be any but a full circle.",
@@ -142,9 +144,3 @@ class ArcFields(LineFields):
         default=None,
         description="The arc is the shorter one about this centre, less than half a circle.",
     )
-
-    @model_validator(mode="after")
-    def _one_auxiliary(self) -> ArcFields:
-        if (self.interim is None) == (self.center is None):
-            raise ValueError("an arc needs exactly one of `interim` and `center`")
-        return self

@@ -59,6 +59,8 @@ class Normal(SpecModel):
 class Distribution(SpecModel):
     """The distribution of a random value: exactly one of these keys."""
 
+    one_of = ("uniform", "normal", "choice")
+
     uniform: tuple[FiniteQuantity, FiniteQuantity] | None = Field(
         default=None,
         description="The value is uniform between two numbers, with or without a unit.",
@@ -70,8 +72,6 @@ class Distribution(SpecModel):
 
     @model_validator(mode="after")
     def _one(self) -> Distribution:
-        if sum(each is not None for each in (self.uniform, self.normal, self.choice)) != 1:
-            raise ValueError("a random value needs exactly one of `uniform`, `normal` and `choice`")
         if self.uniform is not None:
             common_unit(*self.uniform)
             low, high = (split_quantity(each)[0] for each in self.uniform)

@@ -18,16 +18,17 @@ from harness.core.spatial import SE3
 from harness.core.world import MOST_OBJECTS, WorldObject
 from harness.judging.placed import as_expectation, check_expectation
 from harness.language.expectation import ExpectationFields
-from harness.language.files.source import Loc, SourceMap
+from harness.language.files.source import Loc
 from harness.language.planning import Planning
-from harness.language.scenario import Scenario
+from harness.language.reading.load import LoadedScenario
 from harness.language.step import Block, Step
-from harness.language.world import ObjectSpec, WorldSpec
+from harness.language.world import ObjectSpec
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.session.cameras import all_cameras, check_cameras, check_videos
 from harness.session.options import CheckPlanner, check_planning, merged_options
+from harness.world.imported import ImportedWorld
 from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
 
 MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
@@ -54,11 +55,8 @@ class Sources:
         is_broken: Whether parts of the file cannot be read, so that models lack fields.
     """
 
-    scenario: Scenario
-    lines: SourceMap
-    base_dir: Path
-    world: WorldSpec
-    world_dir: Path
+    loaded: LoadedScenario
+    world: ImportedWorld
     description: RobotDescription
     kinematics: Kinematics
     check_planner: CheckPlanner
@@ -81,7 +79,7 @@ def compile_scenario(sources: Sources) -> Program:
 class _Compiler:
     def __init__(self, sources: Sources) -> None:
         self.sources = sources
-        self.problems = Problems(sources.lines, sources.missing, sources.doubtful)
+        self.problems = Problems(sources.loaded.lines, sources.missing, sources.doubtful)
         self.scope = Scope(sources.description, self.problems, sources.kinematics.link_pose)
         self.later: dict[str, WorldObject] = {}
         self.object_specs: dict[str, ObjectSpec] = {}  # of the start and of steps, without poses
@@ -91,12 +89,15 @@ class _Compiler:
         self.pending: list[tuple[ExpectationFields, Loc]] = []
 
     def compile(self) -> Program:
-        sources, scenario = self.sources, self.sources.scenario
+        sources, scenario = self.sources, self.sources.loaded.scenario
         objects = self._objects_at_start()
         for obj in objects:
             self.scope.add_object(obj, present=True)
         self.scope.cameras = all_cameras(
-            sources.description.cameras, sources.world.cameras, scenario.cameras, self.problems
+            sources.description.cameras,
+            sources.world.world.cameras,
+            scenario.cameras,
+            self.problems,
         )
         check_planning(scenario.planning, ("planning",), self.problems, sources.check_planner)
         steps = self._steps(scenario.steps, ("steps",), "steps")
@@ -105,7 +106,7 @@ class _Compiler:
         for expectation, loc in self.pending:
             with self._gaps_allowed():
                 check_expectation(as_expectation(expectation), loc, self.scope)
-        check_cameras(sources.world.cameras, scenario.cameras, self.scope)
+        check_cameras(sources.world.world.cameras, scenario.cameras, self.scope)
         videos = check_videos(scenario.videos, self.scope)
         controllers = controller_names(sources.description, scenario.ros2, self.problems)
         if len(objects) + len(self.later) > MOST_OBJECTS:
@@ -118,7 +119,7 @@ class _Compiler:
         return Program(
             title=scenario.scenario,
             description=sources.description,
-            world=resolve_world(sources.world, objects),
+            world=resolve_world(sources.world.world, objects),
             later_objects=self.later,
             steps=steps,
             expectations=tuple(self.expectations),
@@ -147,7 +148,7 @@ class _Compiler:
     # -- objects ------------------------------------------------------------------------------
 
     def _objects_at_start(self) -> tuple[WorldObject, ...]:
-        world, scenario = self.sources.world, self.sources.scenario
+        world, scenario = self.sources.world.world, self.sources.loaded.scenario
         resolved = self._world_objects()
         here: set[str] = set()
         for index, spec in enumerate(scenario.objects):
@@ -181,8 +182,8 @@ class _Compiler:
     def _world_objects(self) -> dict[str, WorldObject]:
         """The world's own objects; what is wrong with one is reported at the scenario's `world`."""
         resolved: dict[str, WorldObject] = {}
-        world, problems, hint = self.sources.world, list[str](), ""
-        replaced = {spec.name for spec in self.sources.scenario.objects if spec.replace}
+        world, problems, hint = self.sources.world.world, list[str](), ""
+        replaced = {spec.name for spec in self.sources.loaded.scenario.objects if spec.replace}
         for spec in world.objects:
             self.object_locs[spec.name] = ("world",)
             if spec.name in resolved:
@@ -199,7 +200,7 @@ class _Compiler:
                 )
             pose = base @ spec.pose.se3()
             try:
-                resolved[spec.name] = self._object(spec, pose, self.sources.world_dir)
+                resolved[spec.name] = self._object(spec, pose, self.sources.world.path.parent)
             except ObjectUnusableError as unusable:
                 if spec.name in replaced:
                     resolved[spec.name] = _unusable(spec.name, pose)
@@ -239,7 +240,7 @@ class _Compiler:
                 (*loc, "name"), f"'{spec.name}' is {taken}", "choose another", needs=("robot",)
             )
         try:
-            return self._object(spec, pose, self.sources.base_dir)
+            return self._object(spec, pose, self.sources.loaded.path.parent)
         except ObjectUnusableError as unusable:
             self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
             self.problems.add_unusable(spec.name)
@@ -256,7 +257,7 @@ class _Compiler:
 
     def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
         """The object, its mesh files looked into; raises ObjectUnusableError."""
-        obj = resolve_object(spec, pose, folder, self.sources.scenario.collision)
+        obj = resolve_object(spec, pose, folder, self.sources.loaded.scenario.collision)
         for shape in obj.shapes:
             if isinstance(shape.geometry, Mesh):
                 try:
@@ -314,7 +315,7 @@ class _Compiler:
             title = spec.title
         with self._gaps_allowed():
             options = self._options(spec.planning, loc, path)
-        line, _ = sources.lines.line_of(loc)
+        line, _ = sources.loaded.lines.line_of(loc)
         step = ProgramStep(
             id=step_id,
             path=path,
@@ -352,12 +353,12 @@ class _Compiler:
                 (*loc, "planning"),
                 self.problems,
                 sources.check_planner,
-                sources.scenario.planning,
+                sources.loaded.scenario.planning,
             )
         return merged_options(
-            sources.scenario.planning,
+            sources.loaded.scenario.planning,
             planning,
-            sources.scenario.seed,
+            sources.loaded.scenario.seed,
             path,
             sources.checks_per_second,
             self._planner_name,
@@ -371,7 +372,7 @@ class _Compiler:
 
     def _expectation(self, spec: ExpectationFields, loc: Loc, step: str) -> None:
         self.pending.append((spec, loc))
-        line, _ = self.sources.lines.line_of(loc)
+        line, _ = self.sources.loaded.lines.line_of(loc)
         self.expectations.append(ProgramExpectation(spec, step, line))
 
 

@@ -136,11 +136,8 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
         world = ImportedWorld(empty.model, empty.path)
     ports = make_planning(description)
     sources = Sources(
-        scenario=loaded.scenario,
-        lines=loaded.lines,
-        base_dir=loaded.path.parent,
-        world=world.world,
-        world_dir=world.path.parent,
+        loaded=loaded,
+        world=world,
         description=description,
         kinematics=ports.kinematics,
         check_planner=check_planner,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.grasping import GAP_SLACK, position_for_width
@@ -23,6 +23,7 @@ class Gripper(Step):
     """Move the gripper to a named state, a `position` or a `width`: ROS's GripperCommand."""
 
     short = "named_target"
+    one_of = ("named_target", "position", "width")
 
     verb: ClassVar[str] = "gripper"
     synonyms = ("open_gripper", "close_gripper", "hand")
@@ -43,13 +44,6 @@ class Gripper(Step):
         default=None,
         description="The effort limit of the gripper's joint; the default is the robot's.",
     )
-
-    @model_validator(mode="after")
-    def _one_target(self) -> Gripper:
-        given = [k for k in ("named_target", "position", "width") if getattr(self, k) is not None]
-        if len(given) != 1:
-            raise ValueError("exactly one of a named state, `position`, `width`")
-        return self
 
     def summary(self) -> str:
         if self.named_target is not None:

@@ -23,6 +23,7 @@ class MoveRelative(Step):
 
     verb: ClassVar[str] = "move_relative"
     moves_arm: ClassVar[bool] = True
+    one_of = ("direction", "rotation")
 
     direction: Direction | None = Field(
         default=None, description="The link moves straight in this direction."
@@ -48,8 +49,6 @@ class MoveRelative(Step):
 
     @model_validator(mode="after")
     def _one_amount(self) -> MoveRelative:
-        if (self.direction is None) == (self.rotation is None):
-            raise ValueError("`move_relative` needs exactly one of `direction` and `rotation`")
         if self.rotation is not None:
             if self.angle is None:
                 raise ValueError("a `rotation` needs an `angle`")

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_arc, check_goal
@@ -27,6 +27,8 @@ LinkPosition = tuple[str, str, FloatArray]
 class SequenceItemSpec(SpecModel):
     """One motion of a sequence, and how it blends into the next."""
 
+    one_of = ("ptp", "lin", "circ")
+
     ptp: GoalFields | None = Field(
         default=None, description="The motion is a joint motion, as of the step `ptp`."
     )
@@ -41,12 +43,6 @@ class SequenceItemSpec(SpecModel):
         description="Inside this distance of its goal the motion blends into the next one; with 0 "
         "it stops there [m].",
     )
-
-    @model_validator(mode="after")
-    def _one_motion(self) -> SequenceItemSpec:
-        if sum(motion is not None for motion in (self.ptp, self.lin, self.circ)) != 1:
-            raise ValueError("an item is exactly one of ptp, lin, circ")
-        return self
 
     @property
     def kind(self) -> str:

@@ -11,7 +11,7 @@ from harness.recording.signals import CaptureRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Measure, Verdict
 from harness.reporting.html.summary import SummaryPicture
-from harness.reporting.html.write import page_html
+from harness.reporting.html.write import Page
 from harness.robot.description import PlanningGroup
 from tests.judging.synthetic_run import TABLE, lift_run, step, thing
 
@@ -56,7 +56,7 @@ def page_of(name, folder):
     verdict = Verdict(name, "failed", -1.0, name, 0.5, 1, name, name, (measure,))
     stored = StoredRun(hostile_run(name), (verdict,), "failed", "0" * 64, {name: 1.0})
     file = folder / "report.html"
-    text = page_html(stored, [SummaryPicture(name, b"")])
+    text = Page(stored).html(stored, [SummaryPicture(name, b"")])
     file.write_text(text, encoding="utf-8", newline="")
     return file
 

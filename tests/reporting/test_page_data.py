@@ -23,11 +23,15 @@ from harness.reporting.html.groups import groups_of
 from harness.reporting.html.packing import Packer, thin
 from harness.reporting.html.scene import pack_mesh
 from harness.reporting.html.story import last_line, ordered_steps
-from harness.reporting.html.write import page_html
+from harness.reporting.html.write import Page
 from tests.judging.synthetic_run import at, lift_run, make_run, step, thing
 
 VALUES = st.one_of(st.just(float("nan")), st.floats(-1e6, 1e6))
 SIGNALS = arrays(float, array_shapes(min_dims=2, max_dims=2, max_side=60), elements=VALUES)
+
+
+def page_html(stored):
+    return Page(stored).html(stored)
 
 
 def stored(run=None, verdicts=(), outcome="passed"):

@@ -11,7 +11,7 @@ from harness.core.geometry import Box, Shape
 from harness.recording.film import encoded_film
 from harness.recording.signals import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.stored_run import StoredRun
-from harness.reporting.html.write import page_html
+from harness.reporting.html.write import Page
 from harness.reporting.terminal import failure_place
 from tests.judging.synthetic_run import (
     BOX,
@@ -57,7 +57,8 @@ def video(frames=20, rate=10.0):
 
 def write(folder, run):
     file = folder / "report.html"
-    file.write_text(page_html(StoredRun(run, (), "passed", "0" * 64, {})), encoding="utf-8")
+    stored = StoredRun(run, (), "passed", "0" * 64, {})
+    file.write_text(Page(stored).html(stored), encoding="utf-8")
     return file
 
 

@@ -61,7 +61,7 @@ def test_names_inside_a_sequence_are_checked_at_their_place(tmp_path):
 def test_an_arc_needs_one_of_interim_and_center(tmp_path):
     ((line, message),) = problems(tmp_path, "- circ: {position: [0.3, 0, 0.3]}", robot=ARM)
     assert line == 5
-    assert message == "an arc needs exactly one of `interim` and `center`"
+    assert message == "exactly one of `interim` and `center` is needed"
 
 
 def test_check_reports_what_stops_a_path_without_physics(tmp_path):

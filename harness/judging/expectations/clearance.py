@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
@@ -47,6 +47,7 @@ class Clearance(Predicate):
     """
 
     short = "at_least"
+    some_of = ("at_least", "max_below_plan")
     subject = "between"
     judged = "always"
     quantities = (DISTANCE, LOSS)
@@ -63,12 +64,6 @@ class Clearance(Predicate):
         description="The largest amount by which the distance may be below the one with the arm at"
         " its commands [m].",
     )
-
-    @model_validator(mode="after")
-    def _one(self) -> Clearance:
-        if self.at_least is None and self.max_below_plan is None:
-            raise ValueError("`clearance` needs `at_least`, `max_below_plan` or both")
-        return self
 
     def check(self, at: At) -> None:
         for index, name in enumerate(self.between):

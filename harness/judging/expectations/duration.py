@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.core.quantity import distinct
 from harness.judging.expectation import Predicate
@@ -21,6 +21,7 @@ class DurationCheck(Predicate):
 
     word = "duration"
     short = "at_most"
+    some_of = ("at_most", "at_least")
     quantities = (DURATION,)
 
     at_most: Duration | None = Field(
@@ -31,12 +32,6 @@ class DurationCheck(Predicate):
         default=None,
         description="The shortest simulated time that the step or the run may take [s].",
     )
-
-    @model_validator(mode="after")
-    def _one(self) -> DurationCheck:
-        if self.at_most is None and self.at_least is None:
-            raise ValueError("`duration` needs `at_most`, `at_least` or both")
-        return self
 
     def signal(self, window: Window) -> MarginSignal:
         """Time from the start to the end of the window's step, or of the run [s].

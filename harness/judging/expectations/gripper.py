@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.cell.scope import At
 from harness.core.state_words import stated_name
@@ -29,6 +29,7 @@ class GripperState(Predicate):
 
     word = "gripper"
     short = "named_target"
+    one_of = ("named_target", "position", "width", "stalled")
     quantities = (POSITION_ERROR, GAP, STALLED)
     is_proposed = True
 
@@ -49,17 +50,6 @@ class GripperState(Predicate):
     stalled: Flag | None = Field(
         default=None, description="Whether the last gripper step reported that it stalled."
     )
-
-    @model_validator(mode="after")
-    def _one(self) -> GripperState:
-        given = [
-            key
-            for key in ("named_target", "position", "width", "stalled")
-            if getattr(self, key) is not None
-        ]
-        if len(given) != 1:
-            raise ValueError("exactly one of named_target, position, width, stalled")
-        return self
 
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`gripper`")

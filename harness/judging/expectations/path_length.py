@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -20,6 +20,7 @@ class PathLength(Predicate):
     """The TCP travels at most or at least a given distance."""
 
     short = "at_most"
+    some_of = ("at_most", "at_least")
     quantities = (LENGTH,)
 
     at_most: PositiveLength | None = Field(
@@ -28,12 +29,6 @@ class PathLength(Predicate):
     at_least: PositiveLength | None = Field(
         default=None, description="The shortest distance that the TCP may travel [m]."
     )
-
-    @model_validator(mode="after")
-    def _one(self) -> PathLength:
-        if self.at_most is None and self.at_least is None:
-            raise ValueError("`path_length` needs `at_most`, `at_least` or both")
-        return self
 
     def signal(self, window: Window) -> MarginSignal:
         """Distance travelled by the TCP since the window's start [m]."""

@@ -48,6 +48,7 @@ class HueRange(SpecModel):
     """Pixels of a colour: a named one, or a range of hues."""
 
     short = "named"
+    one_of = ("named", "hue")
 
     named: ColorName | None = Field(
         default=None,
@@ -68,12 +69,6 @@ class HueRange(SpecModel):
         default=0.15, description="The smallest brightness; 0 is black, 1 the brightest."
     )
 
-    @model_validator(mode="after")
-    def _one(self) -> HueRange:
-        if (self.named is None) == (self.hue is None):
-            raise ValueError("`color` needs exactly one of `named` and `hue`")
-        return self
-
     def degrees(self) -> tuple[float, float]:
         """The first and the last hue [deg], in [0, 360)."""
         if self.named is not None:
@@ -93,6 +88,7 @@ class Sees(Predicate):
     """
 
     subject = "object"
+    one_of = ("object", "color", "marker")
     quantities = (PIXELS, VISIBLE)
 
     camera: Name = Field(description="The name of the camera.")
@@ -122,9 +118,6 @@ class Sees(Predicate):
 
     @model_validator(mode="after")
     def _one(self) -> Sees:
-        given = [key for key in ("object", "color", "marker") if getattr(self, key) is not None]
-        if len(given) != 1:
-            raise ValueError("`sees` needs exactly one of `object`, `color` and `marker`")
         if "min_visible" in self.model_fields_set and self.object is None:
             raise ValueError("`min_visible` goes with `object`; write `min_area` here")
         return self

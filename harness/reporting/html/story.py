@@ -94,7 +94,7 @@ def verdict_facts(verdict: Verdict) -> dict[str, Any]:
         "step": verdict.step,
         "reason": verdict.reason,
         "warnings": [str(warning) for warning in verdict.warnings],
-        "measures": [finite(to_plain(measure)) for measure in verdict.measures],
+        "measures": finite(verdict.measures),
         "plot": (first.plot or None) if first else None,
         "points": _points(verdict),
     }
@@ -210,22 +210,8 @@ def _indent(text: str) -> int:
 
 def finite(value: Any) -> Any:
     """Plain data as JSON in a browser takes it: numbers that are not finite as null."""
-    plain = to_plain(value)
-    return _without_words(plain)
-
-
-def _without_words(plain: Any) -> Any:
-    if isinstance(plain, dict):
-        return {str(key): _without_words(item) for key, item in plain.items()}  # pyright: ignore
-    if isinstance(plain, list):
-        return [_without_words(item) for item in plain]  # pyright: ignore
-    return None if plain in ("NaN", "Infinity", "-Infinity") else plain
+    return to_plain(value, not_finite="null")
 
 
 def _number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
-
-
-def failures(verdicts: Sequence[Verdict]) -> int:
-    """How many expectations do not hold."""
-    return sum(verdict.status != "passed" for verdict in verdicts)

@@ -98,11 +98,6 @@ class Page:
         )
 
 
-def page_html(stored: StoredRun, pictures: Sequence[SummaryPicture] = ()) -> str:
-    """The page of a run whose pictures are all drawn."""
-    return Page(stored).html(stored, pictures)
-
-
 def _short(value: str) -> str:
     """A path's last part, or the value."""
     return value.replace("\\", "/").rstrip("/").rpartition("/")[2] or value

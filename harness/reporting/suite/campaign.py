@@ -14,7 +14,12 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.reporting.suite.columns import PASSED, Columns, VariedQuantity
 from harness.reporting.suite.record import SuiteCase
-from harness.reporting.suite.sensitivity import FEWEST_RUNS, FileSensitivity, sensitivities
+from harness.reporting.suite.sensitivity import (
+    FEWEST_RUNS,
+    FileSensitivity,
+    evenly,
+    sensitivities,
+)
 
 MOST_POINTS = 10_000
 """Runs that the map draws; of more, an even choice of the passed and of the failed ones."""
@@ -97,12 +102,10 @@ def _map(
 ) -> tuple[Mapping[str, Any], str]:
     """What the script draws, and how many runs that is."""
     runs = len(columns.numbers)
-    failed, passed = (
-        np.flatnonzero(which).tolist() for which in (~columns.is_good, columns.is_good)
-    )
-    shown_failed = _evenly(failed, MOST_POINTS // 2)
-    shown_passed = _evenly(passed, MOST_POINTS - len(shown_failed))
-    shown = sorted([*shown_failed, *shown_passed])
+    failed, passed = (np.flatnonzero(which) for which in (~columns.is_good, columns.is_good))
+    shown_failed = evenly(failed, MOST_POINTS // 2)
+    shown_passed = evenly(passed, MOST_POINTS - len(shown_failed))
+    shown: list[int] = np.union1d(shown_failed, shown_passed).tolist()
     names = list(columns.causes)
     causes = Counter(columns.groups[i] for i in failed)
     common = [group for group, _ in causes.most_common(MOST_CAUSES)]
@@ -130,13 +133,6 @@ def _map(
     if len(shown) < runs:
         return data, f"{len(shown)} of {runs} runs are drawn, chosen evenly"
     return data, f"{runs} runs"
-
-
-def _evenly(indices: Sequence[int], most: int) -> list[int]:
-    """At most a given number of the indices, at even distances."""
-    if len(indices) <= most:
-        return list(indices)
-    return [indices[index * len(indices) // most] for index in range(most)]
 
 
 def _short(number: float) -> float | None:

@@ -96,18 +96,19 @@ def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
         has_both = 0 < failures < len(chosen)
         if has_both:
             values = (~is_good).astype(float)
-            chosen = np.sort(np.concatenate([_evenly(chosen[is_good[chosen] == each])
+            chosen = np.sort(np.concatenate([evenly(chosen[is_good[chosen] == each])
                                              for each in (False, True)]))  # fmt: skip
         else:
             values = shares
-            chosen = _evenly(chosen[np.isfinite(shares[chosen])], 2 * MOST_RUNS)
+            chosen = evenly(chosen[np.isfinite(shares[chosen])], 2 * MOST_RUNS)
         effects = _effects(columns.parameters, chosen, values[chosen], is_outcome=has_both)
         measured = "outcome" if has_both else "worst margin"
         runs = int((files == number).sum())
         yield FileSensitivity(file, runs, measured, failures, effects)
 
 
-def _evenly(indices: IntArray, most: int = MOST_RUNS) -> IntArray:
+def evenly(indices: IntArray, most: int = MOST_RUNS) -> IntArray:
+    """At most a given number of the indices, at even distances."""
     if len(indices) <= most:
         return indices
     return indices[np.linspace(0, len(indices) - 1, most).astype(int)]
