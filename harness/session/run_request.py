@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from harness.core.errors import Problem, SpecError
+from harness.ports.simulation import LONGEST_RUN
 
 
 class Draw(Protocol):
@@ -53,6 +54,7 @@ class RunRequest:
         strict: Whether a warning of a verdict fails the case.
         nodes: Commands by name that steps may start as ROS 2 nodes.
         live: The Unix socket to which the case sends its poses while it runs; empty sends none.
+        longest: The most simulated time of the run [s]; a step that would exceed it fails.
     """
 
     file: Path
@@ -70,6 +72,7 @@ class RunRequest:
     strict: bool = False
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     live: str = ""
+    longest: float = LONGEST_RUN
 
 
 def named_commands(given: Iterable[str]) -> dict[str, str]:

@@ -61,6 +61,7 @@ def start_case(request: RunRequest, clock: Clock, kind: type[M]) -> Start[M]:
         again = request.redraw.redrawn(draw) if request.redraw is not None and draw else request
         prepared = prepare(request.file, again.overrides, request.seed, request.text)
         simulator = start_physics(prepared, kind, clock, prepared.observed_links)
+        simulator.limit(request.longest)
         if request.redraw is None or not simulator.overlaps_at_start:
             return Start(prepared, simulator, draw)
         last = [_no_free_draw(prepared, simulator.overlaps_at_start[0])]

@@ -111,6 +111,10 @@ class MujocoSimulator:
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
         self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
 
+    def limit(self, longest: float) -> None:
+        """Let the run take at most this simulated time [s]; a call that exceeds it fails."""
+        self._recording.longest = longest
+
     def _first_control(self) -> FloatArray:
         """Inputs of the motors at the start."""
         try:

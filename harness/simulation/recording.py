@@ -34,6 +34,9 @@ class Recording:
     arrays costs 8 % over bare calls of `mj_step`; `mujoco.rollout` reports which bodies touch only
     with a contact sensor for each pair. A step is made of the two calls that `mj_step` consists of,
     because it computes forces a second time, without their velocities, where bodies fall asleep.
+
+    Attributes:
+        longest: The most simulated time of the run [s].
     """
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
@@ -46,7 +49,7 @@ class Recording:
         self._commands = np.empty((ROWS, model.nu))
         self._command_velocities = np.empty((ROWS, model.nu))
         self._contacts = ContactRecord(physics, data)
-        self.count = 0
+        self.count, self.longest = 0, LONGEST_RUN
 
     def start(self, command: FloatArray) -> None:
         """Record sample 0: the state before the first step."""
@@ -101,15 +104,15 @@ class Recording:
         """Check that a number of further samples can be recorded.
 
         Raises:
-            StepFailed: TIMED_OUT; the run would exceed `LONGEST_RUN` or the memory limit.
+            StepFailed: TIMED_OUT; the run would exceed its longest time or the memory limit.
         """
         end = (self.count - 1 + steps) * self.timestep
-        if end > LONGEST_RUN * (1 + 1e-9):
+        if end > self.longest * (1 + 1e-9):
             raise StepFailed(
                 "TIMED_OUT",
-                f"the run would go on to t={end:.0f} s; it may take {LONGEST_RUN:g} s of simulated"
+                f"the run would go on to t={end:.0f} s; it may take {self.longest:g} s of simulated"
                 " time: shorten it, or make it several scenarios",
-                LengthFailure(LONGEST_RUN, end=end),
+                LengthFailure(self.longest, end=end),
             )
         rows = (self._qpos, self._qvel, self._sensors, self._commands, self._command_velocities)
         per_row = 8 * (1 + sum(array.shape[1] for array in rows))

@@ -90,6 +90,7 @@ class BagTopics:
         joint_names: The scenario's name of a joint, by its recorded name.
         objects: Topics whose messages contain object names and poses.
         object_poses: Topic of the pose of one object, by the object's name.
+        csv_period: Time between the rows of a CSV without a column of times [s].
     """
 
     joint_states: str = "/joint_states"
@@ -97,3 +98,4 @@ class BagTopics:
     joint_names: Mapping[str, str] = field(default_factory=dict[str, str])
     objects: tuple[str, ...] = ()
     object_poses: Mapping[str, str] = field(default_factory=dict[str, str])
+    csv_period: float = 0.01

@@ -27,6 +27,7 @@ from harness.plugins.grading.bag.events import (
     timed_events,
 )
 from harness.plugins.grading.bag.frames import Frames
+from harness.plugins.grading.bag.joint_csv import read_joint_csv
 from harness.plugins.grading.bag.joints import (
     foreign_links,
     joint_messages,
@@ -96,7 +97,11 @@ class _Recording:
         if unknown:
             hint = f"joints: {', '.join(description.joint_names)}"
             raise bag_error(path, f"the robot has no joint '{unknown[0]}'", hint)
-        self._content = content = read_bag(path, topics)
+        self._content = content = (
+            read_joint_csv(path, topics, description.arm_joints, description.joint_names)
+            if path.suffix.lower() == ".csv"
+            else read_bag(path, topics)
+        )
         reference = reference_track(content, description, description.arm_joints)
         if reference is None:
             raise no_joints(path, topics, content, description.arm_joints)

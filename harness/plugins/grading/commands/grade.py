@@ -43,7 +43,7 @@ class GradeCommand(Command):
         add = command.add_argument
         add("scenario", metavar="SCENARIO", help="a scenario file, or a bundled name")
         add_plugin(command)
-        text = "a rosbag2 folder, an .mcap, .db3 or ROS 1 .bag file; or give --node"
+        text = "a rosbag2 folder, an .mcap, .db3, .csv or ROS 1 .bag file; or give --node"
         add("bag", metavar="BAG", nargs="?", default="", help=text)
         for runner in _runners():
             runner.add_options(command)
@@ -64,6 +64,8 @@ class GradeCommand(Command):
             default=[],
             help="read a joint of the robot under another name",
         )
+        text = "the time between rows of a .csv without a column of times (default: 0.01)"
+        add("--csv-period", metavar="SECONDS", type=seconds, default=0.01, help=text)
         text = (
             "read poses of objects by name from this topic: TFMessage, as Gazebo's bridge sends"
             " them, or ModelStates"
@@ -108,6 +110,7 @@ class GradeCommand(Command):
             {recorded: name for name, recorded in arguments.joints},
             tuple(arguments.objects),
             dict(arguments.object_poses),
+            arguments.csv_period,
         )
         bag, folder = Path(arguments.bag), None
         if arguments.report_dir and not arguments.no_report:

@@ -1,0 +1,96 @@
+"""A CSV of joint values over time, as courses hand them in, read as a recording."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from harness.core.errors import Problem, SpecError
+from harness.language.files.yaml_file import read_text
+from harness.plugins.grading.bag.content import BagContent, BagTopics, RecordedTrack
+from harness.plugins.grading.bag.message_files import bag_error
+
+TIMES = ("time", "t", "timestamp", "time_s", "seconds")
+LARGEST = 200 * 10**6  # [bytes]; an hour of ten joints at 100 Hz has 40 MB
+LATEST = 9e9
+"""Latest time [s], so that nanoseconds fit into 64 bits."""
+
+
+def read_joint_csv(
+    path: Path, topics: BagTopics, arm_joints: Sequence[str], joints: Sequence[str]
+) -> BagContent:
+    """Read rows of joint positions [rad or m], one a time.
+
+    With a line of names, columns are found by the names of joints, and `time` has the times [s].
+    Without names a row has a time and the arm's joints, or the arm's joints alone, a period apart.
+
+    Args:
+        arm_joints: The joints of the arm, in the order of columns without names.
+        joints: All joints of the robot.
+
+    Raises:
+        SpecError: It is no such table; the first line that is not is named.
+    """
+    text = read_text(path, kind="CSV of joint values", largest=LARGEST)
+    separator = next((each for each in ",;\t" if each in text), ",")
+    reader = csv.reader(text.splitlines(), delimiter=separator)
+    rows = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
+    if not rows:
+        raise bag_error(path, "the file is empty")
+    names = [cell.strip() for cell in rows[0][1]]
+    has_names = any(_number(cell) is None for cell in names if cell)
+    if has_names:
+        names = [_joint(name, topics) for name in names]
+        rows = rows[1:]
+    else:
+        names = _names_of(len(names), path, arm_joints)
+    time = next((i for i, name in enumerate(names) if name.lower() in TIMES), None)
+    places = [i for i, name in enumerate(names) if name in joints]
+    if not places or len({names[i] for i in places}) < len(places):
+        known = ", ".join(joints)
+        raise bag_error(path, "the first line names no joint of the robot once", f"joints: {known}")
+    content, track = BagContent(), RecordedTrack(3 * len(places))
+    for index, (line, row) in enumerate(rows):
+        values = [_number(row[i]) if i < len(row) else None for i in places]
+        second: float | None = index * topics.csv_period
+        if time is not None:
+            second = _number(row[time]) if time < len(row) else None
+        if None in values or second is None or not 0 <= second < LATEST:
+            message = f"{len(places)} joint positions{' and a time' if time is not None else ''}"
+            raise SpecError([Problem(str(path), line, 1, f"this line does not have {message}")])
+        track.logged.append(round(second * 1e9))
+        track.stamps.append(round(second * 1e9))
+        unknown = [math.nan] * (2 * len(places))
+        track.numbers.extend([*(value for value in values if value is not None), *unknown])
+    content.joints[tuple(names[i] for i in places)] = track
+    content.topics[topics.joint_states] = ("sensor_msgs/msg/JointState", len(rows))
+    if not has_names:
+        content.notes.append(f"the columns have no names; they are read as {', '.join(names)}")
+    return content
+
+
+def _names_of(columns: int, path: Path, arm_joints: Sequence[str]) -> list[str]:
+    """The names of columns that have none."""
+    if columns == len(arm_joints):
+        return list(arm_joints)
+    if columns == len(arm_joints) + 1:
+        return ["time", *arm_joints]
+    count = len(arm_joints)
+    hint = f"write a first line of names: time, {', '.join(arm_joints)}"
+    message = f"has {columns} columns without names; the arm has {count} joints"
+    raise bag_error(path, message, hint)
+
+
+def _joint(name: str, topics: BagTopics) -> str:
+    known = topics.joint_names
+    return known[name] if name in known else name.removeprefix(topics.joint_prefix)
+
+
+def _number(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

@@ -1,0 +1,108 @@
+"""CSV files of joint values over time as recordings."""
+
+import numpy as np
+import pytest
+
+from harness.cli.main import main
+from harness.core.errors import SpecError
+from harness.plugins.grading.bag.content import BagTopics
+from harness.plugins.grading.grade import grade_bag
+
+JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint"]
+JOINTS += ["wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
+EXERCISE = """\
+scenario: Turn the base by a radian
+robot: {model: ur5e}
+steps: [{wait: 1}]
+expect:
+  - eventually: {joints: {positions: {shoulder_pan_joint: 1.0}, tolerance: 0.01}}
+    points: 3
+  - always: {within_limits: {velocity: false, effort: false, acceleration: false}}
+    points: 1
+  - duration: {at_most: 3 s}
+    points: 1
+"""
+
+
+@pytest.fixture
+def exercise(tmp_path):
+    file = tmp_path / "turn.scenario.yaml"
+    file.write_text(EXERCISE)
+    return file
+
+
+def table(file, head, rows, separator=","):
+    lines = [separator.join(head)] if head else []
+    lines += [separator.join(f"{value:.6f}" for value in row) for row in rows]
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+def motion(period, target=1.0):
+    """Times and joint positions of a smooth turn in two seconds."""
+    times = np.arange(0, 2, period)
+    turn = target * (1 - np.cos(np.pi * np.clip(times / 1.8, 0, 1))) / 2
+    return times, np.column_stack([turn, *[np.full_like(turn, v) for v in (-1.5, 1, -1, -1.5, 0)]])
+
+
+def test_columns_with_names_are_read_in_any_order(exercise, tmp_path):
+    times, rows = motion(0.02)
+    head = [*reversed(JOINTS), "gripper_state", "time"]
+    content = np.column_stack([rows[:, ::-1], np.zeros(len(times)), times])
+    grade = grade_bag(exercise, table(tmp_path / "named.csv", head, content))
+    assert (grade.earned, grade.points, grade.notes) == (5, 5, ())
+
+
+@pytest.mark.parametrize(
+    ("period", "separator", "earned"), [(0.01, ",", 5), (0.01, ";", 5), (0.05, "\t", 4)]
+)
+def test_rows_without_names_are_the_arm_at_a_period(exercise, tmp_path, period, separator, earned):
+    """200 rows at 0.01 s take 2 s; at 0.05 s they take 10 s, which is too long."""
+    file = table(tmp_path / "rows.csv", [], motion(0.01)[1], separator)
+    grade = grade_bag(exercise, file, BagTopics(csv_period=period))
+    assert grade.earned == earned
+    assert grade.notes[0].startswith("the columns have no names; they are read as shoulder_pan")
+
+
+def test_a_first_column_more_than_joints_is_the_time(exercise, tmp_path):
+    times, rows = motion(0.02)
+    grade = grade_bag(exercise, table(tmp_path / "t.csv", [], np.column_stack([times, rows])))
+    assert grade.earned == 5
+
+
+def test_a_turn_that_ends_early_loses_its_points(exercise, tmp_path, capsys):
+    file = table(tmp_path / "short.csv", [], motion(0.01, target=0.9)[1])
+    assert main(["grade", str(exercise), str(file)]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("✗       0/3  line 5: eventually: joints") for line in said)
+    assert said[-1] == "2 of 5 points"
+
+
+def test_the_period_of_rows_is_an_option(exercise, tmp_path, capsys):
+    file = table(tmp_path / "slow.csv", [], motion(0.01)[1])
+    assert main(["grade", str(exercise), str(file), "--csv-period", "0.05"]) == 1
+    assert "4 of 5 points" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("", 0, "the file is empty"),
+        ("1,2,3\n4,5,6\n", 0, "3 columns without names; the arm has 6 joints"),
+        ("a,b\n1,2\n", 0, "names no joint of the robot"),
+        ("time,elbow_joint\n0,1\n0.1,x\n", 3, "does not have 1 joint positions and a time"),
+        ("time,elbow_joint\n0,1\n0.1\n", 3, "does not have"),
+        ("time,elbow_joint\n0,1\n-5,1\n", 3, "does not have"),
+        ("time,elbow_joint\n0,1\n0.1,nan\n", 3, "does not have"),
+        ("elbow_joint,elbow_joint\n0,1\n", 0, "names no joint of the robot once"),
+        ("time,elbow_joint\n0,1\n", 0, "at a single time"),
+    ],
+)
+def test_what_is_no_table_of_joints_is_refused_at_its_line(exercise, tmp_path, text, line, words):
+    file = tmp_path / "bad.csv"
+    file.write_text(text)
+    with pytest.raises(SpecError) as refused:
+        grade_bag(exercise, file)
+    [problem] = refused.value.problems
+    assert (problem.path, problem.line) == (str(file), line)
+    assert words in problem.message
