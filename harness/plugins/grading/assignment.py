@@ -122,7 +122,7 @@ class Limits(SpecModel):
         default=4000, description="Memory that a case may add [MB]."
     )
     processes: Annotated[Count, Field(ge=1)] = Field(
-        default=64, description="Processes and threads of a student's program at the same time."
+        default=128, description="Processes and threads of a student's program at the same time."
     )
     files: Annotated[Count, Field(ge=1)] = Field(
         default=200,

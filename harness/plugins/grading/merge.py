@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import json
+from collections.abc import Collection, Iterator
+from dataclasses import replace
 from pathlib import Path
 
-from harness.core.errors import SpecError
-from harness.language.files.source import Place, Source
+from pydantic import BaseModel
+
+from harness.core.errors import Problem, SpecError
+from harness.language.files.source import Located, Place, Source
 from harness.language.files.yaml_file import parse_yaml, read_text
+from harness.language.step import Step
+
+CHANGES_SCENE = frozenset(
+    {"allow_collisions", "attach_object", "detach_object", "external", "include", "inject"}
+)
+"""Verbs that change what is judged, in addition to those that let objects appear or jump."""
 
 
 def merged_text(submission: Path, scenario: Path, takes: Collection[str]) -> str:
@@ -15,6 +25,7 @@ def merged_text(submission: Path, scenario: Path, takes: Collection[str]) -> str
 
     The lines of the submission keep their numbers, so that mistakes in it are reported where the
     student wrote them; the lines of other keys are empty, and the assignment's follow at the end.
+    Parameters of both files are known; of those that both have, the assignment's count.
 
     Args:
         submission: The scenario file of a student.
@@ -24,7 +35,7 @@ def merged_text(submission: Path, scenario: Path, takes: Collection[str]) -> str
     Raises:
         SpecError: The submission is not YAML, or has no `steps`.
     """
-    given, graded = _blocks(submission), _blocks(scenario)
+    (own, given), (root, graded) = _blocks(submission), _blocks(scenario)
     if "steps" in takes and "steps" not in given:
         place = Place(Source.of_text(str(submission), read_text(submission)), 1, 1)
         raise SpecError([place.problem("the scenario has no `steps`", "add `steps:`")])
@@ -32,12 +43,53 @@ def merged_text(submission: Path, scenario: Path, takes: Collection[str]) -> str
     for key, block in given.items():
         lines += block if key in takes or not key else [""] * len(block)
     for key, block in graded.items():
-        lines += [] if (key in takes and key in given) or not key else block
+        is_replaced = (key in takes and key in given) or key in ("", "params")
+        lines += [] if is_replaced else block
+    params = {**_params(own), **_params(root)}
+    lines += [f"params: {json.dumps(params)}"] if params else []
     return "\n".join(lines) + "\n"
 
 
-def _blocks(file: Path) -> dict[str, list[str]]:
-    """The lines of each key of a file, in order; those before the first key under an empty name.
+def placed(problem: Problem, submission: Path, scenario: Path) -> Problem:
+    """A problem of the merged text, which was read in place of the assignment's scenario.
+
+    It is in the submission's file where the line is one of it.
+    """
+    count = len(Source.of_text(str(submission), read_text(submission)).lines)
+    if problem.path != str(scenario) or not problem.line:
+        return problem
+    if problem.line <= count:
+        return replace(problem, path=submission.name)
+    return replace(problem, path=scenario.name, line=0, column=0)
+
+
+def scene_verbs(given: BaseModel, graded: BaseModel) -> list[str]:
+    """Verbs of a student's steps that change the scene, and that the assignment does not have."""
+    known = {step.verb for step in steps_in(graded)}
+    changing = (s for s in steps_in(given) if s.moves_objects or s.verb in CHANGES_SCENE)
+    return sorted({step.verb for step in changing} - known)
+
+
+def steps_in(value: object) -> Iterator[Step]:
+    """The steps in a model, at any depth."""
+    if isinstance(value, Step):
+        yield value
+    if isinstance(value, BaseModel):
+        for name in type(value).model_fields:
+            yield from steps_in(getattr(value, name))
+    elif isinstance(value, tuple | list):
+        for each in value:  # pyright: ignore[reportUnknownVariableType]
+            yield from steps_in(each)  # pyright: ignore[reportUnknownArgumentType]
+
+
+def _params(root: Located) -> dict[str, object]:
+    entry = root.mapping().get("params")
+    plain = entry.value.plain() if entry is not None else {}
+    return {**plain} if isinstance(plain, dict) else {}
+
+
+def _blocks(file: Path) -> tuple[Located, dict[str, list[str]]]:
+    """A file, and the lines of each key; those before the first key under an empty name.
 
     Raises:
         SpecError: The file is not YAML, not a mapping, or has two keys in one line.
@@ -54,4 +106,4 @@ def _blocks(file: Path) -> dict[str, list[str]]:
     blocks = {"": lines[: starts[0]]}
     for key, start, end in zip(places, starts, ends, strict=True):
         blocks[key] = lines[start:end]
-    return blocks
+    return root, blocks

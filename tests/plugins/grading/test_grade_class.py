@@ -1,0 +1,196 @@
+"""A class of submissions: each gets its points, and none costs another one anything."""
+
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from harness.cli.main import main
+from harness.plugins.grading.assignment import Limits
+from harness.plugins.grading.classroom.confined import Confinement, descendants
+from tests.plugins.grading.classes import IK, SUBMISSIONS, scenario_class
+
+EXERCISE = "the TCP is at the target"
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory):
+    """A class that hands in scenarios: the folder of its grades."""
+    place = tmp_path_factory.mktemp("class")
+    assignment, submissions = scenario_class(place)
+    words = ["grade-class", str(assignment), str(submissions), "-j", "2"]
+    assert main([*words, "--report-dir", str(place / "grades")]) == 1
+    return place / "grades"
+
+
+def rows(file):
+    return {row["submission"]: row for row in csv.DictReader(file.read_text().splitlines())}
+
+
+def page(graded, name):
+    return (graded / "students" / name / "index.html").read_text()
+
+
+def test_each_submission_gets_its_points(graded):
+    found = {name: float(row["points"]) for name, row in rows(graded / "grades.csv").items()}
+    assert found == {"perfect": 6, "constant": 4, "low": 2, "moves": 0, "broken": 0, "typo": 0}
+
+
+def test_the_table_says_why_points_were_lost(graded):
+    remarks = {name: row["remark"] for name, row in rows(graded / "grades.csv").items()}
+    assert remarks["perfect"] == ""
+    assert remarks["constant"] == f"hidden case 1: {EXERCISE}"
+    assert re.search(r"TCP is off its target by \d+\.\d mm of 5.0 mm", remarks["low"])
+    assert "`inject` changes the scene" in remarks["moves"]
+    assert "cannot be unpacked" in remarks["broken"]
+    assert "typo.scenario.yaml:5:" in remarks["typo"]
+
+
+def test_a_students_page_has_reasons_pictures_and_the_replay(graded):
+    text = page(graded, "low")
+    assert "2 of 6 points" in text
+    assert 'href="run/report.html#' in text
+    assert (graded / "students/low/run/report.html").is_file()
+    assert "data:image/jpeg;base64," in text
+    assert "every point" not in text
+
+
+def test_students_see_margins_of_hidden_cases_and_not_the_cases(graded):
+    texts = [page(graded, name) for name in ("constant", "perfect", "low")]
+    assert all("0.31" not in text and "hidden" not in text.partition("<body>")[2].lower()
+               .replace("hidden cases: margins", "") for text in texts)  # fmt: skip
+    margin = re.search(r'class="number">(-0\.0\d+ m)', page(graded, "constant"))
+    assert margin is not None
+    for file in (graded / "students").rglob("*.yaml"):
+        assert "0.31" not in file.read_text(), file
+    assert (graded / "hidden/constant/1/report.html").is_file()
+    assert not (graded / "hidden/perfect").exists()
+
+
+def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_show(graded):
+    text = (graded / "index.html").read_text()
+    order = [text.index(f">{name} <span") for name in (EXERCISE, "the arm was up")]
+    assert order == sorted(order)
+    assert "the public case passes and a hidden one fails: constant" in text
+    assert "What keeps submissions apart" in text
+
+
+def test_tables_for_other_programs_have_everybody(graded):
+    junit = ET.parse(graded / "junit.xml").getroot()
+    assert {each.get("name") for each in junit.iter("testsuite")} == set(
+        rows(graded / "grades.csv")
+    )
+    for name in ("nbgrader.csv", "moodle.csv", "canvas.csv"):
+        assert "perfect" in (graded / name).read_text()
+
+
+@pytest.mark.nightly(but=["perfect", "cheating"])
+@pytest.mark.parametrize("name", SUBMISSIONS)
+def test_a_function_is_graded_in_a_process_of_its_own(name, tmp_path, monkeypatch):
+    """Perfect, another branch, 17 mm too low, hanging, crashing, and one that writes results."""
+    monkeypatch.setenv("GRADES", str(tmp_path / "grades"))
+    (tmp_path / "ik").mkdir()
+    (tmp_path / "ik/assignment.yaml").write_text(IK)
+    (tmp_path / "all").mkdir()
+    (tmp_path / "all" / f"{name}.py").write_text(SUBMISSIONS[name].text)
+    words = ["grade-class", str(tmp_path / "ik"), str(tmp_path / "all")]
+    code = main([*words, "--report-dir", str(tmp_path / "grades")])
+    row = rows(tmp_path / "grades/grades.csv")[name]
+    expected = SUBMISSIONS[name]
+    assert (code, float(row["points"])) == (int(expected.points < 7), expected.points), row
+    assert expected.remark in row["remark"]
+    assert not [pid for pid in descendants(os.getpid()) if "sleep(1000)" in command_line(pid)]
+
+
+def command_line(pid):
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_text(errors="replace")
+    except OSError:
+        return ""
+
+
+@pytest.mark.parametrize(
+    ("code", "limits", "words"),
+    [
+        ("a = [bytearray(10**7) for _ in range(100)]", {"memory": 300}, "MemoryError"),
+        ("open('a', 'wb').write(bytes(3 * 10**6))", {"files": 2}, "File too large"),
+        ("import time\nfor i in range(9):\n    open(str(i), 'wb').write(bytes(10**6))\n"
+         "time.sleep(60)", {"files": 2}, "MB of files, 2 may be"),
+        ("import subprocess, sys, time\nfor _ in range(5):\n    subprocess.Popen([sys.executable,"
+         " '-c', 'import time; time.sleep(60)'], start_new_session=True)\ntime.sleep(60)",
+         {"processes": 3}, "processes and threads, 3 may be"),
+        ("while True: pass", {"processor_time": 1}, ""),
+    ],
+)  # fmt: skip
+def test_a_program_is_ended_at_its_bounds_with_all_that_it_started(tmp_path, code, limits, words):
+    (tmp_path / "a.py").write_text(code)
+    bounds = Confinement(tmp_path, tmp_path, Limits.model_validate(limits))
+    done = subprocess.run(
+        bounds.command([sys.executable, "a.py"]), capture_output=True, text=True, check=False
+    )
+    assert done.returncode != 0
+    assert words in done.stderr
+    assert not descendants(os.getpid())
+
+
+def test_a_folder_with_other_files_is_not_written_into(tmp_path, capsys):
+    assignment, submissions = scenario_class(tmp_path)
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home/thesis.txt").write_text("x")
+    words = ["grade-class", str(assignment), str(submissions), "--report-dir"]
+    assert main([*words, str(tmp_path / "home")]) == 2
+    assert "has other files" in capsys.readouterr().err
+    assert [file.name for file in (tmp_path / "home").iterdir()] == ["thesis.txt"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("seed: 1", "parametrize: {params.x: [0.3, 0.31]}", "the scenario has several cases"),
+        ("- move_to: up", "- {move_to: up, expect: [{duration: {at_most: 9, points: 2}}]}",
+         "points of a step are lost"),
+        ("points: 1", "points: 0", ""),
+        ("steps:", "stepps:", "steps"),
+    ],
+)  # fmt: skip
+def test_an_assignment_that_cannot_grade_is_refused_before_anything_runs(
+    tmp_path, capsys, old, new, words
+):
+    assignment, submissions = scenario_class(tmp_path)
+    file = assignment / "reach.scenario.yaml"
+    text = file.read_text().replace(old, new)
+    file.write_text(text.replace("points: 2", "points: 0") if not words else text)
+    code = main(
+        ["grade-class", str(assignment), str(submissions), "--report-dir", str(tmp_path / "g")]
+    )
+    assert code == 2
+    assert (words or "no expectation of the file has points") in capsys.readouterr().err
+    assert not (tmp_path / "g").exists()
+
+
+def test_results_for_a_grading_system_are_of_one_submission(tmp_path, capsys):
+    assignment, submissions = scenario_class(tmp_path)
+    shutil.rmtree(assignment.parent / "submissions")
+    words = ["grade-class", str(assignment), str(submissions), "--gradescope", "r.json"]
+    assert main(words) == 2
+    assert "add --one" in capsys.readouterr().err
+    assert main([*words, "--one"]) == 2
+    assert "no such file or folder" in capsys.readouterr().err
+
+
+def test_a_damaged_submission_alone_still_writes_results(tmp_path):
+    assignment, _ = scenario_class(tmp_path)
+    (tmp_path / "submission").mkdir()
+    file = tmp_path / "results/results.json"
+    words = ["grade-class", str(assignment), str(tmp_path / "submission"), "--one"]
+    words += ["--report-dir", str(tmp_path / "grades"), "--gradescope", str(file)]
+    assert main(words) == 0
+    document = json.loads(file.read_text())
+    assert (document["score"], document["output"]) == (0, "it lacks a .scenario.yaml")
