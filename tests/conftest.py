@@ -1,5 +1,6 @@
 """Fixtures and plugins for every test."""
 
+import gc
 import os
 import signal
 import sys
@@ -29,6 +30,20 @@ settings.load_profile("tests")
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 """Hundreds of tests start a process: each would compile the package again, half a second long."""
+
+
+gc.disable()
+
+
+def pytest_collection_finish():
+    """Let the collector leave out what libraries and tests are made of, which stays to the end."""
+    gc.freeze()
+    gc.enable()
+
+
+def pytest_sessionfinish():
+    """Let native libraries find all their objects freed, or they print which are not."""
+    gc.unfreeze()
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -9,6 +9,11 @@ def pytest_configure(config):
     config.stash[TABLES] = {}
 
 
+def pytest_ignore_collect(config):
+    """Import no benchmark that the expression of `-m` leaves out."""
+    return True if "not benchmark" in config.option.markexpr else None
+
+
 @pytest.fixture
 def print_row(request):
     """Puts a row under a table's heading: `print_row("heading", "name", "1.0 s", ...)`."""
