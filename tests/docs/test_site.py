@@ -37,19 +37,32 @@ class Page(HTMLParser):
                 self.requested.append(value)
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("site") / "html"
-    command = "-m sphinx -q -W --keep-going -b html -c docs ."
+def built(folder, options):
+    """A site in a folder, and what Sphinx printed."""
     done = subprocess.run(
-        [sys.executable, *command.split(), str(folder)],
+        [sys.executable, *f"-m sphinx -q -b html -c docs {options} .".split(), str(folder)],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=False,
     )
-    assert (done.returncode, done.stderr) == (0, "")
+    assert done.returncode == 0, done.stderr
+    return folder, done.stderr
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder, warnings = built(tmp_path_factory.mktemp("site") / "html", "-W --keep-going")
+    assert warnings == ""
     return folder
+
+
+@pytest.fixture(scope="module")
+def page_of_packages(tmp_path_factory):
+    """A site of one page, without those that it links to."""
+    page = "docs/reference/api"
+    options = f"-D root_doc={page} -D include_patterns={page}.md"
+    return built(tmp_path_factory.mktemp("page") / "html", options)[0]
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +70,7 @@ def pages(site):
     return {path: Page(path) for path in site.rglob("*.html")}
 
 
+@pytest.mark.nightly
 def test_every_page_of_the_documentation_is_on_the_site(site, pages):
     named = {path.relative_to(ROOT).with_suffix(".html") for path in (ROOT / "docs").rglob("*.md")}
     assert named <= {path.relative_to(site) for path in pages}
@@ -64,6 +78,7 @@ def test_every_page_of_the_documentation_is_on_the_site(site, pages):
     assert all(f"({path.as_posix()})" in listed for path in named)
 
 
+@pytest.mark.nightly
 def test_every_link_and_anchor_of_the_site_exists(site, pages):
     broken = []
     for path, page in pages.items():
@@ -81,7 +96,11 @@ def test_every_link_and_anchor_of_the_site_exists(site, pages):
     assert broken == []
 
 
-def test_the_site_requests_nothing_from_other_hosts(site, pages):
+@pytest.mark.nightly(but=["page_of_packages"])
+@pytest.mark.parametrize("name", ["site", "page_of_packages"])
+def test_the_site_requests_nothing_from_other_hosts(name, request):
+    site = request.getfixturevalue(name)
+    pages = {path: Page(path) for path in site.rglob("*.html")}
     requested = [link for page in pages.values() for link in page.requested]
     assert [link for link in requested if urlsplit(link).netloc] == []
     code = [path for kind in ("*.css", "*.js") for path in site.rglob(kind)]
@@ -92,7 +111,7 @@ def test_the_site_requests_nothing_from_other_hosts(site, pages):
         assert not re.search(loads, text), path
 
 
-def test_the_interface_of_packages_has_its_signatures(site):
-    text = (site / "docs/reference/api.html").read_text(encoding="utf-8")
+def test_the_interface_of_packages_has_its_signatures(page_of_packages):
+    text = (page_of_packages / "docs/reference/api.html").read_text(encoding="utf-8")
     for name in ("harness.run", "harness.expectations.Predicate", "harness.ports.PathPlanner"):
         assert f'id="{name}"' in text

@@ -2,6 +2,8 @@
 
 # pyright: reportAttributeAccessIssue=false
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -10,37 +12,41 @@ from harness.planning.timing.timing import BlendedPath
 from harness.planning.timing.toppra_passes import HalfPlanes, squared_rates
 from harness.planning.timing.toppra_solver import Bounds, fastest, joint_bounds
 
-toppra = pytest.importorskip("toppra", reason="it has no wheel for this platform")
 
+@cache
+def library():
+    """The library, which imports matplotlib, and its inputs as classes of a path and of bounds."""
+    toppra = pytest.importorskip("toppra", reason="it has no wheel for this platform")
 
-class Geometry(toppra.interpolator.AbstractGeometricPath):
-    dof, path_interval, waypoints = 0, None, None
+    class Geometry(toppra.interpolator.AbstractGeometricPath):
+        dof, path_interval, waypoints = 0, None, None
 
-    def __init__(self, path, dof):
-        self.path, self.dof, self.path_interval = path, dof, np.array([0.0, path.length])
+        def __init__(self, path, dof):
+            self.path, self.dof, self.path_interval = path, dof, np.array([0.0, path.length])
 
-    def __call__(self, parameters, order=0):
-        return self.path.evaluate(parameters)[order]
+        def __call__(self, parameters, order=0):
+            return self.path.evaluate(parameters)[order]
 
+    class Known(toppra.constraint.LinearConstraint):
+        """The bounds as the library takes them."""
 
-class Known(toppra.constraint.LinearConstraint):
-    """The bounds as the library takes them."""
+        def __init__(self, bounds, grid):
+            super().__init__()
+            self.identical = True
+            kinds = len(bounds.most)
+            sides = np.vstack([np.eye(kinds), -np.eye(kinds)])
+            rows = bounds.speeds, bounds.bends, bounds.offsets, sides, np.tile(bounds.most, 2)
+            if bounds.between:
+                scheme = toppra.constraint.linear_constraint.canlinear_colloc_to_interpolate
+                rows = scheme(*rows, None, None, grid, identical=True)[:5]
+            rates = bounds.rate_squared
+            limits = None if rates is None else np.column_stack([np.zeros_like(rates), rates])
+            self.parameters = (*rows, None, limits)
 
-    def __init__(self, bounds, grid):
-        super().__init__()
-        self.identical = True
-        kinds = len(bounds.most)
-        sides = np.vstack([np.eye(kinds), -np.eye(kinds)])
-        rows = bounds.speeds, bounds.bends, bounds.offsets, sides, np.tile(bounds.most, 2)
-        if bounds.between:
-            scheme = toppra.constraint.linear_constraint.canlinear_colloc_to_interpolate
-            rows = scheme(*rows, None, None, grid, identical=True)[:5]
-        rates = bounds.rate_squared
-        limits = None if rates is None else np.column_stack([np.zeros_like(rates), rates])
-        self.parameters = (*rows, None, limits)
+        def compute_constraint_params(self, *_):
+            return self.parameters
 
-    def compute_constraint_params(self, *_):
-        return self.parameters
+    return toppra, Geometry, Known
 
 
 def drawn(seed):
@@ -75,10 +81,11 @@ def duration(squares, grid):
 
 
 def agree(seeds):
+    toppra, geometry_of, bounds_of = library()
     for seed in seeds:
         path, bounds, grid = drawn_bounds(seed)
-        known = [Known(each, grid) for each in bounds]
-        geometry = Geometry(path, len(path.ends[0]))
+        known = [bounds_of(each, grid) for each in bounds]
+        geometry = geometry_of(path, len(path.ends[0]))
         solver = toppra.algorithm.TOPPRA(known, geometry, gridpoints=grid, solver_wrapper="seidel")
         _, reference, _ = solver.compute_parameterization(0, 0)
         found = squared_rates(bounds, grid)

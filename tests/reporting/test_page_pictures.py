@@ -159,6 +159,7 @@ def blue_cube(**changes):
     return make_run(objects=(table, cube), contact_forces=touching, **changes)
 
 
+@pytest.mark.nightly(but=["False-Table", "True-left_finger"])
 @pytest.mark.parametrize("other", ["Table", "left_finger"])
 @pytest.mark.parametrize("is_collision", [False, True])
 def test_only_bodies_that_collide_change_their_colour(other, is_collision, visit, tmp_path):

@@ -103,6 +103,7 @@ def test_an_installed_package_finds_robots_worlds_and_scenarios(harness):
     assert "lessons/03_ur_sixteen_steps" in names(harness("list", "scenarios"))
 
 
+@pytest.mark.nightly
 def test_an_installed_package_runs_a_bundled_lesson_by_its_name(harness, tmp_path):
     done = harness("run", "lessons/04_gripper_alone", "--json")
     document = json.loads(done.stdout)

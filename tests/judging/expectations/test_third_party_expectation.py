@@ -141,7 +141,8 @@ def test_it_is_judged_reported_and_judged_again(site, scenario, tmp_path):
     failing = tmp_path / "failing.scenario.yaml"
     failing.write_text(FAILING, encoding="utf-8")
     folder = tmp_path / "reports"
-    ((code, said),) = harness(("run", scenario, failing, "--report-dir", folder), site=site)
+    command = ("run", scenario, failing, "--report-dir", folder, "--in-process")
+    ((code, said),) = harness(command, site=site)
     assert code == 1, said
     assert "tcp_height, at least 5.0 m" in said
     (record,) = folder.rglob("failing*/**/run.json")
