@@ -19,6 +19,7 @@ class ExternalRequest:
         until: The expectation (`harness.judging.expectation.Expectation`) whose passing ends
             it; None: it ends with the launched program.
         launch: Name of the command that is started; empty for none.
+        cell: The robot cell (`harness.cell.cell.Cell`), whose planning scene programs may change.
     """
 
     step: str
@@ -26,6 +27,7 @@ class ExternalRequest:
     timeout: float
     until: object | None = None
     launch: str = ""
+    cell: object | None = None
 
 
 @dataclass(frozen=True)

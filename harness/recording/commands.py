@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-CommandKind = Literal["trajectory", "gripper", "cancel", "end"]
+CommandKind = Literal["trajectory", "gripper", "cancel", "scene", "plan", "end"]
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,8 @@ class CommandRecord:
     Attributes:
         sample: Index of the physics sample after which it took effect; this orders a replay.
         time: Simulated time of that sample [s].
-        kind: What it is; `end` is the end of a launched program or of the session.
+        kind: What it is; `scene` changes the planning scene, `plan` is a request to plan and has no
+            effect, `end` is the end of a launched program or of the session.
         controller: The controller that it addresses, such as `arm_controller`.
         goal: The goal's identifier in hex; empty for what came on a topic.
         content: The values of the message.

@@ -79,7 +79,7 @@ class External(Step):
             return
         timeout, step = self.timeout or DEFAULT_TIMEOUT, cell.current
         begin = cell.simulator.time
-        request = ExternalRequest(step.id, step.line, timeout, self.until, self.launch or "")
+        request = ExternalRequest(step.id, step.line, timeout, self.until, self.launch or "", cell)
         result = cell.external.hand_over(request)
         cell.report(result)
         if self.until is None or result.ended_by == "until":

@@ -10,11 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from harness.cell.cell import Cell
 from harness.core.errors import HarnessError
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.language.expectation import ExpectationFields
 from harness.plugins.ros.control.cell import ExternalCell
+from harness.plugins.ros.moveit.client_scene import ClientScene
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.read_run import read_run
@@ -44,6 +46,7 @@ class HandOver(ABC):
         self.prepared, self.simulator = prepared, simulator
         self.cell = ExternalCell(simulator, prepared.program.controllers)
         self.robot = prepared.program.description
+        self.scene: ClientScene | None = None
 
     @property
     def commands(self) -> tuple[CommandRecord, ...]:
@@ -67,6 +70,9 @@ class HandOver(ABC):
         cell, simulator = self.cell, self.simulator
         begin, first, before = simulator.time, simulator.sample_count - 1, len(cell.commands)
         cell.begin()
+        if self.scene is None and isinstance(request.cell, Cell):
+            self.scene = ClientScene(request.cell)
+            cell.change_scene = self.scene.apply
         look_at, ended_at, ended_by = LOOK_EVERY, np.inf, ""
         while not ended_by:
             self.feed()

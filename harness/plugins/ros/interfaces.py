@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from rosbags.typesys import get_types_from_msg
 from harness.reporting.rosbag.messages import TYPESTORE, message, time_message
 
 DEFINITIONS = Path(__file__).with_name("definitions")
-"""Field lists of control_msgs (BSD-3-Clause) and action_msgs (Apache-2.0) that rosbags lacks."""
+"""Field lists of control_msgs (BSD-3-Clause), action_msgs (Apache-2.0) and others, which rosbags
+lacks: facts of the packages that publish them."""
 
 PARTS = {
     ".msg": ("",),
@@ -30,6 +32,10 @@ COMMAND = "control_msgs/msg/GripperCommand"
 UUID = "unique_identifier_msgs/msg/UUID"
 
 
+MOVE = "moveit_msgs/action/MoveGroup"
+EXECUTE = "moveit_msgs/action/ExecuteTrajectory"
+
+
 def _definitions() -> Iterator[tuple[str, str]]:
     """The field lists of messages by their types, those of the services of actions included."""
     for file in DEFINITIONS.glob("*/*/*.*"):
@@ -37,16 +43,43 @@ def _definitions() -> Iterator[tuple[str, str]]:
         for part, fields in zip(PARTS[file.suffix], file.read_text().split("---\n"), strict=True):
             yield kind + part, fields
     for action in (FOLLOW, GRIPPER):
-        yield f"{action}_SendGoal_Request", f"{UUID} goal_id\n{action}_Goal goal"
-        yield f"{action}_SendGoal_Response", "bool accepted\nbuiltin_interfaces/msg/Time stamp"
-        yield f"{action}_GetResult_Request", f"{UUID} goal_id"
-        yield f"{action}_GetResult_Response", f"int8 status\n{action}_Result result"
-        yield f"{action}_FeedbackMessage", f"{UUID} goal_id\n{action}_Feedback feedback"
+        yield from _of_action(action)
 
 
-for _kind, _fields in _definitions():
-    [_parsed] = get_types_from_msg(_fields, _kind).values()
-    TYPESTORE.register({_kind: _parsed})  # by its own name: rosbags has no folder `srv`
+def _of_action(action: str) -> Iterator[tuple[str, str]]:
+    """The field lists of the services and the feedback topic that an action is made of."""
+    yield f"{action}_SendGoal_Request", f"{UUID} goal_id\n{action}_Goal goal"
+    yield f"{action}_SendGoal_Response", "bool accepted\nbuiltin_interfaces/msg/Time stamp"
+    yield f"{action}_GetResult_Request", f"{UUID} goal_id"
+    yield f"{action}_GetResult_Response", f"int8 status\n{action}_Result result"
+    yield f"{action}_FeedbackMessage", f"{UUID} goal_id\n{action}_Feedback feedback"
+
+
+def _table() -> Iterator[tuple[str, str]]:
+    """The field lists of the interfaces of MoveIt and of the controller manager."""
+    for line in (DEFINITIONS / "interfaces.txt").read_text().splitlines():
+        kind, _, text = line.partition(": ")
+        if not line.startswith("#"):
+            parts = PARTS[f".{kind.split('/')[1]}"]
+            for part, fields in zip(parts, text.split(" --- "), strict=True):
+                yield kind + part, fields.replace("; ", "\n")
+    for action in (MOVE, EXECUTE):
+        yield from _of_action(action)
+
+
+def _register(definitions: Iterator[tuple[str, str]]) -> None:
+    for kind, fields in definitions:
+        [parsed] = get_types_from_msg(fields, kind).values()
+        TYPESTORE.register({kind: parsed})  # by its own name: rosbags has no folder `srv`
+
+
+_register(_definitions())
+
+
+@cache
+def register_move_group() -> None:
+    """Make the types of MoveIt and of the controller manager known, which takes 0.2 s."""
+    _register(_table())
 
 
 def encoded(content: Any, kind: str) -> bytes:

@@ -14,6 +14,7 @@ from harness.core.printable import counted
 from harness.plugins.ros.camera_topics import CameraTopics
 from harness.plugins.ros.handover import HandOver
 from harness.plugins.ros.launch import Program, start_program
+from harness.plugins.ros.moveit.server import MoveGroup
 from harness.plugins.ros.names import mismatched, unserved
 from harness.plugins.ros.pacing import Pace
 from harness.plugins.ros.rtps.graph import Graph
@@ -121,6 +122,9 @@ class LiveControl(HandOver):
         cameras = camera_edges(tuple(program.cameras.values()), self.robot, objects)
         self._states = StateTopics(graph, self.robot, cameras)
         self._wiring = Wiring(graph, self.cell, self._note)
+        self._move_group = MoveGroup(graph, self.cell, self._note, self._explain)
+        finish = self.cell.on_outcome
+        self.cell.on_outcome = lambda outcome: (finish(outcome), self._move_group.finish(outcome))
         self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None
         self._noted: set[str] = set()
@@ -139,6 +143,7 @@ class LiveControl(HandOver):
             return result
         finally:
             self._wiring.is_open = False
+            self._move_group.end()
             self._cameras.close()
             if self._program is not None:
                 self._program.stop()
@@ -167,7 +172,10 @@ class LiveControl(HandOver):
 
     def feed(self) -> None:
         """Receive until the next tick is due."""
+        if self.scene is not None and not self._move_group.is_open:
+            self._move_group.begin(self.scene)
         self._graph.spin(self._pace.next())
+        self._pace.pause(self._move_group.work())
         self._pace.tick()
         if self._pace.ticks % LOOK_EVERY == 0:
             self._look_at_names()
@@ -205,6 +213,9 @@ class LiveControl(HandOver):
         if record.answer != "accepted":
             what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
             self._say_once(record.answer, what)
+
+    def _explain(self, sentence: str) -> None:
+        self._say_once(sentence, sentence)
 
     def _say_once(self, key: str, note: str) -> None:
         if key not in self._noted and len(self._noted) < MOST_NOTES:

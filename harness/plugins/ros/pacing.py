@@ -53,6 +53,11 @@ class Pace:
             self.lost += lag
             self._due += lag
 
+    def pause(self, seconds: float) -> None:
+        """Leave out wall time in which simulated time stood still on purpose."""
+        self._due += seconds
+        self._begin += seconds
+
     def command(self) -> None:
         """A command arrived."""
         self.late_commands += time.monotonic() - self._due > LATE

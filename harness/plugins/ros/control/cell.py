@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from harness.cell.controllers import ControllerNames
+from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.plugins.ros.control.controller import Controller, Outcome, Rows, Window
 from harness.plugins.ros.control.goals import Code, GoalRefused
@@ -36,13 +37,15 @@ class ExternalCell:
         end: The end of the launched program or of the session, since `begin`.
         on_outcome: Called with each goal that ended.
         controllers: The controllers, by each of their names.
+        change_scene: Changes the planning scene; raises StepFailed where it cannot.
     """
 
     def __init__(self, servos: MujocoSimulator, names: ControllerNames) -> None:
         self._servos = servos
         self.description = description = servos.description
         self.commands: list[CommandRecord] = []
-        self.on_outcome: Callable[[Outcome], None] = lambda _: None
+        self.on_outcome: Callable[[Outcome], object] = lambda _: None
+        self.change_scene: Callable[[Sequence[dict[str, Any]]], None] = lambda _: None
         self._rows = max(1, round(TICK / servos.timestep))
         self.controllers: dict[str, Controller] = {}
         if names.arm:
@@ -92,8 +95,12 @@ class ExternalCell:
                 self._cancel(goal)
             elif kind == "end":
                 self.end = record
-            else:
+            elif kind == "scene":
+                self.change_scene(content["changes"])
+            elif kind != "plan":
                 self._begin(self.controllers[controller], record)
+        except StepFailed as failure:  # of a change of the planning scene
+            record = replace(record, answer=str(failure))
         except GoalRefused as refused:
             record = replace(record, answer=str(refused))
             if kind == "trajectory" and goal:

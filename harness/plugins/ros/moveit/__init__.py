@@ -1,0 +1,1 @@
+"""MoveIt's interface, served for the arm of a scenario: requests, planning scene, answers."""

@@ -1,0 +1,216 @@
+"""The objects and allowed collisions that clients put into the planning scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from harness.cell.cell import Cell
+from harness.core.errors import StepFailed
+from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
+from harness.core.spatial import SE3
+from harness.core.world import WorldObject
+from harness.plugins.ros.interfaces import header
+from harness.plugins.ros.moveit.goals import BOX, SPHERE
+from harness.plugins.ros.moveit.scene_changes import CYLINDER, Change
+from harness.plugins.ros.moveit.values import state_message
+from harness.reporting.rosbag.messages import message, pose_message
+
+GEOMETRIES: Mapping[str, Callable[[Sequence[float]], Geometry]] = {
+    "box": lambda size: Box((size[0], size[1], size[2])),
+    "sphere": lambda size: Sphere(size[0]),
+    "cylinder": lambda size: Cylinder(radius=size[1], length=size[0]),
+}
+
+
+class ClientScene:
+    """Changes the planning scene as MoveIt does.
+
+    An object that a client adds is in the planning scene alone. One of the scenario is where the
+    physics has it: it can be attached, detached and taken out of the planning scene, not moved.
+    """
+
+    def __init__(self, cell: Cell) -> None:
+        self.cell = cell
+        self._allowed: set[tuple[str, str]] = set()
+
+    def apply(self, changes: Sequence[Change]) -> None:
+        """Apply changes in order; those before a mistake stay.
+
+        Raises:
+            StepFailed: INVALID_OBJECT_NAME, INVALID_LINK_NAME ...
+        """
+        self.cell.sync_scene()
+        for change in changes:
+            getattr(self, f"_{change['change']}")(change)
+
+    def _add(self, change: Change) -> None:
+        name, cell = change["name"], self.cell
+        if name in cell.description.link_names:
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is the name of a link")
+        if self._is_physical(name):
+            if name not in cell.scene.object_names():
+                cell.scene.add_object(cell.presence[name].obj, cell.measured_pose(name))
+            return
+        known = cell.presence.get(name)
+        if known is not None and known.is_there:
+            if name in cell.scene.attached():
+                cell.detach(name)
+            cell.remove_from_scene(name)
+        shapes = tuple(
+            Shape(GEOMETRIES[each["kind"]](each["size"]), _pose(each)) for each in change["shapes"]
+        )
+        pose = _pose(change)
+        obj = WorldObject(
+            name, shapes, pose, is_static=False, mass=0.0, center_of_mass=np.zeros(3),
+            inertia=np.zeros((3, 3)), in_simulation=False,
+        )  # fmt: skip
+        if known is not None:
+            known.obj = obj
+        cell.add_to_scene(obj, pose)
+
+    def _append(self, change: Change) -> None:
+        presence = self.cell.presence.get(change["name"])
+        if presence is None or not presence.is_there or presence.obj.in_simulation:
+            self._add(change)
+            return
+        back = presence.pose.inverse() @ _pose(change)
+        added = [{**each, "pose": (back @ _pose(each)).as_vector()} for each in change["shapes"]]
+        kinds = {Box: "box", Sphere: "sphere", Cylinder: "cylinder"}
+        old = [
+            {"kind": kinds[type(shape.geometry)], "size": _size(shape.geometry),
+             "pose": shape.pose.as_vector()}
+            for shape in presence.obj.shapes
+        ]  # fmt: skip
+        self._add({**change, "pose": presence.pose.as_vector(), "shapes": [*old, *added]})
+
+    def _move(self, change: Change) -> None:
+        if not self._is_physical(change["name"]):
+            self.cell.move_in_scene(change["name"], _pose(change))
+
+    def _remove(self, change: Change) -> None:
+        scene = self.cell.scene
+        for name in [change["name"]] if change["name"] else self._of_clients():
+            if name in scene.attached():
+                raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached: detach it first")
+            if name not in scene.object_names():
+                raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not in the planning scene")
+            if self._is_physical(name):
+                scene.remove_object(name)
+            else:
+                self.cell.remove_from_scene(name)
+
+    def _attach(self, change: Change) -> None:
+        cell, hand = self.cell, self.cell.description.gripper
+        link = change["link"] or cell.description.tcp_link
+        touch = change["touch_links"] or (hand.links if hand else ())
+        if unknown := {link, *touch} - {*cell.description.link_names}:
+            raise StepFailed("INVALID_LINK_NAME", f"the robot has no link '{min(unknown)[:80]}'")
+        cell.attach(change["name"], link, touch)
+
+    def _detach(self, change: Change) -> None:
+        attached = self.cell.scene.attached()
+        every = [name for name, link in attached.items() if change["link"] in ("", link)]
+        for name in [change["name"]] if change["name"] else every:
+            self.cell.detach(name)
+
+    def _allow(self, change: Change) -> None:
+        scene = self.cell.scene
+        known = {*self.cell.description.link_names, *scene.object_names()}
+        pairs = {(min(pair), max(pair)) for pair in change["pairs"] if known.issuperset(pair)}
+        pairs -= {*self.cell.description.allowed_collisions}
+        scene.set_allowed(sorted(self._allowed - pairs), allowed=False)
+        scene.set_allowed(sorted(pairs - self._allowed), allowed=True)
+        self._allowed = pairs
+
+    def _is_physical(self, name: str) -> bool:
+        presence = self.cell.presence.get(name)
+        return presence is not None and presence.is_there and presence.obj.in_simulation
+
+    def _of_clients(self) -> list[str]:
+        scene = self.cell.scene
+        free = [name for name in scene.object_names() if name not in scene.attached()]
+        return [name for name in free if not self._is_physical(name)]
+
+    def as_message(self) -> Any:
+        """The planning scene as a PlanningScene message."""
+        cell, scene = self.cell, self.cell.scene
+        cell.sync_scene()
+        start, attached = cell.planning_start(), scene.attached()
+        bodies = [
+            message(
+                "moveit_msgs/msg/AttachedCollisionObject",
+                link_name=link,
+                object=self._object(name, scene.object_pose(name, start)),
+            )
+            for name, link in attached.items()
+        ]
+        objects = [
+            self._object(name, scene.object_pose(name, start))
+            for name in scene.object_names()
+            if name not in attached
+        ]
+        return message(
+            "moveit_msgs/msg/PlanningScene",
+            name="(noname)",
+            robot_model_name=cell.description.name,
+            robot_state=state_message(cell, start, attached_collision_objects=bodies),
+            allowed_collision_matrix=self._matrix(),
+            world=message("moveit_msgs/msg/PlanningSceneWorld", collision_objects=objects),
+        )
+
+    def _object(self, name: str, pose: SE3) -> Any:
+        """A CollisionObject; shapes that have no primitive, such as meshes, are left out."""
+        shapes = self.cell.presence[name].obj.shapes
+        known = [(shape, each) for shape in shapes if (each := _primitive(shape.geometry))]
+        return message(
+            "moveit_msgs/msg/CollisionObject",
+            header=header(self.cell.simulator.time, "world"),
+            id=name,
+            pose=pose_message(list(pose.as_vector())),
+            primitives=[each for _, each in known],
+            primitive_poses=[pose_message(list(shape.pose.as_vector())) for shape, _ in known],
+        )
+
+    def _matrix(self) -> Any:
+        names = [*self.cell.description.link_names, *self.cell.scene.object_names()]
+        allowed = {*self.cell.description.allowed_collisions, *self._allowed}
+        pairs = {pair for each in allowed for pair in (each, each[::-1])}
+        rows = [
+            message(
+                "moveit_msgs/msg/AllowedCollisionEntry",
+                enabled=np.array([(first, second) in pairs for second in names]),
+            )
+            for first in names
+        ]
+        kind = "moveit_msgs/msg/AllowedCollisionMatrix"
+        return message(kind, entry_names=names, entry_values=rows)
+
+
+def _pose(values: Change) -> SE3:
+    return SE3.from_vector(values["pose"]) if "pose" in values else SE3.identity()
+
+
+def _size(geometry: Geometry) -> list[float]:
+    match geometry:
+        case Box(size):
+            return [*size]
+        case Sphere(radius):
+            return [radius]
+        case Cylinder(radius, length):
+            return [length, radius]
+        case _:
+            return []
+
+
+def _primitive(geometry: Geometry) -> Any:
+    """The SolidPrimitive of a geometry; None where there is none."""
+    kinds = {Box: BOX, Sphere: SPHERE, Cylinder: CYLINDER}
+    if isinstance(geometry, Capsule):  # MoveIt has none; the cylinder around it
+        geometry = Cylinder(geometry.radius, geometry.length + 2 * geometry.radius)
+    if type(geometry) not in kinds:
+        return None
+    kind, sizes = kinds[type(geometry)], np.array(_size(geometry))
+    return message("shape_msgs/msg/SolidPrimitive", type=kind, dimensions=sizes)

@@ -1,0 +1,197 @@
+"""Plans what MoveIt's requests describe, with the program's own planner."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from harness.cell.cell import Cell
+from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.registry import registry
+from harness.core.types import FloatArray
+from harness.plugins.ros.moveit.goals import arc_point_of, goal_of, path_constraints_of
+from harness.plugins.ros.moveit.values import frame_of, link_of, pose_of, positions_of
+from harness.ports.goals import AnyGoal, JointGoal, PoseGoal
+from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOptions
+from harness.ports.motions import (
+    CartesianPathOptions,
+    CircularMotion,
+    FreeMotion,
+    JointMotion,
+    JumpThreshold,
+    LinearMotion,
+    PlannedMotion,
+    WaypointMotion,
+)
+from harness.recording.step_results import CartesianPathResult
+
+PILZ = "pilz_industrial_motion_planner"
+PLANNERS = {
+    "ompl": ("RRTConnectkConfigDefault", "RRTConnect"),
+    PILZ: ("PTP", "LIN", "CIRC"),
+}
+"""The pipelines that requests may name, and planners of each."""
+
+MOST_ATTEMPTS = 10
+"""Plans that are tried for one request; a client that names more waits no longer."""
+
+PRECISION = 1e-3
+"""How far a Cartesian path may leave its lines [m]: MoveIt names none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A plan, the joint positions that it starts from, and its group."""
+
+    plan: MotionPlan
+    start: FloatArray
+    group: str
+
+
+def plan_motion(cell: Cell, request: Any) -> Planned:
+    """Plan a MotionPlanRequest.
+
+    Raises:
+        StepFailed: With MoveIt's code: there is no such motion, or the request cannot be read.
+    """
+    cell.sync_scene()
+    group = group_of(cell, request.group_name)
+    if request.trajectory_constraints.constraints or request.reference_trajectories:
+        reason = "trajectory constraints and reference trajectories are not kept"
+        raise StepFailed("FAILURE", reason)
+    start = positions_of(cell, request.start_state)
+    attempts = min(max(1, int(request.num_planning_attempts)), MOST_ATTEMPTS)
+    options = replace(_scaled(cell, request), attempts=attempts)
+    pipeline = str(request.pipeline_id) or "ompl"
+    if pipeline not in PLANNERS:
+        known = ", ".join(PLANNERS)
+        raise StepFailed("FAILURE", f"there is no pipeline '{pipeline[:80]}'; pipelines: {known}")
+    motion = _motion(cell, request, group, start)
+    if pipeline == "ompl":
+        name = "auto" if unknown_planner(request) else str(request.planner_id) or "auto"
+        options = replace(options, pipeline="ompl", planner_id=name)
+    plan = cell.planner.plan(MotionRequest(group, start, motion, options))
+    return Planned(plan, start, group)
+
+
+def unknown_planner(request: Any) -> str:
+    """Why OMPL has no planner of the request's name, for a note; empty where it has.
+
+    The default plans then, as with MoveIt.
+    """
+    name = str(request.planner_id)
+    if name and str(request.pipeline_id) in ("", "ompl"):
+        try:
+            registry("planner")["ompl"].check(name, {})
+        except ValueError as error:
+            return str(error)
+    return ""
+
+
+def _motion(cell: Cell, request: Any, group: str, start: FloatArray) -> PlannedMotion:
+    goal = goal_of(cell, group, request.goal_constraints)
+    if str(request.pipeline_id) != PILZ:
+        return FreeMotion(goal, path_constraints_of(cell, request.path_constraints))
+    planner = str(request.planner_id)
+    if planner not in PLANNERS[PILZ]:
+        raise StepFailed("FAILURE", f"Pilz has no planner '{planner[:80]}', but PTP, LIN and CIRC")
+    if isinstance(goal, AnyGoal):
+        raise StepFailed("INVALID_GOAL_CONSTRAINTS", "Pilz takes one goal")
+    if planner == "LIN":
+        return LinearMotion(goal)
+    if planner == "CIRC":
+        return CircularMotion(goal, arc_point_of(cell, request.path_constraints))
+    if isinstance(goal, JointGoal):
+        return JointMotion(goal.positions)
+    solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
+    if not solutions:
+        raise PlanningFailed("NO_IK_SOLUTION", "no joint positions reach the goal")
+    return JointMotion(solutions[0])
+
+
+def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float]:
+    """Plan a GetCartesianPath request.
+
+    Returns:
+        The plan, None where no part of the path can be followed, and the fraction that it follows.
+
+    Raises:
+        StepFailed: The request cannot be read.
+    """
+    cell.sync_scene()
+    group = group_of(cell, request.group_name)
+    link = link_of(cell, request.link_name)
+    if path_constraints_of(cell, request.path_constraints):
+        raise StepFailed("FAILURE", "path constraints of a Cartesian path are not kept")
+    if not request.waypoints or not 1e-4 <= request.max_step < np.inf:
+        raise StepFailed("FAILURE", "a Cartesian path needs waypoints and a max_step from 0.0001 m")
+    frame = frame_of(cell, str(request.header.frame_id))
+    goals = [PoseGoal(link, frame @ pose_of(each)) for each in request.waypoints]
+    jump = JumpThreshold(
+        _threshold(request.revolute_jump_threshold, 0.5),
+        _threshold(request.prismatic_jump_threshold, 0.1),
+    )
+    path = CartesianPathOptions(float(request.max_step), PRECISION, 0.0, jump)
+    start = positions_of(cell, request.start_state)
+    motion = WaypointMotion(goals, path)
+    try:
+        plan = cell.planner.plan(MotionRequest(group, start, motion, _scaled(cell, request)))
+    except PlanningFailed as failure:
+        followed = failure.details.find(CartesianPathResult)
+        if followed is None:
+            raise
+        return None, followed.fraction
+    followed = plan.result.find(CartesianPathResult)
+    return Planned(plan, start, group), followed.fraction if followed else 1.0
+
+
+def solve_pose(cell: Cell, request: Any) -> FloatArray:
+    """Solve a PositionIKRequest; the joint positions in description order.
+
+    Raises:
+        StepFailed: With MoveIt's code.
+    """
+    cell.sync_scene()
+    group, description = group_of(cell, request.group_name), cell.description
+    if request.ik_link_names or request.pose_stamped_vector:
+        raise StepFailed("FAILURE", "one link and one pose are solved")
+    stamped, link = request.pose_stamped, link_of(cell, request.ik_link_name)
+    pose = frame_of(cell, str(stamped.header.frame_id)) @ pose_of(stamped.pose)
+    seed, options = positions_of(cell, request.robot_state), cell.current.options
+    columns = [description.joint_index[name] for name in description.groups[group].joint_names]
+    solutions = cell.kinematics.solve(group, PoseGoal(link, pose), seed, options.seed)
+    for solution in solutions:
+        row = seed.copy()
+        row[columns] = solution
+        row = description.with_mimics(row)
+        if not (request.avoid_collisions and cell.scene.touches(row, options.padding)):
+            return row
+    how = f"; {len(solutions)} solutions collide" if solutions else ""
+    raise StepFailed("NO_IK_SOLUTION", f"no joint positions reach the pose{how}")
+
+
+def group_of(cell: Cell, name: str) -> str:
+    """A planning group by its name; an empty one is the arm's.
+
+    Raises:
+        StepFailed: INVALID_GROUP_NAME.
+    """
+    group, groups = str(name) or cell.description.default_group, cell.description.groups
+    if group not in groups:
+        reason = f"there is no group '{group[:80]}'; groups: {', '.join(groups)}"
+        raise StepFailed("INVALID_GROUP_NAME", reason)
+    return group
+
+
+def _scaled(cell: Cell, request: Any) -> PlanningOptions:
+    """The step's options with the scaling factors of a request; 0 and what exceeds 1 is 1."""
+    factors = request.max_velocity_scaling_factor, request.max_acceleration_scaling_factor
+    velocity, acceleration = (float(each) if 0 < each <= 1 else 1.0 for each in factors)
+    options = cell.current.options
+    return replace(options, velocity_scaling=velocity, acceleration_scaling=acceleration)
+
+
+def _threshold(value: float, default: float) -> float:
+    return float(value) if 0 < value < np.inf else default

@@ -1,0 +1,250 @@
+"""MoveIt's interface on the bridge, with the real planner and physics."""
+
+import numpy as np
+import pytest
+
+from harness.core.errors import ErrorCode
+from harness.plugins.ros.actions import Status
+from harness.plugins.ros.handover import replay
+from harness.plugins.ros.moveit.values import NUMBERS
+from harness.recording.read_run import read_run
+from harness.reporting.rosbag.messages import message
+from tests.plugins.ros.bridging import bridge, scenario
+from tests.plugins.ros.move_group_client import (
+    DOWN,
+    GROUP,
+    UR,
+    MoveGroupClient,
+    box,
+    joint_goal,
+    moveit,
+    pose,
+    pose_goal,
+    primitive,
+    request,
+    stamped,
+)
+
+HOLD = "- external: {}"
+SUCCESS = 1
+CUBE = (
+    "objects:\n"
+    "  - {name: cube, box: {size: [4 cm, 4 cm, 4 cm]}, mass: 0.1, pose: {xyz: [0.4, 0.1, 0.02]}}\n"
+)
+
+
+def test_every_error_code_of_the_program_has_moveits_number():
+    assert set(NUMBERS) == set(ErrorCode.__args__)
+    assert len({*NUMBERS.values()}) == len(NUMBERS)
+
+
+def test_a_client_solves_plans_and_moves_and_the_run_replays(tmp_path):
+    with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": tmp_path / "run"}) as (
+        node,
+        results,
+    ):
+        client = MoveGroupClient(node)
+        target = pose((0.4, 0.1, 0.4))
+        requested = moveit("PositionIKRequest", group_name=GROUP, pose_stamped=stamped(target))
+        solved = client.call("compute_ik", "GetPositionIK", ik_request=requested)
+        assert solved.error_code.val == SUCCESS
+        state = solved.solution
+        at = client.call("compute_fk", "GetPositionFK", robot_state=state).pose_stamped[0].pose
+        assert (at.position.x, at.position.y, at.position.z) == pytest.approx((0.4, 0.1, 0.4))
+        joints = dict(zip(state.joint_state.name[:6], state.joint_state.position, strict=False))
+
+        plan = client.call(
+            "plan_kinematic_path", "GetMotionPlan", motion_plan_request=request(joint_goal(joints))
+        ).motion_plan_response
+        assert plan.error_code.val == SUCCESS
+        last = plan.trajectory.joint_trajectory.points[-1]
+        assert last.positions == pytest.approx(np.array(list(joints.values())), abs=1e-6)
+        only = client.move_to(pose_goal(target), plan_only=True)
+        assert only.result.error_code.val == SUCCESS
+        assert not only.result.executed_trajectory.joint_trajectory.points
+        slow = client.move_to(pose_goal(target), plan_only=True, max_velocity_scaling_factor=0.1)
+        times = [
+            each.result.planned_trajectory.joint_trajectory.points[-1] for each in (only, slow)
+        ]
+        assert times[1].time_from_start.sec > 4 * times[0].time_from_start.sec
+
+        moved = client.move_to(pose_goal(target))
+        assert (moved.status, moved.result.error_code.val) == (Status.SUCCEEDED, SUCCESS)
+        here = client.call("compute_fk", "GetPositionFK").pose_stamped[0].pose.position
+        assert (here.x, here.y, here.z) == pytest.approx((0.4, 0.1, 0.4), abs=2e-3)
+        path = client.call(
+            "compute_cartesian_path", "GetCartesianPath",
+            group_name=GROUP, waypoints=[pose((0.4, 0.15, 0.4)), pose((0.4, 0.15, 0.35))],
+            max_step=0.01, avoid_collisions=True,
+        )  # fmt: skip
+        assert path.fraction == 1.0
+        assert client.follow(path.solution).status is Status.SUCCEEDED
+        again = client.follow(path.solution)  # the arm is not at its start any more
+        assert again.status is Status.ABORTED
+        assert "begins" in again.result.error_code.message
+        pilz = {"pipeline_id": "pilz_industrial_motion_planner"}
+        line = client.move_to(pose_goal(pose((0.35, 0.15, 0.35))), planner_id="LIN", **pilz)
+        assert line.result.error_code.val == SUCCESS
+        ptp = client.move_to(joint_goal(joints), planner_id="PTP", **pilz)
+        assert ptp.result.error_code.val == SUCCESS
+    [result] = results
+    assert result.case.outcome == "passed"
+    repeated = replay(tmp_path / "run")
+    assert repeated.digest == result.case.digest
+
+
+def test_clients_change_the_planning_scene_and_attach_what_the_physics_has(tmp_path):
+    rest = CUBE + "expect: [{always: within_limits}]"
+    file = scenario(tmp_path, HOLD, rest, robot=UR)
+    with bridge(file, run={"report_dir": tmp_path / "run"}) as (node, results):
+        client = MoveGroupClient(node)
+        seen = node.listen("/monitored_planning_scene", "moveit_msgs/msg/PlanningScene")
+        assert client.move_to(pose_goal(pose((0.4, 0.1, 0.3)))).result.error_code.val == SUCCESS
+        names = {each.id for each in client.scene().world.collision_objects}
+        assert {"cube", "ground_plane"} <= names
+
+        def fraction():
+            return client.call(
+                "compute_cartesian_path", "GetCartesianPath",
+                group_name=GROUP, waypoints=[pose((0.4, 0.4, 0.3))], max_step=0.01,
+            ).fraction  # fmt: skip
+
+        assert fraction() == 1.0
+        assert client.apply(box("wall", (0.4, 0.3, 0.3), (1, 0.02, 0.6)))
+        assert fraction() < 0.7
+        goal = client.move_to(pose_goal(pose((0.4, 0.3, 0.3))))
+        assert goal.result.error_code.val == NUMBERS["GOAL_IN_COLLISION"]
+        assert "wall" in goal.result.error_code.message
+        wall = moveit("CollisionObject", id="wall", operation=1)
+        assert client.apply(wall)
+        assert fraction() == 1.0
+        assert not client.apply(wall)
+
+        cube = moveit("CollisionObject", id="cube")
+        held = moveit("AttachedCollisionObject", link_name="end_effector_link", object=cube)
+        assert client.apply(attached=[held])
+        [known] = client.scene().robot_state.attached_collision_objects
+        assert (known.object.id, known.link_name) == ("cube", "end_effector_link")
+        held.object.operation = 1
+        assert client.apply(attached=[held])
+        assert not client.scene().robot_state.attached_collision_objects
+        node.wait(lambda: seen and len(seen) > 3)
+    run = read_run(tmp_path / "run").run
+    assert [each.object for each in run.attachments] == ["cube"]
+    kinds = [each.kind for each in run.commands]
+    assert kinds.count("scene") == 5
+    refused = [each for each in run.commands if each.kind == "plan"][-1]
+    assert refused.content["answer"].startswith("GOAL_IN_COLLISION")
+    assert replay(tmp_path / "run").digest == results[0].case.digest
+
+
+KNEE = message("sensor_msgs/msg/JointState", name=["knee"], position=np.array([1.0]))
+BAD_REQUESTS = {
+    "no goal": (request(), "INVALID_GOAL_CONSTRAINTS"),
+    "no such group": (request(joint_goal({"elbow_joint": 1}), group="legs"), "INVALID_GROUP_NAME"),
+    "no such joint": (request(joint_goal({"knee": 1})), "INVALID_GOAL_CONSTRAINTS"),
+    "a joint of NaN": (request(joint_goal({"elbow_joint": np.nan})), "INVALID_GOAL_CONSTRAINTS"),
+    "no such link": (request(pose_goal(pose((0.4, 0, 0.4)), link="foot")), "INVALID_LINK_NAME"),
+    "no such frame": (
+        request(pose_goal(pose((0.4, 0, 0.4)), frame="mars")), "FRAME_TRANSFORM_FAILURE",
+    ),
+    "a pose of NaN": (request(pose_goal(pose((np.nan, 0, 0.4)))), "INVALID_GOAL_CONSTRAINTS"),
+    "no orientation": (
+        request(pose_goal(pose((0.4, 0, 0.4), (0.0, 0.0, 0.0, 0.0)))), "INVALID_GOAL_CONSTRAINTS",
+    ),
+    "a region without a shape": (
+        request(pose_goal(pose((0.4, 0, 0.4)), region=moveit("BoundingVolume"))),
+        "INVALID_GOAL_CONSTRAINTS",
+    ),
+    "a region that is a cone": (
+        request(pose_goal(pose((0.4, 0, 0.4)), region=moveit(
+            "BoundingVolume", primitives=[primitive(4, 1, 1)], primitive_poses=[pose((0, 0, 0))]))),
+        "INVALID_GOAL_CONSTRAINTS",
+    ),
+    "a region of a negative size": (
+        request(pose_goal(pose((0.4, 0, 0.4)), region=moveit(
+            "BoundingVolume", primitives=[primitive(2, -1)], primitive_poses=[pose((0, 0, 0))]))),
+        "INVALID_GOAL_CONSTRAINTS",
+    ),
+    "visibility": (
+        request(moveit("Constraints", visibility_constraints=[moveit("VisibilityConstraint")])),
+        "UNRECOGNIZED_GOAL_TYPE",
+    ),
+    "an orientation alone": (
+        request(moveit("Constraints", orientation_constraints=[moveit("OrientationConstraint")])),
+        "UNRECOGNIZED_GOAL_TYPE",
+    ),
+    "no such pipeline": (
+        request(joint_goal({"elbow_joint": 1}), pipeline_id="chomp"), "FAILURE",
+    ),
+    "CIRC without a point": (
+        request(pose_goal(pose((0.4, 0, 0.4))), planner_id="CIRC",
+                pipeline_id="pilz_industrial_motion_planner"),
+        "INVALID_MOTION_PLAN",
+    ),
+    "a start of an unknown joint": (
+        request(joint_goal({"elbow_joint": 1}), start_state=moveit("RobotState", joint_state=KNEE)),
+        "INVALID_ROBOT_STATE",
+    ),
+    "out of reach": (request(pose_goal(pose((4, 0, 0.4)))), "NO_IK_SOLUTION"),
+    "below the ground": (request(pose_goal(pose((0.4, 0.1, -0.2)))), "GOAL_IN_COLLISION"),
+    "beyond a limit": (request(joint_goal({"elbow_joint": 9})), "GOAL_STATE_INVALID"),
+}  # fmt: skip
+
+
+def test_requests_that_mean_nothing_are_answered_with_moveits_codes(tmp_path):
+    said = []
+    with bridge(scenario(tmp_path, HOLD, robot=UR), say=said.append) as (node, results):
+        client = MoveGroupClient(node)
+        answers = {}
+        for name, (requested, _) in BAD_REQUESTS.items():
+            response = client.call(
+                "plan_kinematic_path", "GetMotionPlan", motion_plan_request=requested
+            ).motion_plan_response
+            answers[name] = response.error_code
+            assert not response.trajectory.joint_trajectory.points, name
+        bad_objects = [
+            box("", (0, 0, 1), (1, 1, 1)),
+            box("end_effector_link", (0, 0, 1), (1, 1, 1)),
+            box("flat", (0, 0, 1), (1, 0, 1)),
+            box("infinite", (np.inf, 0, 1), (1, 1, 1)),
+            box(
+                "elsewhere",
+                (0, 0, 1),
+                (1, 1, 1),
+                header=message("std_msgs/msg/Header", frame_id="x"),
+            ),
+            moveit("CollisionObject", id="empty"),
+            moveit("CollisionObject", id="gone", operation=1),
+            moveit("CollisionObject", id="cone", primitives=[primitive(4, 1, 1)]),
+            moveit("CollisionObject", id="mesh", meshes=[message("shape_msgs/msg/Mesh")]),
+            box("odd", (0, 0, 1), (1, 1, 1), operation=9),
+        ]
+        assert not any(client.apply(each) for each in bad_objects)
+        lonely = moveit("AttachedCollisionObject", object=moveit("CollisionObject", id="nothing"))
+        assert not client.apply(attached=[lonely])
+        floating = moveit(
+            "AttachedCollisionObject", link_name="foot", object=box("b", (5, 0, 1), [1] * 3)
+        )
+        assert not client.apply(attached=[floating])
+        empty = client.follow(moveit("RobotTrajectory"))
+        assert empty.result.error_code.val == NUMBERS["CONTROL_FAILED"]
+        path = {"group_name": GROUP, "max_step": 0.01}
+        for fields in (
+            {**path, "waypoints": []},
+            {**path, "waypoints": [pose((0.4, 0, 0.4))], "max_step": 0.0},
+            {**path, "waypoints": [pose((0.4, 0, 0.4))], "link_name": "foot"},
+        ):
+            answer = client.call("compute_cartesian_path", "GetCartesianPath", **fields)
+            assert answer.error_code.val != SUCCESS
+        unreachable = moveit("PositionIKRequest", pose_stamped=stamped(pose((9, 0, 0), DOWN)))
+        solved = client.call("compute_ik", "GetPositionIK", ik_request=unreachable)
+        assert solved.error_code.val == NUMBERS["NO_IK_SOLUTION"]
+        goal = pose_goal(pose((0.4, 0.1, 0.4)))
+        still = client.move_to(goal, plan_only=True, planner_id="MyPlanner")
+        assert still.result.error_code.val == SUCCESS
+    expected = {name: NUMBERS[code] for name, (_, code) in BAD_REQUESTS.items()}
+    assert {name: code.val for name, code in answers.items()} == expected
+    assert all(code.message for code in answers.values())
+    assert results[0].case.outcome == "passed"
+    assert any("unknown planner 'MyPlanner'" in note for note in said)
