@@ -14,10 +14,8 @@ from harness.ports.scene import PlanningScene
 from harness.robot.description import Gripper, RobotDescription
 from harness.robot.tree import carriers
 
-LEAST_DISTANCE = 0.005
-"""Distance between two points from which the line between them is a direction [m]."""
-FROM_THE_PALM = math.cos(math.radians(60))
-"""Cosine down to which the line from the palm's origin to the TCP leads from the palm's body."""
+LEAST_DISTANCE = 0.005  # [m]; two points nearer than this give no direction of a line
+FROM_THE_PALM = math.cos(math.radians(60))  # least cosine of the line from palm to TCP
 ALONG_AN_AXIS = math.cos(math.radians(20))
 """Cosine down to which a direction is that of an axis of the TCP's frame: origins of palms lie next
 to the middle of the hand, and shapes are not symmetrical."""

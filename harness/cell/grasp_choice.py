@@ -19,11 +19,8 @@ from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion, LinearMotion
 from harness.recording.explanation import ApproachFailure
 
-MOST_BRANCHES = 3
-"""Free solutions of inverse kinematics before the approach from which it is tried."""
-
-REACH_CHECKS = 20_000
-"""State checks of the search for a motion to where an approach begins, for one approach."""
+MOST_BRANCHES = 3  # free IK solutions before an approach from which it is tried
+REACH_CHECKS = 20_000  # state checks of the search for a motion to the begin of one approach
 
 
 @dataclass(frozen=True)

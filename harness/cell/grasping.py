@@ -22,21 +22,14 @@ from harness.recording.explanation import Explanation
 from harness.robot.description import Gripper
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
-CLEARANCE = 0.005
-"""Distance of the palm from a grasped object's top, and of the fingertips from its bottom [m]."""
-JAW_CLEARANCE = 0.004
-"""Distance between an object and the palm on which a single jaw closes, before it does [m]."""
-CLOSING_STATES = 5
-"""States of a closing hand at which its fingertips are measured: they swing on arcs."""
-GAP_SLACK = 0.001
-"""How much a gap between the pads may differ from what the robot's table says [m]."""
+CLEARANCE = 0.005  # [m], of the palm from an object's top, and of fingertips from its bottom
+JAW_CLEARANCE = 0.004  # [m], between an object and the palm on which a single jaw closes
+CLOSING_STATES = 5  # of a closing hand at which its fingertips are measured: they swing on arcs
+GAP_SLACK = 0.001  # [m], by which a gap between the pads may differ from the robot's table
 MAX_LEAN = 10.0  # [degrees]
-AJAR = 0.2
-"""Share of its travel by which a jaw is open where its direction of closing is measured."""
-IN_ONE_PLACE = 1e-4
-"""Distance up to which two points are in one place [m]."""
-HEADINGS = 4
-"""Corrections of a gripper's heading, which follows from where its TCP is."""
+AJAR = 0.2  # share of its travel by which a jaw is open where its closing direction is measured
+IN_ONE_PLACE = 1e-4  # [m], up to which two points are in one place
+HEADINGS = 4  # corrections of a gripper's heading, which follows from where its TCP is
 UP = np.array([0.0, 0.0, 1.0])
 EIGHTHS = [eighth * math.pi / 4 for eighth in (0, 4, 1, -1, 2, -2, 3, -3)]
 """Turns about the vertical, least first, half a turn being as good as none [rad]."""

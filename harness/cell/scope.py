@@ -21,8 +21,7 @@ from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
 
 Prerequisite = Literal["robot", "world"]
-MOST_CAPTURES = 1000
-"""Most pictures that the steps of a file take; drawing one of 640 x 480 takes 0.2 s."""
+MOST_CAPTURES = 1000  # pictures that the steps of a file take; one of 640 x 480 takes 0.2 s
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
 
 

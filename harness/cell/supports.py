@@ -10,10 +10,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.recording.explanation import Explanation
 
-PLACES_ALONG_SIDE = 5
-"""Along each side of a top, from edge to edge."""
-LEVEL = np.cos(np.radians(2.0))
-"""Cosine of the tilt of a top on which things stand."""
+PLACES_ALONG_SIDE = 5  # along each side of a top, from edge to edge
+LEVEL = np.cos(np.radians(2.0))  # cosine of the tilt of a top on which things stand
 SAME_HEIGHT = 1e-3  # [m] between the tops of the shapes of one top
 
 

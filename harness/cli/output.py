@@ -20,9 +20,7 @@ from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES, USAGE_EXIT_CODE
 
 CLEAR_LINE = "\r\x1b[2K"
-TICK = 1.0
-"""Seconds after which the status line is written again, so that a terminal is never silent."""
-
+TICK = 1.0  # [s], after which the status line is written again: a terminal is never silent
 SHORTEST = 0.1  # seconds between two frequent statuses, at least
 AGAIN = "again:"  # how a line begins that holds a command for the shell
 

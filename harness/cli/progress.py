@@ -19,9 +19,7 @@ from harness.reporting.result import CaseResult
 from harness.reporting.terminal import Style, case_line, step_done, step_running
 
 Moment = tuple[float, float]  # wall time and simulation time [s]
-
-ENOUGH_FOR_AN_ESTIMATE = 3.0
-"""Seconds after which the remaining time is estimated from what is done."""
+ENOUGH_FOR_AN_ESTIMATE = 3.0  # [s], before the remaining time is estimated from what is done
 
 
 class ProgressLines:

@@ -11,8 +11,7 @@ from typing import ClassVar
 from harness.core.registry import Plugin
 from harness.suite.hooks import SuiteHooks
 
-RunFiles = Callable[[argparse.Namespace, Sequence[Path], SuiteHooks], int]
-"""Runs scenario files with what plug-ins change, and returns the exit code."""
+RunFiles = Callable[[argparse.Namespace, Sequence[Path], SuiteHooks], int]  # the exit code
 
 
 class RunMode(Plugin, ABC):

@@ -22,8 +22,7 @@ from harness.recording.verdict import VerdictWarning
 from harness.robot.description import Gripper
 
 TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
-OVERLAP = 0.001
-"""Depth from which an overlap is no rounding of shapes: convex hulls are off by as much [m]."""
+OVERLAP = 0.001  # [m]; what is less deep is rounding: convex hulls are off by as much
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 

@@ -17,8 +17,7 @@ from harness.recording.run import Run
 
 Key = tuple[str, str]
 
-MEASURED_WORDS = ("robot", "any")
-"""Besides objects: the distances of a single link are not recorded."""
+MEASURED_WORDS = ("robot", "any")  # besides objects; those of a single link are not recorded
 
 
 def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:

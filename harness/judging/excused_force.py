@@ -30,11 +30,9 @@ from harness.judging.support import riders
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 
-SPAN = 0.05
-"""Over which a force is averaged: longer than any blow, shorter than any motion of an arm [s]."""
+SPAN = 0.05  # [s], over which a force is averaged: longer than a blow, shorter than a motion
 FACTOR = 2.0  # as `on` requires half of the weight: an object is accelerated with at most gravity's
-SLACK = 1.0
-"""What a position error of a tenth of a millimetre presses with [N]: the weight of 100 g."""
+SLACK = 1.0  # [N], what a position error of 0.1 mm presses with: the weight of 100 g
 LEAVE = 2 * SPAN
 """How long an object that is lifted at once may still be pressed onto its support [s]: the averages
 over the time before contain the grip for one `SPAN`, and the object leaves within another."""

@@ -31,14 +31,11 @@ from harness.language.plugin_field import PluginField
 from harness.recording.run import Run
 from harness.recording.verdict import Measure, Verdict, VerdictWarning
 
-SPECIAL_BODIES = ("robot", "gripper", "any")
-"""Words that stand for several bodies where two bodies are named."""
-BOUNDS = {"at_least": ">=", "at_most": "<="}
-"""Fields that bound a predicate's one quantity, where its class does not say what it measures."""
+SPECIAL_BODIES = ("robot", "gripper", "any")  # stand for several bodies where two are named
+BOUNDS = {"at_least": ">=", "at_most": "<="}  # bound the one quantity of a predicate
 
 
-BASE_FIELDS = {*TemporalFields.model_fields, *PredicateFields.model_fields}
-"""Fields that any expectation has; none of them names an object."""
+BASE_FIELDS = {*TemporalFields.model_fields, *PredicateFields.model_fields}  # none names an object
 
 
 class Expectation(ExpectationFields):

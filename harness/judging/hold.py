@@ -49,11 +49,9 @@ CARRIED_SHARE = 0.5
 
 At rest it is 1; below one half the object falls with more than half of gravity's acceleration.
 """
-STEADY = 0.005
-"""How far a held object may move in the hand within `HOLD_TIME` [m]: the default of `grasped`."""
+STEADY = 0.005  # [m], a held object's motion in the hand within `HOLD_TIME`: `grasped`'s default
 STEADY_TURN = 0.1  # how far it may turn [rad]
-CLOSING_SHARE = 0.01
-"""Share of its range by which a gripper's joint is commanded past where it stands if it presses."""
+CLOSING_SHARE = 0.01  # of its range, by which a joint that presses is commanded past its place
 DRIVE_SHARE = 0.5
 """Share of the drive's force that reaches an object which the fingers press, and the reverse.
 

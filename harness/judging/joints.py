@@ -21,8 +21,7 @@ from harness.recording.verdict import Measure
 from harness.robot.description import Joint
 
 SLIDING_TOLERANCE = 0.002  # [m]
-ROUNDING = 1e-9
-"""Share of a limit that is rounding: an effort that saturates is at its limit, not beyond."""
+ROUNDING = 1e-9  # share of a limit: an effort that saturates is at its limit, not beyond
 
 POSITION_ERROR = Quantity(
     "joint position error", "rad or m", "at most `tolerance`, for each joint", "position"

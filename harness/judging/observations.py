@@ -14,8 +14,7 @@ from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, Signals
 
 CLEARANCE_CUTOFF = 0.15  # distances that every run records are exact up to here [m]
-CLEARANCE_ROOM = 0.05
-"""How much further than its limit a predicate needs distances, so that margins are seen [m]."""
+CLEARANCE_ROOM = 0.05  # [m], by which distances go beyond a limit, so that margins are seen
 
 
 class PictureRequest(NamedTuple):

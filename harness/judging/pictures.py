@@ -19,9 +19,7 @@ from harness.language.markers import MarkerName
 from harness.recording.looks import Look
 from harness.recording.run import Run
 
-WATCH_RATE = 5.0
-"""Pictures a second at most of a camera that an expectation watches [Hz]: each costs 0.2 s."""
-
+WATCH_RATE = 5.0  # [Hz], pictures of a watched camera at most: each costs 0.2 s
 MOST_PICTURES = 200  # that one expectation looks at; over a longer time they are taken less often
 
 

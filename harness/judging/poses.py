@@ -13,8 +13,7 @@ from harness.recording.run import Run
 from harness.recording.step_results import SceneChange
 
 UP = np.array([0.0, 0.0, 1.0])
-JUMP = 0.005
-"""An object that a scene step moves further than this between two samples was put there [m]."""
+JUMP = 0.005  # [m]; a scene step that moves an object further between samples put it there
 
 
 def link_poses(run: Run, link: str) -> FloatArray:

@@ -30,8 +30,7 @@ from harness.recording.run import Run
 
 SINKING = 0.005  # how far a soft contact may let an object sink, and still be above [m]
 SUPPORT_SHARE = 0.5  # share of its weight with which something rests on what carries it
-ROUNDING = 0.01
-"""Part of that share which may be missing: a solver's forces of two equal supports differ."""
+ROUNDING = 0.01  # missing part of that share: a solver's forces of equal supports differ
 
 
 def is_below(run: Run, support: str, name: str) -> BoolArray:

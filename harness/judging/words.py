@@ -17,8 +17,7 @@ from harness.judging.window import NotObservable, NotReached, Window
 from harness.language.expectation import PredicateFields, TemporalFields
 from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning
 
-ALREADY_TRUE = "already true at the start"
-"""The name of the warning that nothing had to change for an expectation to pass."""
+ALREADY_TRUE = "already true at the start"  # the warning that nothing had to change
 
 HARDLY_OBSERVED = "hardly observed"
 LEAST_SHARE = 0.01

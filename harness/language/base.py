@@ -22,8 +22,7 @@ from harness.language.colors import color_of_name
 from harness.language.files.mistakes import MistakeError
 from harness.language.units import quantity
 
-LARGEST_NUMBER = 1e9
-"""No number with a fraction is larger in its SI unit: beyond it, squares and distances overflow."""
+LARGEST_NUMBER = 1e9  # SI units; beyond it, squares and distances overflow
 
 
 SMALLEST_SIZE = 1e-9  # of a length or mass that has to be above zero [m or kg]
@@ -145,8 +144,7 @@ JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
 
 PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
-AngleBetween = Annotated[Angle, Field(le=math.pi)]
-"""A tolerance of the angle between two directions or orientations, which is never beyond pi."""
+AngleBetween = Annotated[Angle, Field(le=math.pi)]  # of two directions, never beyond pi
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]
 Fraction = Annotated[Share, BeforeValidator(refuse_percent), Field(gt=0, le=1)]

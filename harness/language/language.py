@@ -43,8 +43,7 @@ EXPECTATIONS = WordsOf(ExpectationFields)
 PREDICATES = WordsOf(PredicateFields)
 TEMPORAL = WordsOf(TemporalFields)
 
-KEYS_BY_VERB = tuple(keys_of(Step))
-"""Reserved keys: they stand next to a verb, never inside its content."""
+KEYS_BY_VERB = tuple(keys_of(Step))  # stand next to a verb, never inside its content
 
 KEYS_BY_PREDICATE = tuple(keys_of(TemporalFields))
 """Words that stand next to a predicate or a temporal word (or inside, as in the models)."""

@@ -17,8 +17,7 @@ VARIATION_KEYS = (
 )
 """Keys that say which cases there are; a case itself has none of them."""
 
-DEFAULT_SAMPLES = 20
-"""The number of samples of a file that draws random values and does not state their number."""
+DEFAULT_SAMPLES = 20  # of a file that draws random values and does not say how many
 
 
 def _is_finite_quantity(value: object) -> object:

@@ -29,8 +29,7 @@ class CartesianLimits:
     rotation_velocity: float | None = None
 
 
-PILZ_LIMITS = CartesianLimits()
-"""Pilz's defaults times the scaling factors."""
+PILZ_LIMITS = CartesianLimits()  # Pilz's defaults times the scaling factors
 
 
 @dataclass(frozen=True)

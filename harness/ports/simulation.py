@@ -12,8 +12,7 @@ from harness.core.types import FloatArray
 from harness.ports.scene import Touch
 from harness.recording.signals import Signals
 
-LONGEST_RUN = 600.0
-"""Simulated time of one run at most [s]: a file cannot fill the machine's memory or its day."""
+LONGEST_RUN = 600.0  # [s], simulated: a file cannot fill the machine's memory or its day
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,7 @@ from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 
-DERIVED = ("clearance", "planned_clearances")
-"""Distances are measured at some samples and drawn between: they part a little too early."""
+DERIVED = ("clearance", "planned_clearances")  # drawn between samples: they part a little too early
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
-Inconsistency = tuple[str, str]
-"""Key, and what is wrong there."""
+Inconsistency = tuple[str, str]  # key, and what is wrong there
 COLUMNS = {"tcp_pose": 7, "frames": 7, "object_poses": 7, "presses": 6, "frictions": 3}
 """Numbers per sample; the joint signals have one per joint, others one."""
 PER_SAMPLE = tuple(

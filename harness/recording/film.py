@@ -12,8 +12,7 @@ import numpy as np
 from av.error import FFmpegError
 
 SUFFIX, MEDIA_TYPE = ".mp4", "video/mp4"
-OPTIONS = {"preset": "veryfast", "crf": "23"}
-"""Speed and quality of the encoder; one thread, so that equal pictures give equal bytes."""
+OPTIONS = {"preset": "veryfast", "crf": "23"}  # one thread, so that equal pictures give equal bytes
 
 
 def film_size(width: int, height: int, widest: int | None = None) -> tuple[int, int]:

@@ -17,8 +17,7 @@ from harness.core.activity import Activity
 from harness.core.errors import HarnessError
 
 T = TypeVar("T")
-_TASKS = Path("/proc/self/task")
-"""One entry for each thread of this process, threads of native libraries included."""
+_TASKS = Path("/proc/self/task")  # an entry for each thread, native libraries' included
 
 _is_forking = True
 

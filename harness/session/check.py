@@ -23,8 +23,7 @@ from harness.session.start import overlap_note, start_physics
 from harness.steps.grasp import Grasp
 from harness.steps.pick import Pick
 
-MOST_CHOICES = 20
-"""Words that `randomize` chooses among which are tried in turn; each takes half a second."""
+MOST_CHOICES = 20  # words of one `randomize` that are tried in turn; each takes half a second
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 from harness.session.advice import advice
 
-OnStep = Callable[[ProgramStep, StepRecord | None], None]
-"""Called as a step begins, with None, and as it ends, with its record."""
+OnStep = Callable[[ProgramStep, StepRecord | None], None]  # None: it begins
 
 
 @dataclass(frozen=True)

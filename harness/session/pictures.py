@@ -27,9 +27,7 @@ from harness.session.run_request import RunRequest
 FOLDER = "images"
 MOST_EXPLAINED = 100  # most failed steps of which the state that explains them is drawn, 0.2 s each
 Files = Mapping[str, bytes]  # content of files by path in the run's folder
-
-Captures = tuple[tuple[CaptureRecord, ...], Files]
-"""Pictures that the scenario's cameras took, and their files."""
+Captures = tuple[tuple[CaptureRecord, ...], Files]  # of the scenario's cameras
 
 
 @dataclass(frozen=True)

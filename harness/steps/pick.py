@@ -42,16 +42,13 @@ from harness.steps.move_to import MoveTo
 
 DEFAULT_TRAVEL = 0.1  # [m]
 SHORTEST_TRAVEL = 0.03  # [m]
-TRAVELS = 3
-"""Lengths of an approach that are tried where the file leaves a choice."""
+TRAVELS = 3  # lengths of an approach that are tried where the file leaves a choice
 PITCHES = [math.radians(degrees) for degrees in (0, 15, 30, 45, 60, 75, 90)]
 """Of the gripper of an arm of fewer than six joints, in the order in which they are tried."""
-MAX_TURN = math.radians(15)
-"""Heading off the direction to the object up to which an arm of few joints grasps it [rad]."""
+MAX_TURN = math.radians(15)  # [rad], off the direction to an object, for an arm of few joints
 
 
-STRAIGHT = 89.5
-"""Angle with the horizontal from which an approach is straight down, or up [degrees]."""
+STRAIGHT = 89.5  # [degrees], with the horizontal, from which an approach is straight down, or up
 
 
 class Travel(SpecModel):

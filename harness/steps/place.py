@@ -53,10 +53,8 @@ from harness.steps.release import Release
 
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
-DEEPEST_OPENING = 0.002
-"""Penetration of the opening gripper above which nothing is put down [m]."""
-TURNS_OF_ROUND = 8
-"""As many turns are tried of what is round about the vertical."""
+DEEPEST_OPENING = 0.002  # [m], of the opening gripper; deeper, nothing is put down
+TURNS_OF_ROUND = 8  # tried about the vertical of what is round
 DEFAULT_RETREAT = Travel(min_distance=0.03, max_distance=0.1)
 
 

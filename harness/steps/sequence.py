@@ -20,8 +20,7 @@ from harness.language.step import Step
 from harness.ports.motions import MotionSequence
 from harness.ports.motions import SequenceItem as PlannedItem
 
-LinkPosition = tuple[str, str, FloatArray]
-"""A link, a frame, and the link's position in it."""
+LinkPosition = tuple[str, str, FloatArray]  # a link, a frame, and the link's position in it
 
 
 class SequenceItemSpec(SpecModel):

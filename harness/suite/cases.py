@@ -30,8 +30,7 @@ from harness.suite.leftovers import clean_leftovers
 from harness.suite.server import preload
 from harness.suite.warm import REPORT_MODULES, Ended, Heard, WarmServer
 
-HARD_CAP_SECONDS = 600.0
-"""Wall time after which a case ends as an error, whatever it is doing; HARNESS_HARD_CAP sets it."""
+HARD_CAP_SECONDS = 600.0  # wall time of a case, whatever it does; HARNESS_HARD_CAP sets it
 
 
 LONGEST_WAIT = 60.0  # [s], then deadlines are looked at again

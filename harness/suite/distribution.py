@@ -11,8 +11,7 @@ from typing import Any
 
 from harness.core.quantity import common_unit, split_quantity
 
-SMALLEST_SHARE = 1e-12
-"""Smallest tail share of a normal distribution whose quantile is still finite."""
+SMALLEST_SHARE = 1e-12  # tail of a normal distribution whose quantile is still finite
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,7 @@ from harness.recording.run import ObjectRecord
 from harness.recording.verdict import Measure
 
 X, Y, Z = np.eye(3)
-PARALLEL = 1e-9
-"""A direction with a smaller part along an axis runs parallel to the planes across it."""
+PARALLEL = 1e-9  # least part along an axis of a direction that crosses the planes across it
 
 DEPTH = Quantity("distance inside", "m", "at least 0, to the nearest side of the outline")
 LEAN = Quantity("lean of the container", "rad", "at most `max_lean`")

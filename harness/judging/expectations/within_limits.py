@@ -24,8 +24,7 @@ STOP_SOFTNESS = 0.02  # share of its range by which a joint that rests on its st
 POSITION_TOLERANCE = {"rad": 1e-3, "m": 1e-4}
 """By which a measured position may exceed its limit [rad or m]: a controller that holds a joint
 at its limit deviates a little to either side."""
-VELOCITY_TOLERANCE = 1e-3, 1e-2
-"""Least and largest share of its limit by which a measured velocity may exceed it."""
+VELOCITY_TOLERANCE = 1e-3, 1e-2  # least and largest share of a limit that may be exceeded
 SERVO_DELAY = 1e-3
 """Time by which a servo follows the end of an acceleration late [s]: between these shares, a
 velocity may exceed its limit by what the joint gains in it at its acceleration limit."""

@@ -13,8 +13,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.inputs import read_input
 from harness.language.files.source import Place, Source
 
-LARGEST_FILE = 16_000_000
-"""Bytes of an XML file at most; the largest robot descriptions are under 1 MB."""
+LARGEST_FILE = 16_000_000  # bytes; the largest robot descriptions are under 1 MB
 
 MOST_ELEMENTS = 200_000
 MOST_ATTRIBUTES = 200  # of one element; MuJoCo's reader takes hours for a million

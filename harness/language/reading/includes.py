@@ -22,8 +22,7 @@ from harness.language.reading.paths import paths_from
 INCLUDE = "include"
 KEYS = ("description", PARAMS, "steps")
 DEEPEST = 10
-PROJECT_MARKS = (".git", "pyproject.toml", "package.xml")
-"""A folder with one of these is a project; its scenarios may share steps."""
+PROJECT_MARKS = (".git", "pyproject.toml", "package.xml")  # what a project's folder has one of
 
 
 class _Context(NamedTuple):

@@ -20,8 +20,7 @@ TEMPORAL_WORDS = {
 }
 """What people write in or after a predicate's name -> the temporal word in front of it."""
 
-ALONE = ("never", "no", "not", "none", "always", "eventually")
-"""Those that name no object and no state when they stand in the place of one."""
+ALONE = ("never", "no", "not", "none", "always", "eventually")  # never the name of an object
 
 UNTIL_USAGE = "`- {always: A, until: B}`: A holds until B does"
 

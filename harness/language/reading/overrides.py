@@ -20,8 +20,7 @@ from harness.language.reading.written import as_written
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, Step
 
-NO_ROTATION = (0.0, 0.0, 0.0)
-"""What a pose without any rotation amounts to; its `rpy` may be absent when an angle is set."""
+NO_ROTATION = (0.0, 0.0, 0.0)  # where `rpy` is absent and an angle is set
 
 WORLDS_OBJECT = "add it to `objects` with `replace: true` to change an object of the world"
 
@@ -45,8 +44,7 @@ class Override(NamedTuple):
         return not self.place.line
 
 
-NAMES_OF_CASES = ("name", "title", "case", "cases")
-"""Keys that people write below `parametrize` for the list of named cases, or the name of one."""
+NAMES_OF_CASES = ("name", "title", "case", "cases")  # what people write for named cases
 NAMED_CASES = "named cases are a list below `parametrize:`, each with its name as `id`:"
 NAMED_CASE = "`- {id: small, params.size: 2 cm}`"
 

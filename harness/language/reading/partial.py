@@ -22,21 +22,17 @@ from harness.language.step import Step
 
 ABSENT: Any = object()  # in place of a value that cannot be read and that nothing can stand in for
 NO_NAME = "?"  # stands in for a name that cannot be read; problems with it follow from that
-
-STAND_INS = (1, 0, True, NO_NAME)
-"""Values of which the first valid one stands in for a value that a model needs."""
+STAND_INS = (1, 0, True, NO_NAME)  # the first valid one stands in for a value that is needed
 
 PLACEHOLDERS = {Step.plugin_kind: PLACEHOLDER_VERB, KIND: PLACEHOLDER_WORD}
 """By the kind of plug-in, the name of the one that stands in for one that is unknown."""
 
-STAND_IN_ROBOT = "open_manipulator_x"
-"""In place of a robot that cannot be known, so that what does not depend on it is checked."""
+STAND_IN_ROBOT = "open_manipulator_x"  # so that what does not depend on the robot is checked
 
 ROBOT_DETAILS = ("base", "start_state", "joint_limits", "named_states", "moveit", "args")
 """Keys of `robot` without which it is the same arm."""
 
-ITEMS = ("steps", "expect", "objects")
-"""Lists of a scenario whose items are read in part; of its other keys only whole parts are."""
+ITEMS = ("steps", "expect", "objects")  # lists of a scenario whose items are read in part
 
 
 @dataclass

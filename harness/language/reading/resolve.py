@@ -15,8 +15,7 @@ from harness.language.reading.short_forms import models_shape
 from harness.language.scenario import Scenario
 from harness.language.variation import VARIATION_KEYS
 
-BLOCK_KEYS = ("steps", "during", "expect")
-"""Keys whose lists begin a line for each item, so that a step can be found by its line."""
+BLOCK_KEYS = ("steps", "during", "expect")  # their lists begin a line for each item
 
 
 def resolved_text(

@@ -35,8 +35,7 @@ from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, TAG, Step
 
 TURN = 6.283186  # [rad], rounded up
-FAR = 100.0
-"""Length above which a number without a unit is one of millimetres in all likelihood [m]."""
+FAR = 100.0  # [m]; a larger number without a unit is one of millimetres in all likelihood
 
 
 def models_shape(

@@ -15,8 +15,7 @@ from harness.language.base import SpecModel
 from harness.language.files.mistakes import LONGEST_VALUE, MistakeError, value_text
 from harness.language.files.source import Found, Loc, SourceMap
 
-Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]
-"""Error, its context, the offending value as text -> message and hint."""
+Wording = Callable[[ErrorDetails, dict[str, Any], str], tuple[str, str]]  # (message, hint)
 
 
 def problems_of(errors: Iterable[ErrorDetails], lines: SourceMap) -> list[Problem]:

@@ -29,8 +29,7 @@ from harness.session.prepare import Prepared
 from harness.steps.pick import GraspChoice, Pick
 
 FORMAT = "armharness-describe/1"
-REACH_SAMPLES = 2000
-"""Random joint positions among which the farthest TCP is found."""
+REACH_SAMPLES = 2000  # random joint positions among which the farthest TCP is found
 DECIMALS = 6  # a micrometre: more digits are noise to a reader
 
 Numbers = tuple[float, ...]

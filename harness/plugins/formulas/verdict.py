@@ -60,8 +60,7 @@ PLOTS = {
 }
 """The plot that the report shows for a comparison of a signal, by the signal's name."""
 
-TINY = float(np.nextafter(0.0, 1.0))
-"""Stands for a margin of zero on the side that the comparison says."""
+TINY = float(np.nextafter(0.0, 1.0))  # for a margin of zero on the side that the comparison says
 
 
 @dataclass(frozen=True, eq=False)

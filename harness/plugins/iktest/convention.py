@@ -17,8 +17,7 @@ from harness.plugins.iktest.strategies.tasks import Task, task_error, task_jacob
 
 LENGTHS = {"metres": 1.0, "centimetres": 0.01, "millimetres": 0.001}
 ANGLES = {"": 1.0, "is given in degrees": np.pi / 180, "counts upwards": -1.0}
-STARTS = (0.0, np.pi / 2, -np.pi / 2, np.pi)
-"""Differences of a joint's zero [rad] from which a fit starts."""
+STARTS = (0.0, np.pi / 2, -np.pi / 2, np.pi)  # [rad], of a joint's zero, from which a fit starts
 
 MOST_SAMPLES, MOST_STEPS = 10, 12
 KEPT = 0.8  # share of the answers that a convention explains; others may be wrong in another way

@@ -242,8 +242,7 @@ def _line_size(trial: SolverTrial, line: StraightLine) -> tuple[float, ...]:
     return float(np.count_nonzero(away > 1e-12)), float(away.sum()), len(line.joint_positions)
 
 
-ROUND_TOO = 4 / 3
-"""Share of the examples where a quarter are round targets: the others are as many as ever."""
+ROUND_TOO = 4 / 3  # share of the examples where a quarter more are round targets
 
 PROPERTIES = (
     Property("reaches", "forward kinematics of every answer is the target",

@@ -21,9 +21,7 @@ IMPORT_SECONDS = 60.0  # wall time that importing the function may take
 
 POLL_SECONDS = 0.02
 
-WAITING_LIMIT = 10.0
-"""Wall time that a call may wait or be kept waiting, in multiples of its processor time: a busy
-machine makes no function hang."""
+WAITING_LIMIT = 10.0  # wall time per processor time of a call: a busy machine makes none hang
 
 
 class Solver(Protocol):

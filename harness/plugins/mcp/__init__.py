@@ -1,4 +1,3 @@
 """A server of the Model Context Protocol for the scenarios of one folder."""
 
-EXTRAS = {"mcp": "mcp"}
-"""Packages that it needs, and the extra that has each."""
+EXTRAS = {"mcp": "mcp"}  # packages that it needs, and the extra that has each

@@ -15,8 +15,7 @@ from harness.core.errors import HarnessError
 from harness.core.files import replaced
 from harness.suite.discovery import bundled_scenarios
 
-MOST_TEXT = 200_000
-"""Characters of an answer, and of a file that is written: about what a model reads at once."""
+MOST_TEXT = 200_000  # characters of an answer or a written file: what a model reads at once
 
 
 YAML = (".yaml", ".yml")

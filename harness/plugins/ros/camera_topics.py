@@ -25,8 +25,7 @@ IMAGE, COMPRESSED, INFO = (
     f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "CameraInfo")
 )
 
-Poses = Callable[[], Mapping[str, FloatArray]]
-"""Returns T_world_object of the objects that are there, shape (7,) each."""
+Poses = Callable[[], Mapping[str, FloatArray]]  # T_world_object of those that are there
 
 
 class _Topics:

@@ -15,8 +15,7 @@ from harness.plugins.ros.rtps.sockets import NetworkError
 
 VARIABLE = "ROS_DOMAIN_ID"
 MOST_DOMAINS = 232
-CHOICES = range(20, 101)
-"""Domains that are chosen from: their ports are below those that Linux gives to clients."""
+CHOICES = range(20, 101)  # their ports are below those that Linux gives to clients
 
 
 def domain_of_user(given: int | None) -> int:

@@ -31,8 +31,7 @@ from harness.session.start import Start, start_simulated
 from harness.session.timing import Clock
 from harness.simulation.mujoco_simulator import MujocoSimulator
 
-GRACE = 1.0
-"""Simulated time that a step continues after its program has ended and the arm stands [s]."""
+GRACE = 1.0  # [s], simulated, that a step goes on after its program has ended and the arm stands
 
 LOOK_EVERY, LOOK_SHARE = 0.5, 0.05
 """Simulated time between two looks at `until` [s], and at least this share of the step's time: a

@@ -38,9 +38,7 @@ from harness.reporting.rosbag.messages import message
 
 Say = Callable[[str], None]
 
-FEEDBACK_EVERY = 5
-"""Ticks between two messages of feedback: 20 Hz, as controllers are set by default."""
-
+FEEDBACK_EVERY = 5  # ticks between messages of feedback: 20 Hz, as controllers are set
 LOOK_EVERY = 50  # ticks between two looks at how nodes use topics
 MOST_NOTES = 50  # notes that are given of a run while it continues
 TF = "tf2_msgs/msg/TFMessage"

@@ -9,9 +9,7 @@ from harness.plugins.ros.control.cell import TICK
 
 LATE = 0.05  # lag from which a tick, and what arrives in it, counts as late [s]
 GIVE_UP = 0.25  # lag that is not made up for any more: simulated time continues from here [s]
-
-SLOW_SHARE = 0.2
-"""Share of the session's wall time that a machine may lose without being called slow."""
+SLOW_SHARE = 0.2  # of a session's wall time that is lost before a machine is called slow
 
 
 @dataclass

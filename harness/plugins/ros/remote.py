@@ -30,21 +30,13 @@ from harness.session.run_request import RunRequest
 from harness.session.start import Start
 from harness.session.timing import Clock
 
-MEASURED = ("position", "effort", "stalled", "reached_goal")
-"""What the result of GripperCommand says."""
-
+MEASURED = ("position", "effort", "stalled", "reached_goal")  # what GripperCommand's result says
 PATIENCE = 10.0  # wall time in which servers must be found, and joint states must come [s]
 SILENCE = 3.0  # wall time without joint states after which a robot in motion counts as lost [s]
 UNKNOWN = np.full(7, np.nan)  # the pose of an object that is not measured
-
-REASON = 1.0
-"""Wall time in which the result of a rejected goal, which may give the reason, must come [s]."""
-
-Confirm = Callable[[JointTrajectory], bool]
-"""Called with each trajectory before it is sent; whether the arm may move."""
-
-START_TOLERANCE = 0.01
-"""Largest distance of the arm from where a trajectory begins [rad or m], as MoveIt allows."""
+REASON = 1.0  # [s], in which the result of a rejected goal, with its reason, must come
+Confirm = Callable[[JointTrajectory], bool]  # before it is sent: whether the arm may move
+START_TOLERANCE = 0.01  # [rad or m], of the arm from a trajectory's begin, as MoveIt allows
 
 
 def run_on_robot(

@@ -17,9 +17,7 @@ from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.newest import Newest
 
 PERIOD = 0.35  # time between two pictures [s]
-
-MOST_PIXELS = 240 * 180
-"""Pixels of a picture, of which each costs two microseconds; a larger one is drawn smaller."""
+MOST_PIXELS = 240 * 180  # each costs two microseconds; a larger picture is drawn smaller
 
 
 class LiveCamera:

@@ -17,9 +17,7 @@ from harness.simulation.set_points import SetPoints
 from harness.simulation.step_state import refresh, set_step_state, step_state, wake
 
 CHUNK = 16  # samples between two calls of the pace; the results do not depend on it
-
-Pace = Callable[[int], bool]
-"""Called after some samples; waits as long as they last, and says whether to go on."""
+Pace = Callable[[int], bool]  # waits as long as the samples last; whether to go on
 
 
 class LiveSimulator(MujocoSimulator):

@@ -25,9 +25,7 @@ from harness.plugins.studio.verdict_messages import NO_VERDICTS
 from harness.ports.scene import Touch
 from harness.recording.step_record import StepRecord
 
-SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)
-"""Simulated seconds in a second of wall time; 0 is as fast as possible."""
-
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 0.0)  # simulated by wall time; 0 is without a limit
 MEASURED_EVERY = 5  # updates of the page between two measurements of the smallest clearance
 
 

@@ -14,8 +14,7 @@ from harness.session.background import Background
 
 T = TypeVar("T")
 
-LONGEST = 60.0
-"""Longest time that a value is waited for [s]: a copy of a process with threads may hang."""
+LONGEST = 60.0  # [s], that a value is waited for: a copy of a process with threads may hang
 
 
 class Newest(Generic[T]):

@@ -18,23 +18,16 @@ from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
 
-MOST_TRIANGLES = 20_000
-"""Triangles of the whole robot; its meshes are coarsened until they are no more."""
-
+MOST_TRIANGLES = 20_000  # of the whole robot; its meshes are coarsened until they are no more
 GRID = 0.002  # the first cell size in which vertices are merged [m]
 
 GHOST, REFUSED, PLANNED = (70, 130, 220), (214, 60, 50), (40, 160, 90)
 PLANE_SIZE = 6.0  # [m]
 
 Color = tuple[int, int, int]
-Handle = Literal["tcp", "object", "size"]
-"""What a handle moves: the TCP's goal, an object, or the corner that gives an object's size."""
-
-OnDrag = Callable[[int, str, SE3, Handle], None]
-"""Called with the number of the page's connection, the phase of the drag, and the new pose."""
-
-OnChoose = Callable[[int, int], None]
-"""Called with the number of the page's connection and that of the way."""
+Handle = Literal["tcp", "object", "size"]  # the TCP's goal, an object, or its size's corner
+OnDrag = Callable[[int, str, SE3, Handle], None]  # connection, phase, and the new pose
+OnChoose = Callable[[int, int], None]  # number of the page's connection, and of the way
 
 
 @dataclass(frozen=True, eq=False)

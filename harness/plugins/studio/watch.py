@@ -28,9 +28,7 @@ from harness.reporting.progress_events import (
 )
 from harness.reporting.result import CaseResult
 
-MOST_CASES = 40
-"""Cases that can be chosen on the page: those that run, and the last that have ended."""
-
+MOST_CASES = 40  # that can be chosen on the page: those that run, and the last that have ended
 LATEST = 0  # the number that stands for whichever case began last
 
 

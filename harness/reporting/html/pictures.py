@@ -13,8 +13,7 @@ from harness.reporting.html.packing import Packer
 
 KINDS = {"color": "", "depth_preview": "depth", "segmentation_preview": "segmentation"}
 """Kinds of files that can be looked at, and how the page calls them."""
-WIDEST_VIDEO = 320
-"""Of a video in the page [pixels]; the file in the run's folder has the camera's size."""
+WIDEST_VIDEO = 320  # [pixels], in the page; the file in the folder has the camera's size
 LARGEST_VIDEO = 1_500_000  # a larger one stays in the run's folder [bytes]
 MOST_IMAGES = 40
 WIDEST = 480  # [pixels]

@@ -24,8 +24,7 @@ from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.reporting.html.packing import Packer, differences, zigzag
 
-FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0
-"""Poses a second [Hz]; the page goes from one to the next in straight lines."""
+FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0  # poses a second, with straight lines between them
 MOST_FRAMES = 6000
 FARTHEST = 20.0  # [m]; what fell off the world is drawn there
 STILL = 1e-5

@@ -25,8 +25,7 @@ PATH_RATE = 5.0
 """How often the course's trajectory server looks where the TCP is, as its UR launch sets it [Hz]
 (MOGI-ROS/mogi_trajectory_server, Apache-2.0; so too the next number)."""
 PATH_SPACING = 0.02  # how far a pose must be from the last one kept [m]
-LONGEST_PUBLISHED = 300
-"""Poses of a path up to which it is published at every look; a longer one less often."""
+LONGEST_PUBLISHED = 300  # poses of a path that is published at every look; a longer one less often
 
 
 def planned(run: Run) -> Iterator[Message]:

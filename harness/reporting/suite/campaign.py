@@ -21,8 +21,7 @@ from harness.reporting.suite.sensitivity import (
     sensitivities,
 )
 
-MOST_POINTS = 10_000
-"""Runs that the map draws; of more, an even choice of the passed and of the failed ones."""
+MOST_POINTS = 10_000  # on the map; of more, an even choice of the passed and of the failed
 
 MOST_CAUSES = 10
 MOST_HISTOGRAMS = 12

@@ -28,9 +28,7 @@ from harness.reporting.terminal import causes, report_link
 
 NAME = "armharness"
 ATTACHMENT = "[[ATTACHMENT|"  # how a file's name begins in `system-out`, for Jenkins and GitLab
-
-MOST_IN_MEMORY = 1_000_000
-"""Bytes of a `testsuite` that are kept in memory until the document is written."""
+MOST_IN_MEMORY = 1_000_000  # bytes of a `testsuite`, until the document is written
 
 MARKUP = re.compile('[&<>"]')
 SAMPLE = re.compile(r"(?:^|-)sample\d+$")  # what the name of a sample adds to its group's

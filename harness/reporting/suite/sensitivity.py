@@ -12,10 +12,7 @@ from harness.core.types import FloatArray, IntArray
 from harness.reporting.suite.columns import Columns, VariedQuantity
 
 FEWEST_RUNS = 8  # with fewer runs no effect can be shown
-
-LEVEL = 0.05
-"""A parameter is named when chance gives any parameter such an effect less often than this."""
-
+LEVEL = 0.05  # chance of such an effect of any parameter below which one is named
 RESHUFFLES = 1999  # permutations of a test: they resolve a hundredth of `LEVEL`
 MOST_RUNS = 1000  # failed runs, and passed runs, that a test looks at; of more, an even choice
 

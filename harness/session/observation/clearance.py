@@ -40,11 +40,8 @@ from harness.session.observation.sampled_clearance import (
 )
 
 ROBOT = "robot"
-AT_ONCE = 5000
-"""Positions between samples that are measured at once, so that memory does not grow with them."""
-
-Bodies = tuple[Sequence[MovingBody], MovingBody]
-"""Bodies whose distances from another one are measured."""
+AT_ONCE = 5000  # positions that are measured at once: memory does not grow with them
+Bodies = tuple[Sequence[MovingBody], MovingBody]  # and the one that they are measured from
 
 
 class CoalClearance:

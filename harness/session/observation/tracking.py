@@ -22,10 +22,7 @@ from harness.recording.step_record import StepRecord
 from harness.recording.step_results import AllowedCollisions
 
 LOST = 0.003  # an object that drifted further in the hand is not where the planner carries it [m]
-
-GRIP_GAP = 0.05
-"""Fingers that touch an object less than this before the end of a hold still held it [s]."""
-
+GRIP_GAP = 0.05  # [s] from the last touch of fingers to the end of a hold, at most
 DIFFERENT = 1e-3  # planned and actual clearance that differ by more are reported step by step [m]
 
 Distances = Callable[[Motion, Collection[Pair]], Mapping[Pair, FloatArray]]

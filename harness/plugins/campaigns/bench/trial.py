@@ -15,13 +15,9 @@ from harness.ports.motion_planning import MotionPlanner, MotionRequest
 from harness.recording.motion_failures import SearchFailure
 from harness.recording.plan_statistics import PlanStatistics
 
-SPACING = 0.05
-"""Joint-space distance between the states that smoothness and clearance are measured at [rad]."""
-
+SPACING = 0.05  # [rad], between the states at which smoothness and clearance are measured
 STRAIGHT_TURN = 1e-6  # turns below this are rounding errors [rad]
-
-STRAIGHT = "straight line"
-"""The `planner_id` in a plan's statistics when the straight line was free."""
+STRAIGHT = "straight line"  # a plan's `planner_id` when the straight line was free
 
 
 @dataclass(frozen=True)

@@ -29,14 +29,9 @@ from harness.suite.installation import installation, search_environment
 
 LOCAL = "ray"
 CLIENT = "ray://"
-BATCH_SECONDS = 3.0
-"""Wall time that a batch is to take: long compared with the millisecond that Ray adds."""
-
+BATCH_SECONDS = 3.0  # of wall time: long compared with the millisecond that Ray adds
 MOST_CASES = 100  # largest number of cases in a batch
-
-BATCHES_FOR_EACH_PROCESS = 2
-"""Batches that wait or run for each process of the cluster; more are not made yet."""
-
+BATCHES_FOR_EACH_PROCESS = 2  # that wait or run; more are not made yet
 RETRIES = 3  # how often Ray starts a batch again whose process or node ended
 
 BatchFunction = Callable[[Batch, Files], BatchResult]

@@ -13,9 +13,7 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 UNKNOWN = 1e6  # closeness of a run that says nothing about the expectations that are searched
 LEAST_SPREAD = 1e-12  # margins that vary less than this do not depend on what varies
-
-Expectation = tuple[int, int]
-"""Line of an expectation in the file, and its number among the verdicts."""
+Expectation = tuple[int, int]  # its line in the file, its number among the verdicts
 
 
 def failure_kind(result: CaseResult) -> str:

@@ -24,8 +24,7 @@ from harness.robot.mjcf.joints import mjcf_pose
 from harness.world.notes import Notes
 from harness.world.plain_values import pose_spec, rounded
 
-PLAIN = (0.5, 0.5, 0.5, 1.0)
-"""MuJoCo's colour of a geom without one; the colour of its material replaces it."""
+PLAIN = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's colour of a geom without a colour or a material
 
 SHAPES = ("box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh")
 

@@ -16,8 +16,7 @@ from harness.language.files.xml_file import XmlElement, read_xml
 VARIABLES = ("GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH")
 """Gazebo's environment variables: lists of folders of model folders, separated by colons."""
 
-FUEL_CACHE = "GZ_FUEL_CACHE_PATH"
-"""Gazebo's environment variable: the folder of what was downloaded from Fuel."""
+FUEL_CACHE = "GZ_FUEL_CACHE_PATH"  # Gazebo's variable: the folder of Fuel's downloads
 
 FUEL = re.compile(r"https?://(?P<host>[^/]+)/(?:[\d.]+/)?(?P<owner>[^/]+)/models/(?P<name>[^/]+)")
 

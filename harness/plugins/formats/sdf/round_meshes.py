@@ -8,10 +8,8 @@ from pathlib import Path
 from harness.language.world import MeshSpec, WorldSpec
 
 FOLDER = Path(__file__).with_name("meshes")
-CONE = FOLDER / "cone.stl"
-"""A cone about z of radius 1 and length 1, its origin in the middle, as `stl.cone` makes it."""
-SPHERE = FOLDER / "sphere.stl"
-"""1,280 triangles with their corners on a sphere of radius 1, up to 0.5 % inside it."""
+CONE = FOLDER / "cone.stl"  # about z, of radius and length 1, as `stl.cone` makes it
+SPHERE = FOLDER / "sphere.stl"  # 1,280 triangles, up to 0.5 % inside a radius of 1
 
 
 def cone(radius: float, length: float) -> MeshSpec:

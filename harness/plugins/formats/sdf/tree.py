@@ -15,8 +15,7 @@ from harness.plugins.formats.sdf.values import PlacedPose, is_flag, is_true, pos
 from harness.world.notes import Notes
 
 OLDEST, NEWEST = (1, 4), (1, 11)
-NO_COLONS = (1, 8)
-"""The version from which `::` separates the names of nested models, and is in no name."""
+NO_COLONS = (1, 8)  # the version from which `::` is in no name
 
 MOST_MODELS = 2000
 MOST_INCLUDES_DEEP = 30

@@ -41,8 +41,7 @@ RANGES: dict[str, Callable[[Joint], tuple[float, float]]] = {
 }
 """The smallest and the largest value of a joint's signals, by their names."""
 UNITS_HINT = "angles without a unit are in radians, lengths in metres"
-LARGEST_CUTOFF = 2.0
-"""Distances are recorded up to here, however far a formula compares one [m]."""
+LARGEST_CUTOFF = 2.0  # [m]; distances are recorded up to here, whatever is compared
 
 
 class Formula(Expectation):

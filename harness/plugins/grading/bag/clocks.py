@@ -9,13 +9,11 @@ import numpy as np
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.plugins.grading.bag.content import RecordedTrack
 
-SET_BACK = 10**9
-"""A clock that jumps back by more than this [ns] was restarted; a smaller jump is disorder."""
+SET_BACK = 10**9  # [ns]; a clock that jumps back by more was restarted, by less is disorder
 SAME_CLOCK = 0.5
 """Largest median difference between the stamps of one clock and the reference's clock [s]; also the
 first stamp after 0 of a simulation that began at 0."""
-NANOSECOND = 9
-"""Times are rounded to so many decimals [s], as stamps are: equal stamps are equal times."""
+NANOSECOND = 9  # decimals of times [s], as of stamps: equal stamps are equal times
 
 
 class Timeline:

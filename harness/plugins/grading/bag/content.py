@@ -48,8 +48,7 @@ def joined_tracks(tracks: Sequence[RecordedTrack]) -> RecordedTrack:
     return times
 
 
-Tracks = dict[tuple[str, ...], RecordedTrack]
-"""Tracks by the joints of a message, or by parent and child frame."""
+Tracks = dict[tuple[str, ...], RecordedTrack]  # by joints of a message, or parent and child frame
 
 
 @dataclass

@@ -26,11 +26,9 @@ from harness.robot.description import RobotDescription
 
 DoubtKind = Literal["publishers", "tf", "frames", "steps", "velocities", "jumps", "once"]
 
-FEWEST_JUMPS = 3
-"""Jumps there and back from which on a topic has two publishers; one is a wrong message."""
+FEWEST_JUMPS = 3  # there and back, of two publishers; one is a wrong message
 FASTEST = 3.0  # a joint that moves faster than this multiple of its velocity limit jumps
-UNKNOWN_LIMIT = 2 * np.pi
-"""Velocity limit of a joint whose description has none, or 0 [rad/s or m/s]."""
+UNKNOWN_LIMIT = 2 * np.pi  # [rad/s or m/s], where a description has none, or 0
 SHORTEST_TIME = 0.02
 """Less time between two messages counts as this in the search for a single jump of a joint [s]: a
 message that is up to 60 ms late is no jump at the velocity limit."""
@@ -42,15 +40,12 @@ a cube of 4 cm that tips over lands with 12 rad/s, and a camera is off by 20 deg
 FROM_REST, TURN_FROM_REST = 20.0, 400.0
 """Acceleration of an object that rests at two messages and rests elsewhere at the next two
 [m/s^2, rad/s^2]: twice that of a fall, and of a cube of 4 cm that tips over."""
-FEWEST_APART = 0.02
-"""Share of the samples that differ by more than `APART`, from which on two topics contradict each
-other."""
+FEWEST_APART = 0.02  # share of samples further apart than `APART` that is a contradiction
 OBJECT_APART, OBJECT_TURNED_APART = 0.02, 0.2
 """Difference between two topics with the pose of an object [m, rad]: a joint's twice."""
 
 STRETCH = 0.5  # motions are compared with the integral of the velocities over this time [s]
-SHARE_OF_MOTION = 0.2
-"""Share of a motion by which filters and coarse sampling may falsify that integral."""
+SHARE_OF_MOTION = 0.2  # by which filters and coarse sampling may falsify that integral
 
 
 @dataclass(frozen=True)

@@ -77,8 +77,7 @@ class JointMessages:
         return (steps + np.pi) % (2 * np.pi) - np.pi if self.joint.kind == "continuous" else steps
 
 
-JointTraces = Mapping[str, tuple[Trace | None, ...]]
-"""`JointMessages.traces` by the names of the joints."""
+JointTraces = Mapping[str, tuple[Trace | None, ...]]  # `JointMessages.traces` by joint names
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,17 +14,12 @@ from harness.plugins.grading.bag.content import BagContent, BagTopics, RecordedT
 from harness.plugins.grading.bag.message_files import RawMessage, bag_error
 from harness.plugins.grading.bag.storage import bag_files, messages
 
-MOST_NUMBERS = 20_000_000
-"""Most numbers kept of one recording (160 MB); an hour of ten joints at 100 Hz needs half of it."""
-
+MOST_NUMBERS = 20_000_000  # of a recording (160 MB); an hour of ten joints at 100 Hz is half
 LATEST = 2**63 - 1  # latest time of a message [ns]
-
-NEW_KEY = 200
-"""Numbers that a new frame or set of joints counts for, in addition to its names' characters."""
+NEW_KEY = 200  # numbers that a new frame or set of joints counts for, besides its characters
 
 TF = "tf2_msgs/msg/TFMessage"
-FRAMES = {"/tf": False, "/tf_static": True}
-"""Topics of the frame tree, and whether their transforms are static."""
+FRAMES = {"/tf": False, "/tf_static": True}  # topics of the frame tree: whether they are static
 
 MODEL_STATES = "gazebo_msgs/msg/ModelStates"
 TYPES, ROS1_TYPES = get_typestore(Stores.ROS2_JAZZY), get_typestore(Stores.ROS1_NOETIC)

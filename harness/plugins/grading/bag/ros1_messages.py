@@ -23,9 +23,7 @@ MAGIC = b"#ROSBAG V2.0\n"
 MESSAGE, CHUNK, CONNECTION = 2, 5, 7
 """Operation codes of the records that count; the others are the index."""
 
-RENAMED = {"tf/msg/tfMessage": "tf2_msgs/msg/TFMessage"}
-"""Types that had another name, with the same content."""
-
+RENAMED = {"tf/msg/tfMessage": "tf2_msgs/msg/TFMessage"}  # types that had another name
 LARGEST_HEADER = 2**20  # largest header of a record [bytes]; it has a handful of names and numbers
 
 Fields = Mapping[str, bytes]

@@ -26,8 +26,7 @@ STEP = 0.01  # coordinates that are multiples of this count as even [m]
 
 UP = np.array([0.0, 0.0, 1.0])
 PITCH_STEP = np.pi / 4
-EXACT = 1e-9
-"""Distance and turn within which positions reach a pose [m, rad]: far below every tolerance."""
+EXACT = 1e-9  # [m, rad], within which positions reach a pose: far below every tolerance
 
 
 @dataclass(frozen=True)

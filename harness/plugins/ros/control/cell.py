@@ -21,8 +21,7 @@ from harness.robot.description import TrackingTolerances
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator
 
-TICK = 0.01
-"""Simulated time from one update of the controllers to the next [s]: 100 Hz, as in the course."""
+TICK = 0.01  # [s] of simulated time between updates of controllers: 100 Hz, as in the course
 
 PREEMPTED = "a newer command replaced this goal"
 STOPPED = "the session ended while this goal was active"

@@ -15,14 +15,9 @@ from harness.recording.commands import CommandRecord
 from harness.robot.description import Joint, TrackingTolerances
 
 LIMIT_SLACK = 1e-4  # excess of a position limit that is rounding of a decimal number [rad or m]
-
-LARGEST = 1e6
-"""Values from which on a position, a velocity or an acceleration is no motion of an arm."""
-
+LARGEST = 1e6  # position, velocity or acceleration that is no motion of an arm
 LONGEST_NAME, MOST_NAMES = 40, 8  # characters of a name in a message, and names in a list
-
-OTHER_CLOCK = 1e6
-"""Stamps that differ from the simulated time by more are those of another clock [s]."""
+OTHER_CLOCK = 1e6  # [s]; stamps that differ by more are those of another clock
 
 
 MOTION = ("positions", "velocities", "accelerations")

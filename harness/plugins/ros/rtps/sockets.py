@@ -15,9 +15,7 @@ from harness.plugins.ros.rtps.wire import Address
 GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"
 MOST_PARTICIPANTS = 120
-NEIGHBOURS = 32
-"""Participants of this machine that are announced to one by one: some listen to no multicast."""
-
+NEIGHBOURS = 32  # participants here that are announced to one by one: some hear no multicast
 BUFFER = 2**22  # bytes that the kernel keeps of what is sent and received
 MOST_AT_ONCE = 256  # datagrams of a socket that are read before the other socket has its turn
 

@@ -22,9 +22,7 @@ PID_RELIABILITY, PID_DURABILITY, PID_USER_DATA = 0x1A, 0x1D, 0x2C
 PID_UNICAST, PID_DEFAULT_UNICAST, PID_META_UNICAST = 0x2F, 0x31, 0x32
 PID_PARTICIPANT, PID_BUILTIN, PID_ENDPOINT = 0x50, 0x58, 0x5A
 PID_NAME, PID_KEY_HASH, PID_STATUS, PID_RELATED = 0x62, 0x70, 0x71, 0x83
-PID_RELATED_OLD = 0x800F
-"""The related sample identity as Fast DDS wrote it before it had a number of the standard."""
-
+PID_RELATED_OLD = 0x800F  # Fast DDS's related sample identity before the standard's
 FRAGMENT = 57_344  # bytes of a sample in one datagram; UDP carries at most 65,507
 MOST_BITS = 256  # sequence numbers in one set
 

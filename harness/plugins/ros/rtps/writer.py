@@ -11,8 +11,7 @@ from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.wire import Address
 
-Send = Callable[[bytes, bytes, Address], None]
-"""Sends submessages to a participant: its prefix, the submessages, the address."""
+Send = Callable[[bytes, bytes, Address], None]  # to a prefix, the submessages, at an address
 
 
 @dataclass

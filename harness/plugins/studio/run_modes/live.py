@@ -15,8 +15,7 @@ from harness.plugins.studio.commands.studio import refuse_missing_extra
 from harness.suite.discovery import UsageError
 from harness.suite.hooks import SuiteHooks
 
-LONGEST_WAIT_FOR_PAGE = 10.0
-"""Time after which a run with `--live` begins although its page is not open [s]."""
+LONGEST_WAIT_FOR_PAGE = 10.0  # [s]; then a run begins although its page is not open
 
 
 class LiveMode(RunMode):
