@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command: Command = parsed.implementation
     if command.collects_garbage:
         gc.enable()
-    given = getattr(parsed, "json", False) or getattr(parsed, "format", "") == "json"
+    given = getattr(parsed, "json", False) or getattr(parsed, "format", "") in ("json", "sarif")
     is_json = given and not command.writes_json_in_parts
     ticks = getattr(parsed, "ticks", True) and not getattr(parsed, "in_process", False)
     try:

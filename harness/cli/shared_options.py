@@ -75,14 +75,21 @@ def add_json(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help=text)
 
 
-def add_format(command: argparse.ArgumentParser) -> None:
-    """`--format`, and `--json` for one of its values."""
-    command.add_argument(
-        "--format",
-        choices=("full", "short", "json", "github"),
-        default="full",
-        help="full: for people; short: a line each; json: one document; github: annotations",
-    )
+def add_format(command: argparse.ArgumentParser, **more: str) -> None:
+    """`--format`, and `--json` for one of its values.
+
+    Args:
+        more: Further values, with what each is.
+    """
+    formats = {
+        "full": "for people",
+        "short": "a line each",
+        "json": "one document",
+        "github": "annotations",
+        **more,
+    }
+    text = "; ".join(f"{name}: {what}" for name, what in formats.items())
+    command.add_argument("--format", choices=tuple(formats), default="full", help=text)
     text = "the same as --format json"
     command.add_argument("--json", action="store_const", const="json", dest="format", help=text)
 

@@ -12,6 +12,7 @@ from typing import ClassVar
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import output, say, say_json, say_text
 from harness.cli.shared_options import add_format, add_paths, add_seed
+from harness.core.errors import Problem
 from harness.core.printable import counted
 from harness.suite.discovery import discover
 from harness.suite.header import read_header
@@ -30,11 +31,12 @@ class CheckCommand(Command):
         """Add the options of `harness check`."""
         add_paths(command)
         add_seed(command)
-        add_format(command)
+        add_format(command, sarif="one document for code scanning, SARIF 2.1.0")
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Check files; problems of all of them are reported."""
         files = discover(arguments.paths)
+        from harness.reporting.sarif import sarif_document
         from harness.reporting.suite.cause import short_problem
         from harness.reporting.suite.github import problem_annotation
         from harness.reporting.terminal import Style
@@ -44,6 +46,8 @@ class CheckCommand(Command):
         code = 0
         documents: list[object] = []
         lines: list[str] = []
+        problems: list[Problem] = []
+        predicted: list[Problem] = []
         format_problem = problem_annotation if arguments.format == "github" else short_problem
         for file, case, overrides in _cases(arguments, files):
             found = check_file(file, overrides=overrides, seed=arguments.seed)
@@ -54,6 +58,8 @@ class CheckCommand(Command):
                               "predicted": found.predicted,
                               "explanations": found.explanations,
                               "notes": found.notes})  # fmt: skip
+            problems += found.problems
+            predicted += found.predicted
             if arguments.format != "full":
                 lines += [
                     format_problem(problem) for problem in (*found.problems, *found.predicted)
@@ -76,6 +82,9 @@ class CheckCommand(Command):
             say(f"{name}: {style.outcome(outcome, summaries[outcome])}")
         if arguments.format == "json":
             say_json({"format": "armharness-check/1", "exit_code": code, "files": documents})
+            return code
+        if arguments.format == "sarif":
+            say_json(sarif_document(problems, predicted))
             return code
         write = output().command if arguments.format == "github" else say
         for line in dict.fromkeys(lines):
