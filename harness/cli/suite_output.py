@@ -32,7 +32,7 @@ def write_suite_files(
     from harness.reporting.suite.github import append_summary
 
     append_summary(suite.record)
-    if not has_page(arguments, suite):
+    if not has_page(arguments, suite, hooks):
         return None, None
     from harness.reporting.suite.history import history_of
     from harness.reporting.suite.write import write_suite
@@ -44,9 +44,9 @@ def write_suite_files(
     return write_suite(folder, suite.record, suite.exit_code, history)
 
 
-def has_page(arguments: argparse.Namespace, suite: SuiteRun) -> bool:
+def has_page(arguments: argparse.Namespace, suite: SuiteRun, hooks: SuiteHooks = NO_HOOKS) -> bool:
     """Whether a suite writes files of its own, next to the reports of its cases."""
-    is_alone = len(suite.plan) == 1 and not suite.is_part
+    is_alone = len(suite.plan) == 1 and not suite.is_part and not hooks.writes_single_case
     return not (arguments.no_report or is_alone or arguments.repeat > 1)
 
 

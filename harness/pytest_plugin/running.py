@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -146,6 +148,18 @@ def _keep(
     """Attach the record to the item, from which the test's report carries it to the session."""
     record = ItemRecord(item.nodeid, number, tuple(cases), tuple(rates))
     setattr(item, RECORD, as_plain(record))
+    if item.config.getoption("--alluredir", default=None):
+        _attach_to_allure([each.result for each in cases])
+
+
+def _attach_to_allure(results: Sequence[CaseResult]) -> None:
+    """Attach pages to the test in Allure's results; of samples those of the first that failed."""
+    allure: Any = import_module("allure")  # of allure-pytest, whose option is in use
+    if len(results) > 1:
+        results = [each for each in results if each.outcome != "passed"][:LISTED_SAMPLES]
+    kind = allure.attachment_type.HTML
+    for page, name in [(each.page, f"{each.name}: report") for each in results if each.page]:
+        allure.attach.file(page, name=name, attachment_type=kind, extension="html")
 
 
 def _add_properties(item: pytest.Item, case: SuiteCase) -> None:

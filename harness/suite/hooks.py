@@ -37,6 +37,7 @@ class SuiteHooks:
             decided then.
         planned: Called with the files and the request of the whole suite before a case runs.
         execute: Runs the cases in place of this machine's processes.
+        writes_single_case: Whether a suite of a single case gets the files of a suite too.
         write: Writes the files of the suite into a folder in place of `write_suite`.
     """
 
@@ -45,6 +46,7 @@ class SuiteHooks:
     part: Callable[[Plan], Plan] | None = None
     planned: Callable[[Sequence[Path], SuiteRequest], None] | None = None
     execute: Execute | None = None
+    writes_single_case: bool = False
     write: Callable[[SuiteRun, Path, History], tuple[Path, Columns]] | None = None
 
 

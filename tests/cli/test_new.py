@@ -2,11 +2,13 @@
 
 import json
 import re
+from importlib.metadata import PathDistribution
 from pathlib import Path
 
 import pytest
 
 from harness.cli.main import main
+from harness.cli.new_project import requirement_lines
 from harness.language.reading.load import load_scenario
 from harness.robot_tools import first_scenario
 from harness.robot_tools.first_scenario import _trouble
@@ -207,3 +209,34 @@ def test_the_first_line_names_the_schema_for_editors_which_is_there(tmp_path):
 def schema_of(file):
     first = Path(file).read_text(encoding="utf-8").splitlines()[0]
     return first.partition("# yaml-language-server: $schema=")[2]
+
+
+def test_a_project_is_written_whole_or_not_at_all(tmp_path, capsys):
+    before = sorted(each.name for each in tmp_path.iterdir())
+    assert main(["new", "--project", "cell", "--robot", "no_such_robot"]) == 2
+    (tmp_path / "taken").mkdir()
+    assert main(["new", "--project", "taken"]) == 2
+    assert "'taken' exists already" in capsys.readouterr().err
+    assert main(["new"]) == main(["new", "a.scenario.yaml", "--project", "cell"]) == 2
+    assert sorted(each.name for each in tmp_path.iterdir()) == [*before, "taken"]
+
+
+def test_a_project_of_a_robot_names_its_files_from_the_scenario(tmp_path, capsys):
+    arguments = ["--robot", "arm.urdf", "--srdf", "arm.srdf"]
+    assert main(["new", "--project", "work/cell", *arguments]) == 0
+    file = tmp_path / "work/cell/scenarios/first.scenario.yaml"
+    scenario = load_scenario(file).scenario
+    assert scenario.robot.urdf == "../../../arm.urdf"
+    assert schema_of(file) == "../scenario.schema.json"
+    assert "harness run scenarios --baseline margins.json" in capsys.readouterr().out
+    assert main(["check", str(tmp_path / "work/cell")]) == 0
+
+
+def test_the_requirements_name_the_repository_that_the_program_was_installed_from(monkeypatch):
+    origin = {"url": "https://host/x.git", "vcs_info": {"vcs": "git", "commit_id": "ab12"}}
+    monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: json.dumps(origin))
+    assert requirement_lines() == "armharness @ git+https://host/x.git@ab12\n"
+    monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: '{"url": "file:///c"}')
+    assert requirement_lines().endswith("\narmharness @ file:///c\n")
+    monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: None)
+    assert requirement_lines().endswith("\narmharness\n")

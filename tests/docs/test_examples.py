@@ -130,7 +130,7 @@ def described(block):
     if text.startswith("- "):
         text = f"steps:\n{text}"
     content = yaml.safe_load(text)
-    if {*content} & {"jobs", "kind", "arm", "assignment"}:
+    if {*content} & {"jobs", "include", "kind", "arm", "assignment"}:
         return None
     return {"scenario": "x", "robot": "ur3e", "steps": [{"wait": 1}], **content}
 

@@ -8,17 +8,17 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.command import SCENARIOS, Command
+from harness.cli.new_project import SCHEMA, write_project
 from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.core.resources import data_folder
 from harness.suite.discovery import SUFFIX, UsageError
 
 TEMPLATE = Path(__file__).parents[1] / "templates" / "new.scenario.yaml"
-SCHEMA = "scenario.schema.json"
 
 
 class NewCommand(Command):
-    """Write a commented scenario that passes."""
+    """Write a commented scenario that passes, or a project of scenarios."""
 
     name: ClassVar[str] = "new"
     group: ClassVar[str] = SCENARIOS
@@ -26,12 +26,21 @@ class NewCommand(Command):
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness new`."""
         text = "the scenario file to write, for example first.scenario.yaml"
-        command.add_argument("file", metavar="FILE", help=text)
+        command.add_argument("file", metavar="FILE", nargs="?", default="", help=text)
+        text = (
+            "write a folder for a repository of scenarios instead: a first scenario, a baseline of"
+            " margins, and files for pytest, GitHub and GitLab"
+        )
+        command.add_argument("--project", metavar="DIR", default="", help=text)
         command.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
         add_robot_options(command)
 
     def run(self, arguments: argparse.Namespace) -> int:
-        """Write a scenario to a new file."""
+        """Write a scenario to a new file, or a project to a new folder."""
+        if bool(arguments.file) == bool(arguments.project):
+            raise UsageError("name either a file, such as first.scenario.yaml, or --project DIR")
+        if arguments.project:
+            return _new_project(arguments)
         file = Path(arguments.file)
         if not file.name.endswith(SUFFIX):
             stem = file.name.removesuffix(".yaml").removesuffix(".yml")
@@ -39,23 +48,46 @@ class NewCommand(Command):
             raise UsageError(f"the name of a scenario ends in {SUFFIX}: try '{better}'")
         if file.exists():
             raise UsageError(f"'{file}' exists already; nothing was written")
-        is_new_folder = not file.parent.exists()
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            text, lines = _content(arguments, file)
-            with file.open("x", encoding="utf-8") as new:
-                new.write(f"# yaml-language-server: $schema={_schema(file)}\n{text}")
-        except OSError as error:
-            raise UsageError(f"cannot write '{file}': {error.strerror}") from error
-        finally:
-            if is_new_folder and file.parent.is_dir() and not any(file.parent.iterdir()):
-                file.parent.rmdir()
+        lines = _write(arguments, file)
         name = shlex.quote(str(file))
         say(f"wrote {file}")
         for line in lines:
             say_text(line)
         say(f"check it: harness check {name}", f"run it:   harness run {name}")
         return 0
+
+
+def _new_project(arguments: argparse.Namespace) -> int:
+    folder = Path(arguments.project)
+    lines: list[str] = []
+    write_project(folder, lambda file: lines.extend(_write(arguments, file)))
+    say(f"wrote {folder}: README.md describes its files")
+    for line in lines:
+        say_text(line)
+    again = "harness run scenarios --baseline margins.json"
+    say(f"run it:   cd {shlex.quote(str(folder))} && {again}")
+    say(f"then keep its margins: {again} --update-baseline")
+    return 0
+
+
+def _write(arguments: argparse.Namespace, file: Path) -> list[str]:
+    """Write a scenario; return what there is to say about it.
+
+    Raises:
+        UsageError: The file cannot be written.
+    """
+    is_new_folder = not file.parent.exists()
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        text, lines = _content(arguments, file)
+        with file.open("x", encoding="utf-8") as new:
+            new.write(f"# yaml-language-server: $schema={_schema(file)}\n{text}")
+    except OSError as error:
+        raise UsageError(f"cannot write '{file}': {error.strerror}") from error
+    finally:
+        if is_new_folder and file.parent.is_dir() and not any(file.parent.iterdir()):
+            file.parent.rmdir()
+    return lines
 
 
 def _schema(file: Path) -> str:

@@ -22,6 +22,11 @@ MOST_ROWS = 100
 SIGNS = {"passed": "✅", "failed": "❌", "invalid": "⛔", "error": "💥"}
 
 
+def annotation(file: str, line: int, title: str, text: str) -> str:
+    """A line that GitHub shows as an error at a line of a file; 0 is no line."""
+    return _command(file, line, 0, title, text)
+
+
 def error_annotations(results: Iterable[CaseResult]) -> Iterator[str]:
     """A line for each thing that went wrong, which GitHub shows at its place in the file."""
     for result in results:
@@ -80,7 +85,9 @@ def job_summary(record: SuiteRecord) -> str:
     of = f"{passed} of {len(record.cases)} passed"
     summary = "; ".join(filter(None, (of, missed(record.rates))))
     lines = [f"## {SIGNS[record.outcome]} armharness: {summary}", ""]
-    lines += [f"- {rate_text(_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates]
+    lines += [
+        f"- {rate_text(markdown_cell(f'{r.file} {r.group}'.strip()), r.rate)}" for r in record.rates
+    ]
     lines += ["", "| | case | nearest to failing | why |", "|---|---|---|---|"]
     lines += map(_row, order)
     lines += ["", f"and {more} more"] if more else []
@@ -93,10 +100,10 @@ def _row(case: SuiteCase) -> str:
     if nearest is not None:
         margin = f"{nearest.expectation}: {nearest.margin:.4g} {nearest.unit}".removesuffix(" 1")
     cells = [SIGNS[result.outcome], result.name, margin, cause.text if cause else ""]
-    return f"| {' | '.join(map(_cell, cells))} |"
+    return f"| {' | '.join(map(markdown_cell, cells))} |"
 
 
-def _cell(text: str) -> str:
+def markdown_cell(text: str) -> str:
     """Text that stays text in a table of Markdown."""
     text = printable(" ".join(text.split())).replace("\\", "\\\\")
     for sign in "|<>`*_[]":

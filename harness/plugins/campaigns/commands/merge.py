@@ -52,7 +52,8 @@ class MergeCommand(Command):
                 "overrides": list(selection.overrides.items()),
             },
         )
-        page, columns = write_suite_files(options, suite, SuiteHooks(write=write_results))
+        hooks = SuiteHooks(write=write_results, writes_single_case=True)
+        page, columns = write_suite_files(options, suite, hooks)
         if arguments.format == "json":
             show_json(suite)
         elif arguments.format == "full":

@@ -1,0 +1,1 @@
+"""What pipelines show of results, and margins that may not shrink unnoticed."""

@@ -1,0 +1,175 @@
+"""Margins of a suite in a small file, and those that shrank since it was written."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from harness.core.files import replaced, writing
+from harness.plugins.ci.document import read_document
+from harness.recording.verdict import Verdict
+from harness.reporting.suite.junit import SAMPLE
+from harness.reporting.suite.record import SuiteCase
+from harness.suite.discovery import UsageError
+
+FORMAT = "armharness-margins/1"
+DEFAULT_FILE = "margins.json"
+KEEP = 0.5
+"""Share of an earlier margin that has to remain: half of the reserve may be lost unnoticed."""
+
+Margins = Mapping[str, Mapping[str, float]]
+"""Name of a case -> expectation with its unit -> margin."""
+
+
+@dataclass(frozen=True)
+class ShrunkMargin:
+    """A margin that is smaller than it may be, of an expectation that still passes.
+
+    Attributes:
+        file: The file of the scenario.
+        line: The line of the expectation; 0 if unknown.
+        case: The name of the case in the baseline.
+        expectation: The expectation and the step that it belongs to.
+        before: The margin in the baseline, in `unit`.
+        now: The margin of this run, in `unit`.
+    """
+
+    file: str
+    line: int
+    case: str
+    expectation: str
+    before: float
+    now: float
+    unit: str
+
+    @property
+    def change(self) -> str:
+        """The change in small units: `40 -> 6 mm`."""
+        if self.unit == "m":
+            return f"{self.before * 1000:.4g} -> {self.now * 1000:.4g} mm"
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.before:.4g} -> {self.now:.4g}{unit}"
+
+    def __str__(self) -> str:
+        return f"the margin of {self.expectation} shrank: {self.change}"
+
+
+def shrunk_margins(
+    cases: Iterable[SuiteCase], baseline: Margins, keep: float = KEEP
+) -> list[ShrunkMargin]:
+    """The margins of passed expectations that lost more than they may.
+
+    A failed expectation is none of them: its case has failed. What the baseline does not have, or
+    had no margin in it, cannot shrink.
+
+    Args:
+        cases: The cases of this run.
+        baseline: The margins of an earlier run.
+        keep: The share of each earlier margin that has to remain.
+    """
+    found: dict[tuple[str, str], ShrunkMargin] = {}
+    for name, key, verdict, file in _margins(cases):
+        before = baseline.get(name, {}).get(key, 0.0)
+        if verdict.status != "passed" or not verdict.margin < keep * before:
+            continue
+        expectation = _named(verdict)
+        shrunk = ShrunkMargin(
+            file, verdict.line, name, expectation, before, verdict.margin, verdict.unit
+        )
+        known = found.setdefault((name, key), shrunk)
+        if shrunk.now < known.now:
+            found[name, key] = shrunk
+    return list(found.values())
+
+
+def new_margins(cases: Iterable[SuiteCase], baseline: Margins) -> int:
+    """The number of expectations with a margin that the baseline does not have."""
+    keys = {(name, key) for name, key, verdict, _ in _margins(cases) if verdict.margin > 0}
+    return sum(key not in baseline.get(name, {}) for name, key in keys)
+
+
+def updated(cases: Iterable[SuiteCase], baseline: Margins) -> dict[str, dict[str, float]]:
+    """The baseline with the margins of the cases that passed in place of earlier ones.
+
+    Cases that failed or did not run keep their margins; those whose file is gone are left out.
+    """
+    passed: dict[str, dict[str, float]] = {}
+    failed = set[str]()
+    for case in cases:
+        if case.result.outcome != "passed":
+            failed.add(_case_name(case))
+    for name, key, verdict, _ in _margins(cases):
+        least = passed.setdefault(name, {}).get(key, math.inf)
+        passed[name][key] = min(least, verdict.margin)
+    kept = {n: dict(m) for n, m in baseline.items() if Path(n.partition(" [")[0]).is_file()}
+    return kept | {name: margins for name, margins in passed.items() if name not in failed}
+
+
+def read_baseline(file: Path) -> Margins:
+    """The margins in a file.
+
+    Raises:
+        UsageError: There is no such file, or it is no baseline.
+    """
+    document = read_document(file, FORMAT, "--update-baseline writes it")
+    try:
+        return {
+            str(name): {_with_unit(key, text): _number(text) for key, text in margins.items()}
+            for name, margins in document["margins"].items()
+        }
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(f"'{file}' is no baseline of margins: {error}") from error
+
+
+def write_baseline(file: Path, margins: Margins) -> None:
+    """Write margins, sorted, a line each, so that a review shows what changed.
+
+    Raises:
+        HarnessError: The file cannot be written.
+    """
+    content = {
+        name: dict(_text(key, margin) for key, margin in sorted(of_case.items()))
+        for name, of_case in sorted(margins.items())
+    }
+    text = json.dumps({"format": FORMAT, "margins": content}, indent=2, ensure_ascii=False)
+    with writing(file.parent), replaced(file) as stream:
+        stream.write(f"{text}\n".encode())
+
+
+def _margins(cases: Iterable[SuiteCase]) -> Iterator[tuple[str, str, Verdict, str]]:
+    """Case, key, verdict and file of every verdict with a margin."""
+    for case in cases:
+        for verdict in case.result.verdicts:
+            if math.isfinite(verdict.margin):
+                key = f"{_named(verdict)} [{verdict.unit}]"
+                yield _case_name(case), key, verdict, case.result.file
+
+
+def _case_name(case: SuiteCase) -> str:
+    """File and case; samples of one case share a name, and the least of their margins counts."""
+    group = SAMPLE.sub("", case.result.case)
+    return f"{case.result.file} [{group}]" if group else case.result.file
+
+
+def _named(verdict: Verdict) -> str:
+    return f"{verdict.step}: {verdict.expectation}" if verdict.step else verdict.expectation
+
+
+def _text(key: str, margin: float) -> tuple[str, str]:
+    """The expectation, and its margin with the unit: `0.04 m`."""
+    expectation, _, unit = key.rpartition(" [")
+    return expectation, f"{margin:.6g} {unit.removesuffix(']')}"
+
+
+def _with_unit(expectation: str, text: str) -> str:
+    return f"{expectation} [{text.partition(' ')[2]}]"
+
+
+def _number(text: str) -> float:
+    if not re.fullmatch(r"[-+.\de]+ \S+", text):
+        raise ValueError(f"'{text}' is no margin with a unit, such as '0.04 m'")
+    return float(text.partition(" ")[0])

@@ -1,0 +1,30 @@
+"""JSON documents with a format that says what they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+from harness.core.untrusted_json import parse_json
+from harness.suite.discovery import UsageError
+
+
+def read_document(file: Path, format_name: str, advice: str) -> dict[str, Any]:
+    """A JSON document of a format.
+
+    Args:
+        advice: What to do where the file cannot be read.
+
+    Raises:
+        UsageError: The file cannot be read, or has another format.
+    """
+    try:
+        document = parse_json(file.read_bytes())
+    except OSError as error:
+        raise UsageError(f"'{file}' cannot be read: {error.strerror}; {advice}") from error
+    except ValueError as error:
+        raise UsageError(f"'{file}' is no JSON: {error}") from error
+    stated = cast("dict[str, Any]", document).get("format") if isinstance(document, dict) else None
+    if stated != format_name:
+        raise UsageError(f"'{file}' has the format {stated!r} instead of '{format_name}'")
+    return cast("dict[str, Any]", document)

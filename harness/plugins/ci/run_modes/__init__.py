@@ -1,0 +1,1 @@
+"""Options of `harness run` for pipelines."""
