@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from harness import __version__
 from harness.core.errors import Problem
+from harness.core.versions import library_versions
 
 SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -33,7 +33,7 @@ def sarif_document(invalid: Iterable[Problem], predicted: Iterable[Problem]) -> 
     found = [("invalid-file", each) for each in invalid]
     found += [("step-will-fail", each) for each in predicted]
     rules = [{"id": name, "shortDescription": {"text": text}} for name, text in RULES.items()]
-    driver = {"name": "armharness", "version": __version__, "rules": rules}
+    driver = {"name": "armharness", "version": library_versions()["armharness"], "rules": rules}
     results = [_result(rule, problem) for rule, problem in dict.fromkeys(found)]
     run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
