@@ -15,7 +15,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.core.user_cache import cached, store
 
-METHOD = 4  # Version of the decomposition; parts of another version are computed again
+METHOD = 5  # Version of the decomposition; parts of another version are computed again
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,14 +27,12 @@ class Decomposition:
         parts: Points whose convex hulls are the parts, each of shape (N, 3) [m].
         excess: The largest distance of a point of a part from the mesh [m].
         hull_excess: The same for the convex hull of the whole mesh [m].
-        is_closed: Whether the mesh encloses a volume.
     """
 
     hull: FloatArray
     parts: tuple[FloatArray, ...]
     excess: float
     hull_excess: float
-    is_closed: bool
 
 
 def stored_decomposition(
@@ -72,9 +70,9 @@ def _versions() -> tuple[str, ...]:
 def _read(content: bytes) -> Decomposition:
     with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
         hull, points, ends = arrays["hull"], arrays["points"], arrays["ends"]
-        excess, hull_excess, is_closed = arrays["measures"].tolist()
+        excess, hull_excess = arrays["measures"].tolist()
     parts = tuple(np.split(points, ends[:-1]))
-    return Decomposition(hull, parts, excess, hull_excess, bool(is_closed))
+    return Decomposition(hull, parts, excess, hull_excess)
 
 
 def _content(found: Decomposition) -> bytes:
@@ -84,6 +82,6 @@ def _content(found: Decomposition) -> bytes:
         hull=found.hull,
         points=np.concatenate(found.parts),
         ends=np.cumsum([len(part) for part in found.parts]),
-        measures=np.array([found.excess, found.hull_excess, float(found.is_closed)]),
+        measures=np.array([found.excess, found.hull_excess]),
     )
     return content.getvalue()

@@ -16,6 +16,7 @@ from itertools import combinations
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
+from trimesh.intersections import slice_faces_plane
 
 from harness.core.types import BoolArray, FloatArray
 from harness.robot.decomposition.convex_parts import Decomposition
@@ -43,7 +44,6 @@ NEARLY = 0.3
 """Height as a share of the largest from which a corner is kept at once with the highest."""
 
 NO_TRIANGLES = np.zeros((0, 3, 3))
-FLUSH = 1e-9  # Distance from a cut below which a corner is on it [m]
 
 _H = np.sqrt(0.5)
 NORMALS = np.array(
@@ -95,20 +95,20 @@ def decompose(triangles: FloatArray, *, is_hull: bool = False) -> Decomposition:
     share = min(longest / SMALL, 1.0)
     corners = _few_corners(hull.points[hull.vertices], CORNER_TOLERANCE * share)
     if abs(_volume(triangles) - hull.volume) < SAME_VOLUME * hull.volume:
-        return Decomposition(corners, (corners,), 0.0, 0.0, True)
+        return Decomposition(corners, (corners,), 0.0, 0.0)
     tolerance = TOLERANCE * share
     grid = solid_grid(triangles, tolerance * FINENESS)
     search = _Search(grid, max(tolerance - DIAGONAL * grid.edge, 0.5 * tolerance, grid.edge))
     hull_excess = _excess(grid, corners)
     if is_hull or hull_excess <= HULL_TOLERANCE * share:
-        return Decomposition(corners, (corners,), hull_excess, hull_excess, grid.is_closed)
+        return Decomposition(corners, (corners,), hull_excess, hull_excess)
     pieces = _merged(search, _cut(search, search.piece(triangles)))
     parts = tuple(
         _thickened(_few_corners(_corners(piece.triangles.reshape(-1, 3)), CORNER_TOLERANCE * share))
         for piece in pieces
     )
     excess = max(_excess(grid, part) for part in parts)
-    return Decomposition(corners, parts, excess, hull_excess, grid.is_closed)
+    return Decomposition(corners, parts, excess, hull_excess)
 
 
 def _volume(triangles: FloatArray) -> float:
@@ -265,28 +265,14 @@ def _split(
     triangles: FloatArray, normal: FloatArray, offset: float
 ) -> tuple[FloatArray, FloatArray]:
     """The triangles below and above a plane; those that it crosses are cut."""
-    height = triangles @ normal - offset
-    height[np.abs(height) < FLUSH] = 0.0
-    below, above = (height <= 0).all(axis=1), (height >= 0).all(axis=1)
-    crossed = ~(below | above)
-    lower, upper = [triangles[below]], [triangles[above & ~below]]
-    cut, height = triangles[crossed], height[crossed]
-    # Turn each triangle so that its first corner is alone on its side.
-    is_up = height >= 0
-    lone = np.where(is_up.sum(axis=1) == 1, is_up.argmax(axis=1), (~is_up).argmax(axis=1))
-    order = (lone[:, None] + np.arange(3)) % 3
-    rows = np.arange(len(cut))[:, None]
-    cut, height = cut[rows, order], height[rows, order]
-    a, b, c = cut[:, 0], cut[:, 1], cut[:, 2]
-    ab = a + (b - a) * (height[:, 0] / (height[:, 0] - height[:, 1]))[:, None]
-    ac = a + (c - a) * (height[:, 0] / (height[:, 0] - height[:, 2]))[:, None]
-    tip = np.stack([a, ab, ac], axis=1)
-    rest = np.concatenate([np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)])
-    up = height[:, 0] > 0
-    twice = np.concatenate([up, up])
-    lower += [tip[~up], rest[twice]]
-    upper += [tip[up], rest[~twice]]
-    return np.concatenate(lower), np.concatenate(upper)
+    corners, faces = triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+    below, above = (
+        points[rows]
+        for points, rows, _ in (
+            slice_faces_plane(corners, faces, side * normal, offset * normal) for side in (-1, 1)
+        )
+    )
+    return below, above
 
 
 def _merged(search: _Search, pieces: list[_Piece]) -> list[_Piece]:

@@ -53,11 +53,6 @@ class SolidGrid:
         centers = self.origin + (np.column_stack(index) + first + 0.5) * self.edge
         return centers, block[index]
 
-    @property
-    def is_closed(self) -> bool:
-        """Whether the mesh encloses voxels."""
-        return int((self.depth == 0).sum()) > len(self.surface)
-
 
 def solid_grid(triangles: FloatArray, edge: float) -> SolidGrid:
     """Fill the space around a mesh.
