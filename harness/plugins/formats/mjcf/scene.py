@@ -17,6 +17,8 @@ from harness.language.files.xml_file import XmlElement
 from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
 from harness.plugins.formats.mjcf.elements import Elements
 from harness.plugins.formats.mjcf.shapes import GeomReader
+from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
+from harness.plugins.formats.plain_values import first_mistake, pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
 from harness.plugins.formats.sdf.world import LONGEST_STEP, SHORTEST_STEP
 from harness.robot.mjcf.compiled import compile_mjcf, driven_trees
@@ -27,8 +29,6 @@ from harness.robot.packages import PackagePath
 from harness.robot.tree import free_name
 from harness.world.imported import ImportedWorld
 from harness.world.notes import Notes
-from harness.world.object_words import MassProperties, look_words, mass_words, together
-from harness.world.plain_values import first_mistake, pose_spec, rounded
 
 LONGEST_NAME = 100
 

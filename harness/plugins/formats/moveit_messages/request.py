@@ -15,9 +15,9 @@ from harness.plugins.formats.moveit_messages.values import (
     quaternion,
     text,
 )
+from harness.plugins.formats.plain_values import rounded
 from harness.robot.yaml_data import number, read_data, refuse
 from harness.world.notes import Note, Notes
-from harness.world.plain_values import rounded
 
 KEYS = ("goal_constraints", "start_state", "group_name")
 IGNORED = ("path_constraints", "trajectory_constraints", "reference_trajectories")

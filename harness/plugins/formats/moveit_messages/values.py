@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.language.files.source import Located
+from harness.plugins.formats.plain_values import first_mistake
 from harness.robot.yaml_data import number, refuse
-from harness.world.plain_values import first_mistake
 
 
 def child(item: Located, *names: str) -> Located | None:

@@ -18,16 +18,16 @@ from harness.language.files.source import Place, Source
 from harness.language.files.yaml_file import read_text
 from harness.language.world import MeshSpec, ObjectSpec, ShapeSpec, WorldSpec
 from harness.plugins.formats.moveit_scene.tokens import TokenReader
-from harness.plugins.formats.stl import Triangles, add_mesh, cone
-from harness.world.imported import ImportedWorld
-from harness.world.notes import Notes
-from harness.world.plain_values import (
+from harness.plugins.formats.plain_values import (
     LEAST_NORMAL,
     THICK_PLANE,
     first_mistake,
     plane_pose,
     pose_spec,
 )
+from harness.plugins.formats.stl import Triangles, add_mesh, cone
+from harness.world.imported import ImportedWorld
+from harness.world.notes import Notes
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
 LARGEST_FILE = 8_000_000  # [bytes]

@@ -8,14 +8,14 @@ from harness.core.errors import collected
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import ObjectSpec, ShapeSpec
+from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
+from harness.plugins.formats.plain_values import pose_spec
 from harness.plugins.formats.sdf.bodies import SdfBody, SdfLink
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.masses import link_masses
 from harness.plugins.formats.sdf.model_path import MissingFileError
 from harness.plugins.formats.sdf.shapes import ShapeReader
 from harness.plugins.formats.sdf.values import pose_of
-from harness.world.object_words import MassProperties, look_words, mass_words, together
-from harness.world.plain_values import pose_spec
 
 LONGEST_NAME = 100
 

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE, SpecModel
 from harness.language.files.xml_file import XmlElement
-from harness.world.plain_values import first_mistake
+from harness.plugins.formats.plain_values import first_mistake
 
 UNBOUNDED = ("mu", "mu2")  # elements in which worlds write 1e16 to exclude slip
 M = TypeVar("M", bound=SpecModel)

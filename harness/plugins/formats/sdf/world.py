@@ -14,6 +14,7 @@ from harness.language.base import SMALLEST_SIZE
 from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
+from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.bodies import bodies_of
 from harness.plugins.formats.sdf.cameras import cameras_of
 from harness.plugins.formats.sdf.elements import note_unread_elements
@@ -24,7 +25,6 @@ from harness.plugins.formats.sdf.tree import SdfLight, SdfTree
 from harness.plugins.formats.sdf.values import is_flag, is_true, numbers_of, validated
 from harness.world.imported import ImportedWorld
 from harness.world.notes import Notes
-from harness.world.plain_values import pose_spec, rounded
 
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.02  # [s], as in a world file
 

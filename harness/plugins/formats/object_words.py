@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.poses import Pose
 from harness.language.world import FrictionSpec, ShapeSpec
-from harness.world.plain_values import rounded, significant
+from harness.plugins.formats.plain_values import rounded, significant
 
 GEOMETRIES = ("box", "cylinder", "sphere", "capsule", "plane", "mesh")
 
