@@ -52,6 +52,7 @@ BUILT_IN = {
     "ik_solver": "harness.planning.ik.solvers",
     "controller": "harness.simulation.controllers",
     "robot": "",
+    "robot_format": "",
     "world_format": "",
     "reporter": "harness.reporting.reporters",
 }

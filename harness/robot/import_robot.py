@@ -16,9 +16,9 @@ from harness.robot.description import WORLD, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import files_around, find_file, find_folder
 from harness.robot.imported_part import imported_part, refuse_unknown_links
-from harness.robot.mjcf.mjcf import read_mjcf
 from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
+from harness.robot.robot_format import read_foreign_robot
 from harness.robot.srdf.check import checked_srdf
 from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
 from harness.robot.srdf.read import read_srdf
@@ -53,8 +53,8 @@ def read_robot(
     files = [*([path] if key == "xacro" else []), *([srdf_path] if srdf_path else [])]
     refuse_unknown_arguments(spec.args, files)
     if key == "mjcf":
-        mjcf = read_mjcf(path, packages)
-        urdf, states, excluded = mjcf.urdf, mjcf.states, mjcf.disabled
+        found = read_foreign_robot(key, path, packages)
+        urdf, states, excluded = found.urdf, found.states, found.disabled
     else:
         is_xacro = key == "xacro"
         document = render(path, spec.args, packages) if is_xacro else read_bounded(path)

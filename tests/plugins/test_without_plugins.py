@@ -75,6 +75,12 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     done = core("check", file)
     assert done.returncode == 2
     assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    (tmp_path / "arm.xml").write_text("<mujoco/>")
+    file.write_text("robot: {mjcf: arm.xml}\nsteps: [{wait: 1}]\n")
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:1:15" in done.stdout + done.stderr
+    assert "lacks the built-in plug-ins" in done.stdout + done.stderr
     part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
     assert part.returncode == 2
     assert "--shard" in part.stderr

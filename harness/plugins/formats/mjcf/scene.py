@@ -17,14 +17,14 @@ from harness.language.files.xml_file import XmlElement
 from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
 from harness.plugins.formats.mjcf.elements import Elements
 from harness.plugins.formats.mjcf.shapes import GeomReader
+from harness.plugins.formats.mjcf_robot.compiled import compile_mjcf, driven_trees
+from harness.plugins.formats.mjcf_robot.files import read_tree
+from harness.plugins.formats.mjcf_robot.joints import mjcf_pose
+from harness.plugins.formats.mjcf_robot.mjcf import UNNAMED
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import first_mistake, pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
 from harness.plugins.formats.sdf.world import LONGEST_STEP, SHORTEST_STEP
-from harness.robot.mjcf.compiled import compile_mjcf, driven_trees
-from harness.robot.mjcf.files import read_tree
-from harness.robot.mjcf.joints import mjcf_pose
-from harness.robot.mjcf.mjcf import UNNAMED
 from harness.robot.packages import PackagePath
 from harness.robot.tree import free_name
 from harness.world.imported import ImportedWorld

@@ -12,7 +12,7 @@ from typing import Any
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Source
 from harness.language.files.xml_file import XmlElement
-from harness.robot.mjcf.files import missing_meshes
+from harness.plugins.formats.mjcf_robot.files import missing_meshes
 from harness.robot.packages import PackagePath
 
 

@@ -13,12 +13,18 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
+from harness.plugins.formats.mjcf_robot.compiled import compile_mjcf, driven_trees
+from harness.plugins.formats.mjcf_robot.files import read_tree
+from harness.plugins.formats.mjcf_robot.joints import (
+    body_chain,
+    mjcf_pose,
+    pulled_pairs,
+    with_mimics,
+)
+from harness.plugins.formats.mjcf_robot.links import body_link, links_between
 from harness.robot.description import WORLD, Joint, Link, NamedState, fixed_joint
-from harness.robot.mjcf.compiled import compile_mjcf, driven_trees
-from harness.robot.mjcf.files import read_tree
-from harness.robot.mjcf.joints import body_chain, mjcf_pose, pulled_pairs, with_mimics
-from harness.robot.mjcf.links import body_link, links_between
 from harness.robot.packages import PackagePath
+from harness.robot.robot_format import FormatRobot
 from harness.robot.srdf.srdf import link_pair
 from harness.robot.tree import free_name, in_tree_order
 from harness.robot.urdf.urdf import Urdf
@@ -27,22 +33,7 @@ ROOT = "robot_world"  # The link to which the bodies of MJCF's world body are fi
 UNNAMED = "MuJoCo Model"  # MuJoCo's name of a model without a name
 
 
-@dataclass(frozen=True, eq=False)
-class Mjcf:
-    """An MJCF robot.
-
-    Attributes:
-        urdf: The tree of the robot.
-        states: Keyframes as states of the driven joints; their group is empty.
-        disabled: Pairs that the file excludes from contact.
-    """
-
-    urdf: Urdf
-    states: tuple[NamedState, ...]
-    disabled: Mapping[tuple[str, str], str]
-
-
-def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
+def read_mjcf(path: Path, packages: PackagePath) -> FormatRobot:
     """Read an MJCF file as MuJoCo compiles it.
 
     Only the force limits of actuators are read: the program drives every joint with its own servo.
@@ -66,7 +57,7 @@ def read_mjcf(path: Path, packages: PackagePath) -> Mjcf:
     name = model.names.split(b"\0")[0].decode()
     name = "" if name == UNNAMED else name
     urdf = Urdf(name, *ordered, tuple(reader.notes), elements)
-    return Mjcf(urdf, reader.states({joint.name for joint in joints}), reader.excluded())
+    return FormatRobot(urdf, reader.states({joint.name for joint in joints}), reader.excluded())
 
 
 @dataclass(eq=False)
