@@ -32,6 +32,10 @@ BEST_EFFORT = Qos(is_reliable=False)  # of a subscription that takes messages of
 LATCHED = Qos(is_latched=True, depth=1)
 
 
+SERVICE = "/_service"
+"""The end of the topic of a `Use` that is a service: its client publishes requests there."""
+
+
 @dataclass(frozen=True)
 class Use:
     """A publisher or a subscription of a topic; `kind` is a type such as std_msgs/msg/String."""

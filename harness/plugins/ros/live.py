@@ -12,6 +12,7 @@ import numpy as np
 
 from harness.core.printable import counted
 from harness.plugins.ros.camera_topics import CameraTopics
+from harness.plugins.ros.controller_manager import ControllerManager
 from harness.plugins.ros.handover import HandOver
 from harness.plugins.ros.launch import Program, start_program
 from harness.plugins.ros.moveit.server import MoveGroup
@@ -120,6 +121,7 @@ class LiveControl(HandOver):
         cameras = camera_edges(tuple(program.cameras.values()), self.robot, objects)
         self._states = StateTopics(graph, self.robot, cameras)
         self._wiring = Wiring(graph, self.cell, self._note)
+        self._manager = ControllerManager(graph, self.cell)
         self._move_group = MoveGroup(graph, self.cell, self._note, self._explain)
         finish = self.cell.on_outcome
         self.cell.on_outcome = lambda outcome: (finish(outcome), self._move_group.finish(outcome))
@@ -192,6 +194,7 @@ class LiveControl(HandOver):
         efforts[simulator.physics.actuated] = simulator.efforts()
         if self._pace.ticks % FEEDBACK_EVERY == 0:
             self._wiring.publish_feedback()
+            self._manager.publish()
         self._states.publish(simulator.time, positions, velocities, efforts)
         self._cameras.publish(simulator.time, sample, positions, simulator.objects_now)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
-from harness.plugins.ros.endpoints import Use
+from harness.plugins.ros.endpoints import SERVICE, Use
 
 IGNORED = {"/rosout", "/parameter_events", "/clock"}  # topics that every node of rclpy has
 
@@ -14,6 +14,7 @@ HIDDEN, FEEDBACK, MESSAGE = "/_action/", "/_action/feedback", "_FeedbackMessage"
 
 WHY = {
     "calls the action": "is not served",
+    "calls the service": "is not served",
     "publishes": "has no subscriber",
     "subscribes to": "is not published",
 }
@@ -32,9 +33,10 @@ def unserved(own: Sequence[Use], others: Sequence[Use]) -> list[str]:
     for use in others:
         name, does = _name(use), _does(use)
         is_lost = (use.topic, not use.publishes) not in used and use.topic not in IGNORED
-        if is_lost and name and not (use.publishes and _is_action(use)):
+        is_server = use.publishes is _is_action(use) and _kind_of(use) != "topic"
+        if is_lost and name and not is_server:
             fits = [mine for mine in own if mine.publishes is not use.publishes]
-            known = [_name(mine) for mine in fits if _is_action(mine) is _is_action(use)]
+            known = [_name(mine) for mine in fits if _kind_of(mine) == _kind_of(use)]
             close = get_close_matches(name, known, 1)
             hint = f"; did you mean {close[0]}?" if close else ""
             notes.add(f"a node {does} {name}, which {WHY[does]}{hint}")
@@ -84,10 +86,16 @@ def _is_action(use: Use) -> bool:
 
 def _name(use: Use) -> str:
     """The topic or the action of its feedback; empty for what else belongs to an action."""
-    name = use.topic.removesuffix(FEEDBACK)
+    name = use.topic.removesuffix(FEEDBACK).removesuffix(SERVICE)
     return "" if HIDDEN in name else name
 
 
 def _does(use: Use) -> str:
     topic = "publishes" if use.publishes else "subscribes to"
-    return "calls the action" if _is_action(use) else topic
+    kind = _kind_of(use)
+    return topic if kind == "topic" else f"calls the {kind}"
+
+
+def _kind_of(use: Use) -> str:
+    is_service = use.topic.endswith(SERVICE)
+    return "action" if _is_action(use) else "service" if is_service else "topic"

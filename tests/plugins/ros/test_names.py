@@ -9,7 +9,7 @@ from harness.core.errors import SpecError
 from harness.plugins.ros.actions import ActionClient
 from harness.plugins.ros.bridge import BridgeRequest, run_bridge
 from harness.plugins.ros.domain import free_domain
-from harness.plugins.ros.endpoints import BEST_EFFORT, LATCHED, Use
+from harness.plugins.ros.endpoints import BEST_EFFORT, LATCHED, SERVICE, Use
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.plugins.ros.names import unserved
 from harness.plugins.ros.rtps.graph import dds_type
@@ -32,6 +32,16 @@ def test_topics_that_nodes_use_among_themselves_are_left_out():
     [sentence] = unserved(own, [use("/joint_state")])
     assert sentence == (
         "a node subscribes to /joint_state, which is not published; did you mean /joint_states?"
+    )
+
+
+def test_services_that_no_node_serves_are_named_and_servers_are_not():
+    own = [use(f"/compute_ik{SERVICE}")]
+    others = [use("/my_own_service" + SERVICE), use("/spin" + SERVICE, publishes=True)]
+    [sentence] = unserved(own, [*others, use("/spin" + SERVICE),
+                                use(f"/compute_IK{SERVICE}", publishes=True)])  # fmt: skip
+    assert sentence == (
+        "a node calls the service /compute_IK, which is not served; did you mean /compute_ik?"
     )
 
 

@@ -159,6 +159,11 @@ class ExternalCell:
             if each.motion is not None and each.motion.goal:
                 yield each.motion.goal, each.motion.feedback(self._now(each))
 
+    def motion_of(self, controller: Controller) -> tuple[FloatArray, FloatArray]:
+        """Motion of a controller's joints now: desired, shape (3, dof), and measured, (2, dof)."""
+        window = self._now(controller)
+        return window.desired[:, -1], window.measured[:, -1]
+
     def finish(self) -> None:
         """End what is still active; the arm holds its last set point."""
         for controller in self._each:

@@ -11,6 +11,7 @@ import numpy as np
 from harness.plugins.ros.endpoints import (
     DEFAULT,
     LATCHED,
+    SERVICE,
     Client,
     OnMessage,
     Publisher,
@@ -27,7 +28,7 @@ from harness.plugins.ros.rtps.wire import Sample
 from harness.plugins.ros.rtps.writer import Writer
 from harness.reporting.rosbag.messages import message
 
-SERVICE = Qos(depth=100)
+SERVICE_QOS = Qos(depth=100)
 DISCOVERY = "ros_discovery_info"
 INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
 CYCLONE = b"\x01\x10"
@@ -89,7 +90,7 @@ class Graph:
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
         """Answer requests of a service; `kind` is its type, such as action_msgs/srv/CancelGoal."""
-        writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE)
+        writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE_QOS)
 
         def take(request: Any, identity: bytes) -> None:
             def answer(response: Any) -> None:
@@ -115,7 +116,7 @@ class Graph:
             writer.write(*_framed(encoded(request, f"{kind}_Request"), identity))
 
         reader = self._reader(f"rr{name}Reply", f"{kind}_Response", take)
-        writer = self._writer(f"rq{name}Request", f"{kind}_Request", SERVICE)
+        writer = self._writer(f"rq{name}Request", f"{kind}_Request", SERVICE_QOS)
         return Client(lambda: bool(writer.matched and reader.matched), call)
 
     def uses(self) -> tuple[list[Use], list[Use]]:
@@ -130,7 +131,7 @@ class Graph:
         return made
 
     def _reader(
-        self, topic: str, kind: str, take: Callable[[Any, bytes], object], qos: Qos = SERVICE
+        self, topic: str, kind: str, take: Callable[[Any, bytes], object], qos: Qos = SERVICE_QOS
     ) -> Reader:
         def deliver(sample: Sample) -> None:
             payload, identity = _unframed(sample, topic)
@@ -163,11 +164,14 @@ class Graph:
 
 
 def _uses(endpoints: Iterable[Endpoint]) -> Iterator[Use]:
-    """What endpoints are in ROS; services are left out."""
+    """What endpoints are in ROS; of a service its requests."""
     for each in endpoints:
+        kind = each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_")
         if each.topic.startswith("rt/"):
-            kind = each.type_name.replace("::dds_::", "::").replace("::", "/").removesuffix("_")
             yield Use(each.topic[2:], kind, each.is_writer, each.qos)
+        elif each.topic.startswith("rq/"):
+            name = each.topic[2:].removesuffix("Request") + SERVICE
+            yield Use(name, kind.removesuffix("_Request"), each.is_writer, each.qos)
 
 
 def _framed(payload: bytes, identity: bytes) -> tuple[bytes, bytes]:

@@ -1,0 +1,130 @@
+"""The services of ros2_control's controller manager, and the state topics of its controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.plugins.ros.control.cell import ExternalCell
+from harness.plugins.ros.control.controller import Controller
+from harness.plugins.ros.endpoints import Publisher
+from harness.plugins.ros.interfaces import header, register_move_group
+from harness.plugins.ros.rtps.graph import Graph
+from harness.reporting.rosbag.messages import message
+
+SRV = "controller_manager_msgs/srv/"
+STATE = "control_msgs/msg/JointTrajectoryControllerState"
+TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
+GRIPPER = "position_controllers/GripperActionController"
+BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
+UPDATES = 100
+"""Updates of the controllers in a second of simulated time."""
+
+
+class ControllerManager:
+    """Lists the controllers, which are all active and stay so, and publishes their states."""
+
+    def __init__(self, graph: Graph, cell: ExternalCell) -> None:
+        register_move_group()
+        self._cell = cell
+        for name, answer in (
+            ("ListControllers", self._list),
+            ("ListControllerTypes", self._types),
+            ("SwitchController", self._switch),
+            ("LoadController", self._is_there),
+            ("ConfigureController", self._is_there),
+            ("UnloadController", lambda _: {"ok": False}),
+            ("ReloadControllerLibraries", lambda _: {"ok": False}),
+        ):
+            kind = SRV + name
+            graph.serve(
+                f"/controller_manager/{_snake(name)}",
+                kind,
+                lambda request, reply, answer=answer, kind=kind: reply(
+                    message(f"{kind}_Response", **answer(request))
+                ),
+            )
+        self._states: dict[str, Publisher] = {
+            name: graph.advertise(f"/{name}/controller_state", STATE)
+            for name, controller in cell.controllers.items()
+            if "gripper" not in controller.kinds
+        }
+
+    def publish(self) -> None:
+        """Publish the desired and the measured motion of each trajectory controller."""
+        for name, publisher in self._states.items():
+            if publisher.subscribers:
+                controller = self._cell.controllers[name]
+                desired, measured = self._cell.motion_of(controller)
+                error = desired[: len(measured)] - measured
+                publisher.publish(
+                    message(
+                        STATE,
+                        header=header(self._cell.time),
+                        joint_names=[joint.name for joint in controller.joints],
+                        reference=_point(desired),
+                        feedback=_point(measured),
+                        error=_point(error),
+                        output=_point(desired[:1]),
+                        speed_scaling_factor=1.0,
+                    )
+                )
+
+    def _list(self, _request: Any) -> dict[str, Any]:
+        known = [_state(name, each) for name, each in self._cell.controllers.items()]
+        return {"controller": [_described("joint_state_broadcaster", BROADCASTER, ()), *known]}
+
+    def _types(self, _request: Any) -> dict[str, Any]:
+        types = [TRAJECTORY, GRIPPER, BROADCASTER]
+        return {"types": types, "base_classes": ["controller_interface::ControllerInterface"] * 3}
+
+    def _switch(self, request: Any) -> dict[str, Any]:
+        """Accept what changes nothing: all controllers are active."""
+        unknown = [name for name in request.activate_controllers if not self._knows(str(name))]
+        stopped = [name for name in request.deactivate_controllers if self._knows(str(name))]
+        reason = ""
+        if unknown:
+            reason = f"there is no controller '{str(unknown[0])[:80]}'"
+        elif stopped:
+            reason = f"'{stopped[0]}' stays active: the controllers of a scenario cannot be stopped"
+        return {"ok": not reason, "message": reason}
+
+    def _is_there(self, request: Any) -> dict[str, Any]:
+        return {"ok": self._knows(str(request.name))}
+
+    def _knows(self, name: str) -> bool:
+        return name in self._cell.controllers or name == "joint_state_broadcaster"
+
+
+def _state(name: str, controller: Controller) -> Any:
+    interfaces = [f"{joint.name}/position" for joint in controller.joints]
+    kind = GRIPPER if "gripper" in controller.kinds else TRAJECTORY
+    return _described(name, kind, interfaces)
+
+
+def _described(name: str, kind: str, interfaces: Iterable[str]) -> Any:
+    claimed = list(interfaces)
+    return message(
+        "controller_manager_msgs/msg/ControllerState",
+        name=name,
+        state="active",
+        type=kind,
+        update_rate=UPDATES,
+        claimed_interfaces=claimed,
+        required_command_interfaces=claimed,
+    )
+
+
+def _point(rows: FloatArray) -> Any:
+    """A JointTrajectoryPoint of positions, and as many derivatives as there are rows."""
+    keys = ("positions", "velocities", "accelerations")
+    values = {key: np.array(row) for key, row in zip(keys, rows, strict=False)}
+    return message("trajectory_msgs/msg/JointTrajectoryPoint", **values)
+
+
+def _snake(name: str) -> str:
+    """`ListControllers` is `list_controllers`."""
+    return "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
