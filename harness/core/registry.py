@@ -46,6 +46,7 @@ BUILT_IN = {
     "command": "harness.cli.commands",
     "run_mode": "",
     "case_runner": "",
+    "starter": "",
     "step": "harness.steps",
     "expectation": "harness.judging.expectations",
     "planner": "harness.planning.search.pipelines",

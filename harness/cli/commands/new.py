@@ -11,6 +11,7 @@ from harness.cli.command import SCENARIOS, Command
 from harness.cli.new_project import SCHEMA, write_project
 from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
+from harness.core.registry import registry
 from harness.core.resources import data_folder
 from harness.suite.discovery import SUFFIX, UsageError
 
@@ -25,7 +26,7 @@ class NewCommand(Command):
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness new`."""
-        text = "the scenario file to write, for example first.scenario.yaml"
+        text = "the scenario file to write, as first.scenario.yaml; with --assignment a folder"
         command.add_argument("file", metavar="FILE", nargs="?", default="", help=text)
         text = (
             "write a folder for a repository of scenarios instead: a first scenario, a baseline of"
@@ -34,6 +35,11 @@ class NewCommand(Command):
         command.add_argument("--project", metavar="DIR", default="", help=text)
         command.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
         add_robot_options(command)
+        names = list(registry("starter").built_in_names)
+        if names:
+            text = "write a whole folder for this grading system in place of a scenario"
+            command.add_argument("--assignment", choices=names, default="", help=text)
+        command.set_defaults(assignment="")
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Write a scenario to a new file, or a project to a new folder."""
@@ -42,6 +48,9 @@ class NewCommand(Command):
         if arguments.project:
             return _new_project(arguments)
         file = Path(arguments.file)
+        if arguments.assignment:
+            say_text("\n".join(registry("starter").find(arguments.assignment)().write(file)))
+            return 0
         if not file.name.endswith(SUFFIX):
             stem = file.name.removesuffix(".yaml").removesuffix(".yml")
             better = file.with_name(f"{stem}{SUFFIX}")

@@ -76,7 +76,7 @@ def find_submissions(place: Path) -> list[Submission]:
 
 def one_submission(path: Path) -> Submission:
     """What stands at a path as the submission of one student."""
-    name = path.name
+    name = path.name or path.resolve().name
     for ending in (*ARCHIVES, ".scenario.yaml", ".yaml", ".py", *BAGS):
         if path.is_file() and name.lower().endswith(ending) and len(name) > len(ending):
             name = name[: -len(ending)]

@@ -79,7 +79,7 @@ def write_classroom50(grade: ClassGrade, file: Path, environment: Mapping[str, s
     References:
         [1] foundation50/classroom50, wiki/Advanced-Autograding.md.
     """
-    [student] = grade.students
+    [student], hidden = grade.students, grade.assignment.model.hidden
     missing = [
         name for name in IDENTITY.values() if name != "REVIEW_URL" and name not in environment
     ]
@@ -91,13 +91,18 @@ def write_classroom50(grade: ClassGrade, file: Path, environment: Mapping[str, s
     identity["review"] = identity["review"] or identity["commit"]
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     document = {"schema": CLASSROOM50, **identity, "datetime": _handed_in() or now}
-    _write(file, {**document, "graded_at": now, **classroom50(student)})
+    _write(file, {**document, "graded_at": now, **classroom50(student, 1 + len(hidden))})
 
 
-def classroom50(student: StudentGrade) -> dict[str, Any]:
-    """Scores as whole numbers, which the format has: in hundredths where points are not whole."""
+def classroom50(student: StudentGrade, cases: int) -> dict[str, Any]:
+    """Scores as whole numbers, which the format has: in hundredths where points are not whole.
+
+    Args:
+        student: The grade of the submission.
+        cases: The number of cases, the public one included, so that all submissions count alike.
+    """
     marks = list(_marks(student))
-    is_whole = all(float(mark.points).is_integer() for _, mark, _ in marks)
+    is_whole = all(float(each.points / cases).is_integer() for each in student.criteria)
     unit = 1 if is_whole else 100
     tests = [
         {

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import whole_number
-from harness.cli.command import Command
+from harness.cli.command import EXCHANGE, Command
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
 from harness.suite.discovery import UsageError
@@ -27,6 +27,7 @@ class GradeClassCommand(Command):
     """Grade the submissions of a class by an assignment."""
 
     name: ClassVar[str] = "grade-class"
+    group: ClassVar[str] = EXCHANGE
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness grade-class`."""

@@ -1,0 +1,1 @@
+"""Folders with which grading systems run `harness grade-class`."""
