@@ -203,7 +203,7 @@ class ObjectPredicate(Predicate):
 
     def margins(self, window: Window) -> MarginSignal:
         found = super().margins(window)
-        if not _is_recorded(window.run, self.object):
+        if all(record.name != self.object for record in window.run.objects):
             return found
         here = lasting(window.cut(present(window.run, self.object)))
         return replace(
@@ -228,10 +228,6 @@ def _texts(value: Any) -> Iterator[str]:
                 yield from _texts(part)
         case _:
             pass
-
-
-def _is_recorded(run: Run, name: str) -> bool:
-    return any(record.name == name for record in run.objects)
 
 
 InnerPredicate = Annotated[Predicate, PluginField(KIND, CHECK)]

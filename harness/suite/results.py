@@ -53,7 +53,8 @@ class Results(Mapping[int, CaseResult]):
             The places of those that stand in the stream.
         """
         dropped = list(filter(is_dropped, self))
-        places = [self._place(each) for each in dropped if self._is_stored(each)]
+        stored = [] if self._stream is None else [n for n in dropped if n not in self._kept]
+        places = list(map(self._place, stored))
         for index in dropped:
             self._outcomes[index] = MISSING
             self._kept.pop(index, None)
@@ -63,9 +64,6 @@ class Results(Mapping[int, CaseResult]):
 
     def _place(self, index: int) -> Place:
         return Place(self._offsets[index], self._lengths[index])
-
-    def _is_stored(self, index: int) -> bool:
-        return self._stream is not None and index not in self._kept
 
     def __len__(self) -> int:
         return self._count

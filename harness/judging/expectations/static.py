@@ -16,7 +16,6 @@ from harness.judging.text import amount
 from harness.judging.window import Window, lasting
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
-from harness.recording.run import Run
 from harness.recording.verdict import Measure
 
 JOINT_SPEED = Quantity(
@@ -68,7 +67,8 @@ class Static(Predicate):
             here = present(run, self.object)
         judged = rest_is_known(window, here)
         parts: list[Part] = []
-        names = [self.object] if self.object is not None else _dynamic(run)
+        free = [each.name for each in run.objects if each.in_simulation and not each.is_static]
+        names = [self.object] if self.object is not None else free
         for name in names:
             there = present(run, name)
             physical_poses(run, name)  # not observable of what the planner alone knows
@@ -95,7 +95,3 @@ class Static(Predicate):
             more = {"detail": joint.name, "measured_unit": unit}
             parts.append(still_part(window, JOINT_SPEED, speed, limit, always, **more))
         return parts
-
-
-def _dynamic(run: Run) -> list[str]:
-    return [record.name for record in run.objects if record.in_simulation and not record.is_static]

@@ -210,7 +210,8 @@ class _Composer:
             hint = 'tags have no meaning here; put the value in "quotes" to make it text'
             if is_unit and event.tag[1:] in ("degrees", "radians"):
                 hint = f"write `{event.value} {event.tag[1:4]}`"
-            self.problems.append(place.problem(f"`{_short_tag(event.tag)}` is a tag", hint))
+            short = event.tag.replace("tag:yaml.org,2002:", "!!")
+            self.problems.append(place.problem(f"`{short}` is a tag", hint))
         before = self._count
         item = Located(None, place)
         if isinstance(event, yaml.SequenceStartEvent):
@@ -318,7 +319,3 @@ def _depth(item: Located) -> int:
 
 def _is_nested(event: Any) -> bool:
     return not isinstance(event, yaml.ScalarEvent) or event.tag not in (None, "!")
-
-
-def _short_tag(tag: str) -> str:
-    return tag.replace("tag:yaml.org,2002:", "!!")

@@ -46,7 +46,7 @@ def draw(
         number: The seed; `shrink_case` with the same one draws the same cases.
     """
 
-    @seed(_inner_seed(number))
+    @seed(Random(number).getrandbits(64))  # the one that `find` makes of a generator
     @settings(QUIET, max_examples=count, phases=[Phase.generate])
     @given(strategy)
     def run(case: C) -> None:
@@ -93,11 +93,6 @@ def shrink_case(
     with _independent_of_loaded_modules(), suppress(*ends):
         find(strategy, condition, settings=limits, random=Random(number))
     return best[0][1] if best else None
-
-
-def _inner_seed(number: int) -> int:
-    """The seed that `find` makes of a generator."""
-    return Random(number).getrandbits(64)
 
 
 @contextmanager

@@ -122,7 +122,7 @@ class LiveControl(HandOver):
         self._states = StateTopics(graph, self.robot, cameras)
         self._wiring = Wiring(graph, self.cell, self._note)
         self._manager = ControllerManager(graph, self.cell)
-        self._move_group = MoveGroup(graph, self.cell, self._note, self._explain)
+        self._move_group = MoveGroup(graph, self.cell, self._note, self._say_once)
         finish = self.cell.on_outcome
         self.cell.on_outcome = lambda outcome: (finish(outcome), self._move_group.finish(outcome))
         self._cameras = CameraTopics(graph, prepared.program)
@@ -205,7 +205,7 @@ class LiveControl(HandOver):
         """
         uses = self._graph.uses()
         for note in mismatched(*uses):
-            self._say_once(note, note)
+            self._say_once(note)
         self._names = tuple(unserved(*uses)) or self._names
 
     def _note(self, record: CommandRecord) -> None:
@@ -213,12 +213,10 @@ class LiveControl(HandOver):
         self._pace.command()
         if record.answer != "accepted":
             what = f"t={record.time:.2f} s: {record.kind} for {record.controller}: {record.answer}"
-            self._say_once(record.answer, what)
+            self._say_once(what, record.answer)
 
-    def _explain(self, sentence: str) -> None:
-        self._say_once(sentence, sentence)
-
-    def _say_once(self, key: str, note: str) -> None:
+    def _say_once(self, note: str, key: str = "") -> None:
+        key = key or note
         if key not in self._noted and len(self._noted) < MOST_NOTES:
             self._noted.add(key)
             self._request.say(note)

@@ -70,9 +70,9 @@ class ReachStudy:
         self._tcp = cell.description.tcp_link
         self._start = cell.cell.planning_start()
         self._space = GroupSpace(kinematics.robot, group, self._start)
-        self._checker = MotionChecker(
-            cell.scene, self._space, self._space.part(self._start), _padding(cell)
-        )
+        padding = float(cell.prepared.loaded.scenario.planning.padding or 0.0)
+        begin = self._space.part(self._start)
+        self._checker = MotionChecker(cell.scene, self._space, begin, padding)
 
     def goal(self, pose: SE3) -> PoseGoal | PositionGoal:
         """The goal that the arm can choose: a pose, or a position and a pitch."""
@@ -127,7 +127,3 @@ def _short_refusal(answer: IkAnswer) -> str:
         by = abs(nearest.value - nearest.limit)
         return f"{nearest.joint} would be {by:.3f} beyond its limit"
     return "no joint positions reach the pose"
-
-
-def _padding(cell: LiveCell) -> float:
-    return float(cell.prepared.loaded.scenario.planning.padding or 0.0)

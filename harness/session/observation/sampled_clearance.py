@@ -56,16 +56,11 @@ def parts_of_run(times: FloatArray, samples: IntArray) -> list[IntArray]:
 
     Measuring one part after the other bounds the memory that a long run takes.
     """
-    length = _part_length(_timestep(times))
+    length = _stride(_timestep(times)) * round(PART / SPACING)
     last = len(times) - 1
     bounds = [*range(0, max(last, 1), length), last]
     at = np.searchsorted(samples, bounds)
     return [samples[first : last + 1] for first, last in pairwise(at.tolist())]
-
-
-def _part_length(timestep: float) -> int:
-    """The number of samples from the beginning of a part to its end."""
-    return _stride(timestep) * round(PART / SPACING)
 
 
 def _stride(timestep: float) -> int:

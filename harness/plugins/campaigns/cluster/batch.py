@@ -111,7 +111,7 @@ def run_batch(batch: Batch, files: Files) -> BatchResult:
     for number, result in run_isolated(jobs, place.server, hard_cap=batch.hard_cap):
         index, request = batch.cases[number]
         results.append((index, place.as_sent(request, jobs[number], result), _packed(result)))
-        place.remove_report(number)
+        shutil.rmtree(place.report(number), ignore_errors=True)  # it is packed
     return BatchResult(tuple(results), "", processor_family(), time.monotonic() - begin)
 
 
@@ -153,10 +153,6 @@ class _Place:
     def report(self, number: int) -> Path:
         """The folder of a report, until it is packed."""
         return self._root / "reports" / str(number)
-
-    def remove_report(self, number: int) -> None:
-        """Remove a report, which is packed."""
-        shutil.rmtree(self.report(number), ignore_errors=True)
 
     def here(self, request: RunRequest, number: int) -> RunRequest:
         """A request with the paths of this machine; the scenario's is relative to its folder."""

@@ -106,7 +106,7 @@ def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFa
             hard_cap=arguments.hard_cap,
         )
         folder = search_folder(Path(arguments.report_dir), file)
-        progress = _Progress(request.runs)
+        progress = _Progress(request.settings.runs)
         with closing(Stream(folder, resume=arguments.resume)) as stream:
             try:
                 found = search(
@@ -169,10 +169,11 @@ def _show(
     say(f"{found.request.file}: {len(exploration.samples)} runs over {names}")
     if exploration.rate is not None:
         say(exploration.rate.sentence)
-    if len(exploration.samples) < found.request.runs:
+    runs = found.request.settings.runs
+    if len(exploration.samples) < runs:
         say(
-            f"the search ended before {found.request.runs} runs: no expectation that has not"
-            " failed has a margin that varies"
+            f"the search ended before {runs} runs: no expectation that has not failed has a margin"
+            " that varies"
         )
     if found.uncounted:
         say(f"{found.uncounted} runs are invalid or begin with an overlap, and do not count")

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.language.variation import Search
 from harness.plugins.campaigns.failure_search.closeness import (
     UNKNOWN,
     Closeness,
@@ -92,11 +93,7 @@ def explore(
     space: SearchSpace,
     evaluate: Evaluate,
     is_counted: Callable[[Sample], bool],
-    *,
-    runs: int,
-    start: int,
-    batch: int | None,
-    minimise: str | None,
+    settings: Search,
     seed: int,
 ) -> Exploration:
     """Search for failures of different kinds.
@@ -109,10 +106,6 @@ def explore(
         space: The parameters that vary, with their nominal values.
         evaluate: Runs points; the same points give the same samples.
         is_counted: Whether a run is evidence: not one that is invalid.
-        runs: How many runs the search may take.
-        start: How many of them the low-discrepancy samples are.
-        batch: How many points the optimiser proposes together; None: as many as it recommends.
-        minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
 
     References:
         [1] A. B. Owen, "Scrambling Sobol' and Niederreiter-Xing Points", Journal of Complexity
@@ -120,9 +113,9 @@ def explore(
         [2] N. Hansen, A. Ostermeier, "Completely Derandomized Self-Adaptation in Evolution
             Strategies", Evolutionary Computation 9(2), 2001.
     """
-    shares = _sobol(len(space.parameters), min(start, runs), seed)
+    shares = _sobol(len(space.parameters), min(settings.start, settings.runs), seed)
     first = evaluate([space.point(row.tolist()) for row in shares])
-    search = _Search(space, evaluate, is_counted, runs, batch, minimise, list(first))
+    search = _Search(space, evaluate, is_counted, settings, list(first))
     search.optimise(shares, np.random.default_rng(seed))
     counted = [each for each in search.samples if is_counted(each)]
     kinds: dict[str, list[Sample]] = {}
@@ -159,20 +152,18 @@ class _Search:
     space: SearchSpace
     evaluate: Evaluate
     is_counted: Callable[[Sample], bool]
-    runs: int
-    batch: int | None
-    minimise: str | None
+    settings: Search
     samples: list[Sample]
     failed: set[Expectation] = field(default_factory=set[Expectation])
 
     def optimise(self, shares: FloatArray, rng: np.random.Generator) -> None:
         """Start from the samples that are nearest to failing, one after the other."""
         counted = [each for each in self.samples if self.is_counted(each)]
-        closeness = Closeness([each.result for each in counted], self.minimise)
+        closeness = Closeness([each.result for each in counted], self.settings.minimise)
         for sample in counted:
             self.failed |= failed_expectations(sample.result) if _failed(sample) else set()
         used = set[int]()
-        while len(self.samples) < self.runs:
+        while len(self.samples) < self.settings.runs:
             searched = closeness.searched(self.failed)
             origins = sorted(
                 (closeness.of(sample.result, searched), index)
@@ -191,13 +182,16 @@ class _Search:
         from cmaes import CMA
 
         bounds = np.tile([0.0, 1.0], (len(origin), 1))
-        optimiser = CMA(
-            mean=origin, sigma=STEP_SIZE, bounds=bounds, seed=seed, population_size=self.batch
-        )
+        size = self.settings.batch
+        optimiser = CMA(origin, STEP_SIZE, bounds, seed=seed, population_size=size)
         best, since = np.inf, 0
-        while len(self.samples) < self.runs and since < PATIENCE and not optimiser.should_stop():
+        while (
+            len(self.samples) < self.settings.runs
+            and since < PATIENCE
+            and not optimiser.should_stop()
+        ):
             proposed = [optimiser.ask() for _ in range(optimiser.population_size)]
-            proposed = proposed[: self.runs - len(self.samples)]
+            proposed = proposed[: self.settings.runs - len(self.samples)]
             batch = self.evaluate([self.space.point(each.tolist()) for each in proposed])
             self.samples += batch
             values = [self._value(each, closeness, searched) for each in batch]

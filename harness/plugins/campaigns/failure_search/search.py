@@ -31,11 +31,6 @@ class SearchRequest:
     Attributes:
         overrides: Path -> value as YAML; they take precedence over what varies.
         case: Name of the parametrised case; empty where there is one.
-        seed: Seed of every run and of the search; None takes the file's.
-        runs: How many runs the search may take; shrinking takes further ones.
-        start: The number of runs that are low-discrepancy samples.
-        batch: Runs that the optimiser proposes together; None: as many as CMA-ES recommends.
-        minimise: Name of the expectation whose margin is minimised; None: the worst margin of all.
         workers: Runs side by side.
         hard_cap: Wall seconds a run may take; None: the program's own.
     """
@@ -43,11 +38,7 @@ class SearchRequest:
     file: Path
     overrides: Mapping[str, str]
     case: str
-    seed: int | None
-    runs: int
-    start: int
-    batch: int | None
-    minimise: str | None
+    settings: Search
     workers: int = 1
     hard_cap: float | None = None
 
@@ -83,13 +74,7 @@ class SearchRequest:
             raise UsageError(
                 f"--minimise: no expectation of '{file}' is called '{minimise}'{known}"
             )
-        start = min(stated.start, stated.runs)
-        return cls(
-            *(file, overrides, case),
-            *(stated.seed, stated.runs, start, stated.batch, minimise),
-            workers=workers,
-            hard_cap=hard_cap,
-        )
+        return cls(file, overrides, case, stated, workers, hard_cap)
 
 
 @dataclass(frozen=True)
@@ -151,7 +136,7 @@ def search(
         SpecError: The file is invalid.
         HarnessError: The nominal scenario ends in an error.
     """
-    variation = read_header(request.file, request.overrides).variation
+    variation, settings = read_header(request.file, request.overrides).variation, request.settings
     overrides = {**_case_overrides(request.file, request.case, variation), **request.overrides}
     space = search_space(request.file, variation, overrides)
     space = SearchSpace(
@@ -163,7 +148,7 @@ def search(
         )
     server.prepare(read_ahead, frozenset())
     evaluate = Evaluator(
-        request.file, space, overrides, request.seed, server, request.workers,
+        request.file, space, overrides, settings.seed, server, request.workers,
         request.hard_cap, stream, on_run,
     )  # fmt: skip
     on_stage("the nominal scenario")
@@ -183,16 +168,8 @@ def search(
         return sample.result.outcome != "invalid" and not is_overlapping
 
     on_stage("searching")
-    exploration = explore(
-        space,
-        evaluate,
-        is_counted,
-        runs=request.runs,
-        start=request.start,
-        batch=request.batch,
-        minimise=request.minimise,
-        seed=variation.seed if request.seed is None else request.seed,
-    )
+    seed = variation.seed if settings.seed is None else settings.seed
+    exploration = explore(space, evaluate, is_counted, settings, seed)
     if not exploration.start:
         problems = [each for s in exploration.samples for each in s.result.problems]
         if problems:

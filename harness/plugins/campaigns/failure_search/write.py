@@ -79,7 +79,7 @@ def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
     """A scenario file that fails as the shrunk failure does, without anything that varies."""
     sample = failure.nearest
     overrides = {**found.overrides, **found.space.overrides(sample.point)}
-    loaded = load_scenario(found.request.file, overrides, found.request.seed)
+    loaded = load_scenario(found.request.file, overrides, found.request.settings.seed)
     lines = [
         f"The smallest change of '{found.request.file}' that was found to fail in this way:",
         failure.kind,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from typing import Any, get_args
 
 import numpy as np
@@ -26,9 +27,7 @@ def timed_events(content: BagContent, timeline: Timeline, begin: float) -> list[
     logged = np.array([time for time, _ in content.events], dtype=np.int64)
     moments = timeline.at_logged(logged).tolist() if len(logged) else []
     timed = zip(moments, (event for _, event in content.events), strict=True)
-    return sorted(
-        ((time, event) for time, event in timed if time >= begin - RESOLUTION), key=_moment
-    )
+    return sorted((each for each in timed if each[0] >= begin - RESOLUTION), key=itemgetter(0))
 
 
 def steps_of(
@@ -86,10 +85,6 @@ def _end(event: dict[str, Any], later: list[Timed], last: float) -> Timed:
             return time, other
     begins = (time for time, other in later if other.get("event") == "step_started")
     return next(begins, last), {}
-
-
-def _moment(timed: Timed) -> float:
-    return timed[0]
 
 
 def _path(event: Mapping[str, Any]) -> str:

@@ -29,7 +29,8 @@ def scenarios(
 
 def _of_robot(robot: str, max_steps: int) -> st.SearchStrategy[Document]:
     chain = load_chain(robot)
-    step = st.one_of(_waits(), _states(chain), *_moves(chain))
+    waits = st.integers(1, 5).map(lambda tenths: {"wait": tenths / 10})
+    step = st.one_of(waits, _states(chain), *_moves(chain))
     steps = st.lists(step, min_size=1, max_size=max_steps)
     return st.builds(
         lambda steps, seed: {
@@ -42,10 +43,6 @@ def _of_robot(robot: str, max_steps: int) -> st.SearchStrategy[Document]:
         steps,
         st.integers(0, 99),
     )
-
-
-def _waits() -> st.SearchStrategy[Document]:
-    return st.integers(1, 5).map(lambda tenths: {"wait": tenths / 10})
 
 
 def _states(chain: Chain) -> st.SearchStrategy[Document]:
