@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from harness.core.errors import HarnessError
-from harness.recording.compare import first_difference
+from harness.recording.first_difference import first_difference
 from harness.recording.read_run import read_run
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.recording.compare import MOST, compare, line_changes
+from harness.plugins.comparison.compare import MOST, compare, line_changes
+from harness.plugins.comparison.page import comparison_lines
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
-from harness.reporting.comparison import comparison_lines
 from tests.judging.synthetic_run import ROBOT, make_run
 from tests.running import run_case
 

@@ -6,19 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from itertools import zip_longest
-from typing import Any
 
 import numpy as np
 
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
-from harness.recording.arrays import arrays_of
+from harness.recording.first_difference import FirstDifference, first_difference
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
-
-DERIVED = ("clearance", "planned_clearances")  # drawn between samples: they part a little too early
 
 
 @dataclass(frozen=True)
@@ -39,23 +36,6 @@ class Change:
     after: str
     amount: float = float("nan")
     unit: str = ""
-
-
-@dataclass(frozen=True)
-class FirstDifference:
-    """Where two recordings part: the first sample, and the signal that differs most there.
-
-    Attributes:
-        step: Id of the step it happened in; empty when the runs part before the first.
-        signal: Its name, with the column's where it is a joint's.
-        time: The time of the sample [s].
-    """
-
-    step: str
-    signal: str
-    time: float
-    before: float
-    after: float
 
 
 @dataclass(frozen=True)
@@ -94,71 +74,6 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
     )
     is_same = first.content_digest == second.content_digest
     return RunComparison(is_same, tuple(changes), first_difference(one, two), warnings)
-
-
-def first_difference(one: Run, two: Run) -> FirstDifference | None:
-    """The first sample at which recorded signals differ; None when they are the same bits."""
-    ours, theirs = arrays_of(one.signals), arrays_of(two.signals)
-    count = min(len(one.signals.times), len(two.signals.times))
-    shared = sorted(ours.keys() & theirs.keys())
-    recorded = [name for name in shared if not name.startswith(DERIVED)]
-    best = _earliest(ours, theirs, recorded, count) or _earliest(ours, theirs, shared, count)
-    if best is None:
-        return _longer(one, two, count)
-    row, name = best
-    before, after = np.atleast_1d(ours[name][row]), np.atleast_1d(theirs[name][row])
-    apart = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(before - after))
-    column = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
-    return FirstDifference(
-        _step_at(one, row),
-        _signal_name(one, name, column, len(before)),
-        float(one.signals.times[row]),
-        float(before[column]),
-        float(after[column]),
-    )
-
-
-def _earliest(
-    ours: Mapping[str, np.ndarray[Any, Any]],
-    theirs: Mapping[str, np.ndarray[Any, Any]],
-    names: Sequence[str],
-    count: int,
-) -> tuple[int, str] | None:
-    best: tuple[int, str] | None = None
-    for name in names:
-        row = _first_row(ours[name][:count], theirs[name][:count])
-        if row is not None and (best is None or row < best[0]):
-            best = row, name
-    return best
-
-
-def _first_row(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any]) -> int | None:
-    if one.shape != two.shape:
-        return 0
-    same = (one == two) | (np.isnan(one) & np.isnan(two)) if one.dtype.kind == "f" else one == two
-    rows = np.flatnonzero(~same.reshape(len(same), -1).all(axis=1))
-    return int(rows[0]) if len(rows) else None
-
-
-def _longer(one: Run, two: Run, count: int) -> FirstDifference | None:
-    if len(one.signals.times) == len(two.signals.times):
-        return None
-    longer = one if len(one.signals.times) > count else two
-    ends = float(one.signals.times[-1]), float(two.signals.times[-1])
-    return FirstDifference(_step_at(longer, count), "times", min(ends), *ends)
-
-
-def _step_at(run: Run, row: int) -> str:
-    """The innermost step that a sample belongs to."""
-    inside = [step.id for step in run.steps if step.start_index <= row < step.end_index]
-    return inside[-1] if inside else ""
-
-
-def _signal_name(run: Run, name: str, column: int, columns: int) -> str:
-    joints = run.robot.movable_joints
-    if name.startswith("joint_") and columns == len(joints):
-        return f"{name} of {joints[column].name}"
-    return name
 
 
 def _words(what: str, name: str, before: str, after: str) -> list[Change]:

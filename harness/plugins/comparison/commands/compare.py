@@ -28,10 +28,10 @@ class CompareCommand(Command):
     def run(self, arguments: argparse.Namespace) -> int:
         """Compare two runs' folders; exit code 1 when they are not the same."""
         folders = [run_folder(arguments.first), run_folder(arguments.second)]
-        from harness.recording.compare import compare
+        from harness.plugins.comparison.compare import compare
+        from harness.plugins.comparison.page import comparison_lines
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import blames_changes
-        from harness.reporting.comparison import comparison_lines
         from harness.reporting.terminal import Style
 
         first, second = (read_run(folder) for folder in folders)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 
-from harness.recording.compare import Change, FirstDifference, RunComparison
+from harness.plugins.comparison.compare import Change, FirstDifference, RunComparison
 from harness.reporting.terminal import PLAIN, Style
 
 HEADINGS = {

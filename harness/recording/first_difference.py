@@ -1,0 +1,96 @@
+"""Where the recordings of two runs part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from harness.recording.arrays import arrays_of
+from harness.recording.run import Run
+
+DERIVED = ("clearance", "planned_clearances")  # drawn between samples: they part a little too early
+
+
+@dataclass(frozen=True)
+class FirstDifference:
+    """Where two recordings part: the first sample, and the signal that differs most there.
+
+    Attributes:
+        step: Id of the step it happened in; empty when the runs part before the first.
+        signal: Its name, with the column's where it is a joint's.
+        time: The time of the sample [s].
+    """
+
+    step: str
+    signal: str
+    time: float
+    before: float
+    after: float
+
+
+def first_difference(one: Run, two: Run) -> FirstDifference | None:
+    """The first sample at which recorded signals differ; None when they are the same bits."""
+    ours, theirs = arrays_of(one.signals), arrays_of(two.signals)
+    count = min(len(one.signals.times), len(two.signals.times))
+    shared = sorted(ours.keys() & theirs.keys())
+    recorded = [name for name in shared if not name.startswith(DERIVED)]
+    best = _earliest(ours, theirs, recorded, count) or _earliest(ours, theirs, shared, count)
+    if best is None:
+        return _longer(one, two, count)
+    row, name = best
+    before, after = np.atleast_1d(ours[name][row]), np.atleast_1d(theirs[name][row])
+    apart = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(before - after))
+    column = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
+    return FirstDifference(
+        _step_at(one, row),
+        _signal_name(one, name, column, len(before)),
+        float(one.signals.times[row]),
+        float(before[column]),
+        float(after[column]),
+    )
+
+
+def _earliest(
+    ours: Mapping[str, np.ndarray[Any, Any]],
+    theirs: Mapping[str, np.ndarray[Any, Any]],
+    names: Sequence[str],
+    count: int,
+) -> tuple[int, str] | None:
+    best: tuple[int, str] | None = None
+    for name in names:
+        row = _first_row(ours[name][:count], theirs[name][:count])
+        if row is not None and (best is None or row < best[0]):
+            best = row, name
+    return best
+
+
+def _first_row(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any]) -> int | None:
+    if one.shape != two.shape:
+        return 0
+    same = (one == two) | (np.isnan(one) & np.isnan(two)) if one.dtype.kind == "f" else one == two
+    rows = np.flatnonzero(~same.reshape(len(same), -1).all(axis=1))
+    return int(rows[0]) if len(rows) else None
+
+
+def _longer(one: Run, two: Run, count: int) -> FirstDifference | None:
+    if len(one.signals.times) == len(two.signals.times):
+        return None
+    longer = one if len(one.signals.times) > count else two
+    ends = float(one.signals.times[-1]), float(two.signals.times[-1])
+    return FirstDifference(_step_at(longer, count), "times", min(ends), *ends)
+
+
+def _step_at(run: Run, row: int) -> str:
+    """The innermost step that a sample belongs to."""
+    inside = [step.id for step in run.steps if step.start_index <= row < step.end_index]
+    return inside[-1] if inside else ""
+
+
+def _signal_name(run: Run, name: str, column: int, columns: int) -> str:
+    joints = run.robot.movable_joints
+    if name.startswith("joint_") and columns == len(joints):
+        return f"{name} of {joints[column].name}"
+    return name
