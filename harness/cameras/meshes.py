@@ -26,11 +26,8 @@ from harness.language.files.yaml_file import read_text
 from harness.robot.collada import refuse_unreadable
 from harness.robot.mesh_file import MEMORY, metres_per_unit, read_triangles
 
-GRID = 0.002
-"""Size of the cells in which vertices merge [m]: about a pixel in a picture of an arm."""
-
-LARGE = 2**16
-"""Size of OBJ files whose parts are kept [bytes]."""
+GRID = 0.002  # [m], of the cells in which vertices merge: about a pixel in a picture of an arm
+LARGE = 2**16  # [bytes], of OBJ files whose parts are kept
 
 
 @dataclass(frozen=True, eq=False)

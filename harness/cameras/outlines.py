@@ -16,12 +16,10 @@ REACH = 20.0
 """Distance beyond each edge up to which pixels are counted, in picture sizes: 87.6 degrees to each
 side of a picture with a view of 60 degrees."""
 
-MOST_RAYS = 60_000
-"""Most rays for one object; a larger outline is sampled at every second, third ... pixel."""
+MOST_RAYS = 60_000  # for one object; of a larger outline every second, third ... pixel counts
 
 
-FAR = 1e3
-"""Half of the size that a plane is taken to have [m]."""
+FAR = 1e3  # [m], half of the size that a plane is taken to have
 SIGNS = np.array(list(product((-1.0, 1.0), repeat=3)))
 EDGES = np.array([(a, b) for a, b in combinations(range(8), 2) if (a ^ b).bit_count() == 1])
 """Pairs of corners of a box that an edge connects."""

@@ -21,14 +21,9 @@ TRANSLUCENT_GROUP = 1
 FLOOR_GROUP = 2
 FLOOR, EYE = "floor", "eye"
 
-GHOST_ALPHA = 0.3
-"""Opacity of objects that only the planning scene has."""
-
-LEAST_CORNERS = 4
-"""Fewest corners of a mesh in MuJoCo."""
-
-LEAST_AREA = 1e-9
-"""Area below which a part of a mesh is not drawn, which MuJoCo refuses [m^2]."""
+GHOST_ALPHA = 0.3  # opacity of objects that only the planning scene has
+LEAST_CORNERS = 4  # of a mesh in MuJoCo
+LEAST_AREA = 1e-9  # [m^2], of a part of a mesh: MuJoCo refuses a smaller one
 
 SKY_TOP, HORIZON = (0.80, 0.85, 0.91), (0.95, 0.96, 0.97)
 FLOOR_COLOUR, FLOOR_LINES = (0.90, 0.905, 0.91), (0.82, 0.83, 0.84)

@@ -22,17 +22,10 @@ from harness.cameras.picture_model import (
 )
 from harness.cameras.viewpoint import View
 
-LIGHT_DISTANCE = 30.0
-"""Distance of the sun [m], which is a point light."""
-
-FLOOR_SPACING, LINE_WIDTH = 0.5, 0.006
-"""Spacing of the floor's grid lines [m]."""
-
-FADE = 9.0
-"""Distance over which the floor fades into the horizon [m]."""
-
-AMBIENT, HEAD, SUN = 0.48, 0.25, 0.42
-"""Ambient light, headlight and sunlight."""
+LIGHT_DISTANCE = 30.0  # [m], of the sun, which is a point light
+FLOOR_SPACING, LINE_WIDTH = 0.5, 0.006  # [m], of the floor's grid
+FADE = 9.0  # [m], over which the floor fades into the horizon
+AMBIENT, HEAD, SUN = 0.48, 0.25, 0.42  # shares of light
 
 
 _SOLID = np.isin(np.arange(6), (SOLID_GROUP, FLOOR_GROUP)).astype(np.uint8)

@@ -105,8 +105,7 @@ class GLRenderer:
         self._gl.free()
 
 
-Picture = np.ndarray
-"""RGB, shape (height, width, 3), uint8."""
+Picture = np.ndarray  # RGB, shape (height, width, 3), uint8
 
 
 class Renderer(Protocol):

@@ -20,11 +20,8 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.robot.description import Link, RobotDescription
 
-SIZE = 800
-"""Width and height of a picture of a robot alone [pixels]."""
-
-SMALLEST, LARGEST = 0.03, 0.15
-"""Bounds of the radius around a link's origin that the view contains [m]."""
+SIZE = 800  # [pixels], width and height of a picture of a robot alone
+SMALLEST, LARGEST = 0.03, 0.15  # [m], radius around a link's origin that is in view
 
 
 def save_robot_picture(

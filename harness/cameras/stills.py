@@ -21,17 +21,10 @@ from harness.recording.run import Run
 from harness.robot.description import RobotDescription
 
 WIDTH, HEIGHT = 640, 480
-SHADOW_SIZE = 1024
-"""Resolution of shadows [pixels]."""
-
-MOST_STEPS = 400
-"""Most steps of which pictures are drawn, at 20 to 100 ms each: the first and the last ones."""
-
-FARTHEST_IN_VIEW = 1.3
-"""Objects farther from the base than this [m] may be outside the view."""
-
-UNSEEN = 5e-4
-"""Motion that a picture does not show [m], less than half a pixel; and the same of directions."""
+SHADOW_SIZE = 1024  # [pixels]
+MOST_STEPS = 400  # that are drawn, at 20 to 100 ms each: the first and the last ones
+FARTHEST_IN_VIEW = 1.3  # [m]; objects farther from the base may be outside the view
+UNSEEN = 5e-4  # [m], a motion that a picture does not show, below half a pixel; directions too
 
 INK = {"passed": (60, 130, 40), "expected error": (60, 130, 40), "failed": RED}
 """Colour of a caption's status, BGR."""

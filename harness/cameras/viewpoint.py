@@ -10,17 +10,10 @@ from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
-AZIMUTH, ELEVATION = 146.0, -24.0
-"""Direction of an overview [deg]: from the front right of a robot that faces +x, from above."""
-
-FIELD_OF_VIEW = 38.0
-"""Vertical field of view [deg]."""
-
-FILLED = 0.86
-"""Share of the picture that the fitted spheres may fill."""
-
-OVERVIEW_STATES = 40
-"""States of a run that its overview is fitted to, in addition to the ends of its steps."""
+AZIMUTH, ELEVATION = 146.0, -24.0  # [deg]: from the front right of a robot that faces +x
+FIELD_OF_VIEW = 38.0  # [deg], vertical
+FILLED = 0.86  # share of the picture that the fitted spheres may fill
+OVERVIEW_STATES = 40  # that an overview is fitted to, besides the ends of steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +33,7 @@ class View:
     far: float = 60.0
 
 
-FLIP = SE3(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
-"""T_optical_opengl: y and z are reversed."""
+FLIP = SE3(np.diag([1.0, -1.0, -1.0]), np.zeros(3))  # T_optical_opengl: y and z are reversed
 
 
 def view_of(camera: Camera, carrier: SE3) -> View:

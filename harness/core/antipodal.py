@@ -9,11 +9,8 @@ import numpy as np
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Hull, Mesh, Shape, Sphere
 from harness.core.types import BoolArray, FloatArray
 
-GIVE = 0.003
-"""How far pads and object may press into each other, and contact points be off [m]."""
-
-LEAST_SHARE = math.cos(math.pi / 4)
-"""Share of an object's thickness that two places are apart at the edge of the friction cones."""
+GIVE = 0.003  # [m], by which pads and object may press into each other, and points be off
+LEAST_SHARE = math.cos(math.pi / 4)  # of a thickness, between places at the edge of the cones
 
 
 def is_antipodal(first: FloatArray, second: FloatArray, thickness: float) -> BoolArray:

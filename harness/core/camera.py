@@ -14,8 +14,7 @@ OPTICAL = SE3(np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), n
 """T_camera_optical: from x forward, z up to z forward, x right, y down (ROS REP 103)."""
 
 
-HD = 1280 * 720
-"""Pixels of the largest picture for which limits on the number of pictures hold as they are."""
+HD = 1280 * 720  # pixels up to which limits on the number of pictures hold as they are
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,7 @@ from typing import IO
 
 from harness.core.errors import HarnessError
 
-BUFFER = 2**20
-"""Bytes of a file that are written at once."""
+BUFFER = 2**20  # bytes of a file that are written at once
 
 
 def is_file(path: Path) -> bool:

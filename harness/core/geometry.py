@@ -14,8 +14,7 @@ from harness.core.types import FloatArray
 
 Rgba = tuple[float, float, float, float]
 
-CollisionMode = Literal["hull", "parts", "exact"]
-"""How a mesh collides: as its convex hull, as convex parts, or in the planner as its triangles."""
+CollisionMode = Literal["hull", "parts", "exact"]  # hull, convex parts, or a planner's triangles
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,8 @@ from pathlib import Path
 
 from harness.core.files import is_dir, path_exists
 
-INSTALLED = ("site-packages", "dist-packages")
-"""Folders of installed packages, whose versions count instead of their files."""
-
-FOLDER = "folder"
-"""What stands for the hash of a folder: it is not the empty one of a place without anything."""
+INSTALLED = ("site-packages", "dist-packages")  # installed packages: their versions count
+FOLDER = "folder"  # in place of a folder's hash: not the empty one of a missing place
 
 _read: dict[str, str] = {}
 

@@ -20,13 +20,11 @@ _UNSAFE = (
     r"\ud800-\udfff"  # surrogates: bytes of file names that are not UTF-8
     r"\U000e0000-\U000e007f"  # tags, which are invisible
 )
-_COMMAND = r"#(?=#\[|#vso\[|#teamcity\[)"
-"""Positions in a log line at which GitHub, Azure and TeamCity read a command."""
+_COMMAND = r"#(?=#\[|#vso\[|#teamcity\[)"  # where GitHub, Azure and TeamCity read a command
 
 _IN_A_LINE = re.compile(f"{ESC}|[{_UNSAFE}]|{_COMMAND}")
 _IN_JSON = re.compile(f"(?!\n)[{_UNSAFE}]|{_COMMAND}")
-_COMMAND_LINE = re.compile(r"^( *):(?=:)")
-"""Beginning of a line that GitHub reads as a command."""
+_COMMAND_LINE = re.compile(r"^( *):(?=:)")  # where GitHub reads a command
 
 _STYLING = re.compile(rf"{ESC}(?:\[\d+m|\]8;;[^\x1b]*{ESC}\\)")
 """Control sequences of colours and links, which have no width."""

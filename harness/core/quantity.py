@@ -50,8 +50,7 @@ def common_unit(*values: object) -> str:
     return found.pop() if found else ""
 
 
-MOST_DIGITS = 17
-"""Digits after which two different floating-point numbers are written differently."""
+MOST_DIGITS = 17  # after which different floating-point numbers are written differently
 
 
 def distinct(first: float, second: float, text: Callable[[float, int], str]) -> tuple[str, str]:

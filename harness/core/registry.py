@@ -36,11 +36,8 @@ P = TypeVar("P")
 
 ENTRY_POINTS = "harness.plugins"
 OWN_PACKAGE = "armharness"
-VARIABLE = "HARNESS_PLUGINS"
-"""Environment variable: modules that `--plugin` loads, here and in processes that start later."""
-
-BUNDLED = Path(__file__).parents[1] / "plugins"
-"""The folder of this distribution's plug-ins, each a package; it may be absent."""
+VARIABLE = "HARNESS_PLUGINS"  # modules of `--plugin`, here and in later processes
+BUNDLED = Path(__file__).parents[1] / "plugins"  # this distribution's plug-ins; may be absent
 
 BUILT_IN = {
     "command": "harness.cli.commands",
@@ -59,8 +56,7 @@ BUILT_IN = {
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 
-HAS_DOCSTRINGS = sys.flags.optimize < 2
-"""Whether classes have their docstrings; with `PYTHONOPTIMIZE=2` none has."""
+HAS_DOCSTRINGS = sys.flags.optimize < 2  # with `PYTHONOPTIMIZE=2` no class has its docstring
 
 NOUNS = {
     "planner": "planning pipeline",

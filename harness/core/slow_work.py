@@ -10,8 +10,7 @@ from contextvars import ContextVar
 
 from harness.core.printable import printable
 
-PATIENCE = 2.0
-"""Time after which work is reported [s]."""
+PATIENCE = 2.0  # [s], after which work is reported
 
 
 def _on_stderr(text: str) -> None:

@@ -20,8 +20,7 @@ SYNONYMS = {
 """Keys of this language, and what other programs call them; verbs and predicates state theirs."""
 
 LONGEST_LIST = 40
-SURELY_MISSPELT = 0.8
-"""The similarity of a word and a valid one, from 0 to 1, above which it is a slip of the pen."""
+SURELY_MISSPELT = 0.8  # similarity, from 0 to 1, above which a word is a slip of the pen
 
 
 def nearest(word: str, valid: Iterable[str]) -> str | None:

@@ -8,13 +8,9 @@ from collections.abc import Sequence
 from harness.core.geometry import Box, Capsule, Cylinder, Shape, Sphere
 from harness.core.types import FloatArray
 
-TILT_TOLERANCE = 1e-6
-"""A unit vector is vertical when its z component differs from 1 by at most this."""
-AXIS_TOLERANCE = 1e-4
-"""Largest distance of a symmetric shape's centre from the vertical through the origin [m]."""
-
-ANY = 0
-"""Result of `equal_turns` for an object that is round about the vertical."""
+TILT_TOLERANCE = 1e-6  # of the z component of a vertical unit vector from 1
+AXIS_TOLERANCE = 1e-4  # [m], of a symmetric shape's centre from the origin's vertical
+ANY = 0  # of an object that is round about the vertical
 
 
 def equal_turns(shapes: Sequence[Shape], rotation: FloatArray) -> int:

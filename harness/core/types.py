@@ -9,5 +9,4 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 Floats = tuple[float, ...]
-Pair = tuple[str, str]
-"""The names of two bodies."""
+Pair = tuple[str, str]  # the names of two bodies

@@ -8,8 +8,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-LARGEST = 1_000_000_000
-"""Size that the folder is kept within [bytes]: the files that were not read for longest go."""
+LARGEST = 1_000_000_000  # [bytes], of the folder: files that were not read for longest go
 
 _CHECKSUM = hashlib.sha256().digest_size
 

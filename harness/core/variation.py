@@ -6,14 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-MOST_CASES = 10_000
-"""Largest number of cases, whether of a grid or named."""
-
-MOST_SAMPLES = 100_000
-"""Largest number of samples of all cases together."""
-
-Parametrize = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]
-"""A grid of values by path, or named cases."""
+MOST_CASES = 10_000  # of a grid, or named
+MOST_SAMPLES = 100_000  # of all cases together
+Parametrize = Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]  # a grid, or named cases
 
 
 def count_of(parametrize: Parametrize | None) -> int:

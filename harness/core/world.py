@@ -8,8 +8,7 @@ from harness.core.geometry import Friction, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
-MOST_OBJECTS = 1000
-"""Of all kinds; 300 that move already take 2 s of wall time for each simulated second."""
+MOST_OBJECTS = 1000  # of all kinds; 300 that move take 2 s of wall time per simulated second
 
 
 @dataclass(frozen=True, eq=False)

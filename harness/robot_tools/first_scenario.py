@@ -20,8 +20,7 @@ from harness.session.run_request import RunRequest
 
 TEMPLATES = Path(__file__).parent / "templates"
 MOST_RUNS = 3  # Scenarios of a kind that are run; each takes seconds
-PICK_SECONDS = 40.0
-"""Wall time after which no further pick is tried, so that a motion is found within a minute [s]."""
+PICK_SECONDS = 40.0  # wall time after which no other pick is tried: a motion within a minute
 
 
 @dataclass(frozen=True)

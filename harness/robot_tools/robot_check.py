@@ -26,8 +26,7 @@ from harness.robot_tools import robot_findings as look_at
 
 KINEMATIC_SAMPLES = 20
 IK_SAMPLES = 100
-ALONG_AN_AXIS = math.cos(math.radians(5))
-"""Cosine down to which a direction is reported as that of an axis."""
+ALONG_AN_AXIS = math.cos(math.radians(5))  # least cosine of a direction with an axis
 
 
 @dataclass(frozen=True, eq=False)

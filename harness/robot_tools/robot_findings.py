@@ -19,17 +19,14 @@ from harness.robot.link_masses import mass_notes, mass_problems
 from harness.robot.solids import box_corners, coal_geometry
 from harness.simulation.agreement import link_poses_in_physics
 
-AGREEMENT = 1e-9
-"""How near the two libraries come [m], and in parts of a quaternion and of the mass."""
+AGREEMENT = 1e-9  # [m], of the two libraries, and in parts of a quaternion and of the mass
 
 ENOUGH_SOLVED = 0.9
-TOO_OFTEN = 0.9
-"""Part of the configurations that collide from which a description is wrong and not crowded."""
+TOO_OFTEN = 0.9  # share of colliding configurations of a wrong, not a crowded, description
 
 PLACEHOLDER_EFFORT = 1000.0
 MOST_TURNS = 10  # Turns of a revolute joint from which its limits are in degrees in all likelihood
-SHOWN_EXCESS = 5e-5
-"""Excess of a mesh's collision shapes from which the mesh has a line of its own [m]."""
+SHOWN_EXCESS = 5e-5  # [m], of a mesh's collision shapes that is said of each mesh
 LARGEST_LINK = 10.0  # Length of a shape from which it is in millimetres in all likelihood [m]
 
 

@@ -23,10 +23,7 @@ DISTANCES, HEIGHTS = (0.25, 0.35, 0.45, 0.55, 0.65), (0.03, 0.1, 0.2, 0.35, 0.5)
 """Distances from the base and heights above it where the box is tried, as shares of the reach."""
 
 NEAR = 0.08  # Distance up to which a random configuration shows that a place is reached, likewise
-
-DOWNWARD = math.radians(10)
-"""Angle between the gripper and the vertical up to which it points downward, roughly [rad]."""
-
+DOWNWARD = math.radians(10)  # [rad], of a gripper from the vertical that points downward, roughly
 MOST_PLACES = 6  # Places of the box that are tried in a direction
 CLEAR = 0.25  # Distance of the box from the hand at the start, as a share of the reach
 
@@ -34,27 +31,21 @@ HEADINGS = (0.0, 0.5 * math.pi)
 SHORTEST_APPROACH = 0.03  # [m]
 LEAST_LIFT = 0.6  # Shortest lift as a share of the longest; half of it is expected
 WIDEST_BOX, TALLEST_BOX = 0.05, 0.08  # [m]
-JAW_TURN = 0.35
-"""Angle by which a single jaw is open at the width of the box; more, and it presses down [rad]."""
+JAW_TURN = 0.35  # [rad], of a single jaw at the box's width; more, and it presses down
 HEAVIEST_BOX, LIGHTEST_BOX = 0.1, 0.01  # [kg]
-GRIP_SHARE = 0.1
-"""Weight of the box as a share of what the friction of both fingers carries; others creep down."""
+GRIP_SHARE = 0.1  # of what the friction of both fingers carries; a heavier box creeps down
 ARM_SHARE, ARM_LEAST = 0.05, 0.03
 """Weight of the box as a share of the moving mass of the robot, but at least this [kg]: a light
 arm holds a light box still, and the lightest boxes turn when fingers push them."""
-SLIDING = 0.3
-"""Friction of a box that a single jaw pushes against the palm; with more it jams on the stand."""
+SLIDING = 0.3  # friction of a box that a jaw pushes to the palm; with more it jams on the stand
 GRAVITY = 9.81  # [m/s^2]
-GAP_STEP = 1e-3
-"""Change of the gap between the pads over which the gripper's transmission is measured [m]."""
+GAP_STEP = 1e-3  # [m], of the gap between pads over which a transmission is measured
 MOTIONS = 10
 
 MARGIN = 0.02  # Distance of joint goals from the limits, as a share of the range
 DIGITS = 4  # Decimals of joint positions in the file
 PADDING = 0.002  # Distance of bodies at the start [m], as planning keeps by default
-
-FLOOR_CLEARANCE = 0.05
-"""Height of the lowest moving link above the floor at the start, at least [m]."""
+FLOOR_CLEARANCE = 0.05  # [m], of the lowest moving link at the start, at least
 
 STAND = """\
   - name: stand
