@@ -40,6 +40,7 @@ exclude_patterns = ["docs/generators/**"]
 myst_heading_anchors = 4
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+autodoc_default_options = {"exclude-members": "model_config, model_post_init"}
 
 
 LINK = re.compile(r"\[([^\]]*)\]\(([\w./-]+)\)")
