@@ -9,10 +9,13 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import sys
 from pathlib import Path
 
 from sphinx.application import Sphinx
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from docs.generators.live_gallery import run_lessons, with_pages
 from harness import __version__
 
 ROOT = Path(__file__).parents[1]
@@ -26,6 +29,8 @@ html_theme = "furo"
 html_title = "armharness"
 html_copy_source = False
 html_show_sphinx = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 source_suffix = {".md": "markdown"}
 root_doc = "README"
 include_patterns = [
@@ -64,11 +69,18 @@ def lead_to_pages(_app: Sphinx, page: str, text: list[str]) -> None:
 
 
 def add_contents(app: Sphinx, page: str, text: list[str]) -> None:
-    """Add the table of contents to the front page, as the tables of `docs/README.md` have it."""
+    """Add the table of contents to the front page, as the tables of `docs/README.md` have it.
+
+    Pages in a folder with the name of a page, such as those in `docs/reference/api`, stand below it.
+    """
+    below = sorted(each for each in app.env.found_docs if each.startswith(f"{page}/"))
+    if page != root_doc and below:
+        text[0] += _toctree("", below)
     if page != root_doc:
         return
     listed = (ROOT / f"{CONTENTS}.md").read_text(encoding="utf-8")
-    left = {*app.env.found_docs} - {root_doc}
+    found = {*app.env.found_docs}
+    left = {each for each in found - {root_doc} if os.path.dirname(each) not in found}
     sections = [part.partition("\n")[::2] for part in re.split(r"(?m)^## ", listed)[1:]]
     for title, rows in sections:
         named = re.findall(r"\]\(([\w/.]+)\.md\)", rows)
@@ -81,6 +93,18 @@ def add_contents(app: Sphinx, page: str, text: list[str]) -> None:
 def _toctree(title: str, pages: list[str]) -> str:
     entries = "\n".join(pages)
     return f"\n\n```{{toctree}}\n:hidden:\n:caption: {title}\n\n{entries}\n```\n"
+
+
+def show_lessons_alive(app: Sphinx, page: str, text: list[str]) -> None:
+    """Put the film and the report page of each lesson below its picture in the gallery."""
+    if page == "docs/gallery" and app.config.gallery_runs:
+        text[0] = with_pages(text[0])
+
+
+def run_gallery(app: Sphinx, error: Exception | None) -> None:
+    """Run the lessons of the gallery; their reports are a part of the site."""
+    if error is None and app.builder.format == "html" and app.config.gallery_runs:
+        run_lessons(Path(app.outdir))
 
 
 def write_texts(app: Sphinx, error: Exception | None) -> None:
@@ -105,7 +129,10 @@ def write_texts(app: Sphinx, error: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Connect the additions to Sphinx."""
+    """Connect the additions to Sphinx; `-D gallery_runs=0` builds without running lessons."""
+    app.add_config_value("gallery_runs", True, "env", bool)
     app.connect("source-read", lead_to_pages)
     app.connect("source-read", add_contents)
+    app.connect("source-read", show_lessons_alive)
+    app.connect("build-finished", run_gallery)
     app.connect("build-finished", write_texts)

@@ -20,6 +20,7 @@ REQUESTING = {
     ("img", "src"),
     ("source", "src"),
     ("iframe", "src"),
+    ("video", "src"),
 }
 
 
@@ -43,8 +44,9 @@ class Page(HTMLParser):
 
 def built(folder, options):
     """A site in a folder, and what Sphinx printed."""
+    command = f"-m sphinx -q -D gallery_runs=0 -b html -c docs {options} ."
     done = subprocess.run(
-        [sys.executable, *f"-m sphinx -q -D gallery_runs=0 -b html -c docs {options} .".split(), str(folder)],
+        [sys.executable, *command.split(), str(folder)],
         cwd=ROOT,
         capture_output=True,
         text=True,
