@@ -71,7 +71,7 @@ def lead_to_pages(_app: Sphinx, page: str, text: list[str]) -> None:
 def add_contents(app: Sphinx, page: str, text: list[str]) -> None:
     """Add the table of contents to the front page, as the tables of `docs/README.md` have it.
 
-    Pages in a folder with the name of a page, such as those in `docs/reference/api`, stand below it.
+    Pages in a folder with the name of a page, as in `docs/reference/api`, stand below that page.
     """
     below = sorted(each for each in app.env.found_docs if each.startswith(f"{page}/"))
     if page != root_doc and below:
@@ -80,7 +80,7 @@ def add_contents(app: Sphinx, page: str, text: list[str]) -> None:
         return
     listed = (ROOT / f"{CONTENTS}.md").read_text(encoding="utf-8")
     found = {*app.env.found_docs}
-    left = {each for each in found - {root_doc} if os.path.dirname(each) not in found}
+    left = {each for each in found - {root_doc} if str(Path(each).parent) not in found}
     sections = [part.partition("\n")[::2] for part in re.split(r"(?m)^## ", listed)[1:]]
     for title, rows in sections:
         named = re.findall(r"\]\(([\w/.]+)\.md\)", rows)
@@ -91,8 +91,9 @@ def add_contents(app: Sphinx, page: str, text: list[str]) -> None:
 
 
 def _toctree(title: str, pages: list[str]) -> str:
-    entries = "\n".join(pages)
-    return f"\n\n```{{toctree}}\n:hidden:\n:caption: {title}\n\n{entries}\n```\n"
+    caption = f":caption: {title}\n" if title else ""
+    entries = "".join(f"/{page}\n" for page in pages)
+    return f"\n\n```{{toctree}}\n:hidden:\n{caption}\n{entries}```\n"
 
 
 def show_lessons_alive(app: Sphinx, page: str, text: list[str]) -> None:

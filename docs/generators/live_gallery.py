@@ -22,7 +22,8 @@ VIEWS = {
 PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/gallery/(\w+)\.png\)\n")
 LIVE = """
 ```{{raw}} html
-{film}<details class="report"><summary>The report of this run: replay, timeline, verdicts, plots</summary>
+{film}<details class="report">
+<summary>The report of this run: replay, timeline, verdicts, plots</summary>
 <iframe src="../{folder}/{lesson}/report.html" loading="lazy" title="{lesson}"></iframe></details>
 <p><a href="../{folder}/{lesson}/report.html">The report in a page of its own</a></p>
 ```
