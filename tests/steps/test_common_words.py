@@ -120,7 +120,8 @@ def test_the_gripper_is_a_body_that_may_touch(tmp_path):
     ("steps", "is_noted"),
     [
         ("- attach_object: part\n- move_to: {joints: {joint1: 0.3}}", True),
-        ("- attach_object: part\n- detach_object: part", True),
+        ("- attach_object: part\n- wait: 0.1\n- detach_object: part", True),
+        ("- attach_object: part\n- detach_object: part", False),
         ("- pick: part", False),
     ],
 )
