@@ -120,7 +120,7 @@ def test_a_prismatic_joint_does_not_pass_either(tmp_path):
 WIDE = PathConstraints(joints=(JointBand("wrist_3_joint", -3.0, 3.0),))
 
 
-@pytest.mark.nightly(but=["0.0-free"])
+@pytest.mark.nightly(but=["0.0-constrained"])
 @pytest.mark.parametrize("constraints", [None, WIDE], ids=["free", "constrained"])
 @pytest.mark.parametrize("padding", [0.0, 0.001])
 def test_a_free_motion_goes_around(padding, constraints):
