@@ -80,9 +80,9 @@ class Visit:
         return self.page.inner_text(selector)
 
 
-@pytest.fixture(scope="module")
-def visit(browser):
-    """Opens a page from disk and waits for it; at the end nothing may have gone wrong."""
+@contextmanager
+def visits(browser):
+    """Opens pages from disk and waits for them; at the end nothing may have gone wrong."""
     opened = []
 
     def open_page(file, place="", **options):
@@ -105,3 +105,10 @@ def visit(browser):
         local = ("file:", "data:", "blob:")
         remote = [url for url in visit.requests if not url.startswith(local)]
         assert remote == [], "the page requested something from the network"
+
+
+@pytest.fixture
+def visit(browser):
+    """Opens pages, which are closed at the end: an open one goes on drawing its small pictures."""
+    with visits(browser) as open_page:
+        yield open_page

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from harness.recording.read_run import read_run
-from tests.reporting.browser import wait_for, wait_for_frame
+from tests.reporting.browser import visits, wait_for, wait_for_frame
 
 PICTURE = """() => {
   const canvas = document.querySelector('#view canvas');
@@ -33,8 +33,9 @@ def picture(page):
 
 
 @pytest.fixture(scope="module")
-def shared(visit, failed_run):
-    return visit(failed_run / "report.html")
+def shared(browser, failed_run):
+    with visits(browser) as visit:
+        yield visit(failed_run / "report.html")
 
 
 @pytest.fixture
