@@ -13,6 +13,7 @@ from typing import TextIO
 
 from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, RobotError, SpecError
+from harness.core.extras import missing_extra
 from harness.core.interruption import is_interrupted
 from harness.core.printable import cropped, fitted, printable, printable_lines, terminal_text
 from harness.core.resources import with_short_names
@@ -208,6 +209,9 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
     except Exception as error:
         if is_interrupted():
             raise KeyboardInterrupt from error
+        if missing := missing_extra(error):
+            complain(f"harness: {missing}")
+            return USAGE_EXIT_CODE
         complain(error_text(error).rstrip())
         return EXIT_CODES["error"]
 

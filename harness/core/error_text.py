@@ -5,6 +5,7 @@ from __future__ import annotations
 import traceback
 from pathlib import Path
 
+from harness.core.extras import missing_extra
 from harness.core.registry import plugin_files
 
 OWN_FOLDER = Path(__file__).resolve().parents[1]
@@ -13,9 +14,13 @@ OWN_FOLDER = Path(__file__).resolve().parents[1]
 def error_text(error: BaseException) -> str:
     """The traceback of an exception; of one that left a plug-in's code, only the plug-in's part.
 
+    Of a package of an extra that is not installed it says how to install it.
+
     The frames of this program say nothing to the author of a plug-in, whose line is the last one
     of the author's own.
     """
+    if missing := missing_extra(error):
+        return missing
     files = plugin_files()
     frames = traceback.extract_tb(error.__traceback__)
     first = next(

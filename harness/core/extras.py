@@ -8,6 +8,16 @@ from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path
 
 DISTRIBUTION = "armharness"
+EXTRAS = {
+    "av": "video",
+    "rosbags": "bags",
+    "mcap": "bags",
+    "zstandard": "bags",
+    "lz4": "bags",
+    "cmaes": "search",
+    "hypothesis": "ik-test",
+}
+"""Packages that only some commands import, and the extra that has each."""
 
 
 def install_command(extra: str) -> str:
@@ -27,6 +37,16 @@ def install_command(extra: str) -> str:
             if marker.replace("'", '"').strip() == f'extra == "{extra}"'
         )
     )
+
+
+def missing_extra(error: BaseException) -> str:
+    """What to install where an import found no package of an extra; empty for other errors."""
+    name = error.name if isinstance(error, ModuleNotFoundError) else None
+    package = (name or "").partition(".")[0]
+    extra = EXTRAS.get(package)
+    if extra is None:
+        return ""
+    return f"the Python package {package} is not installed; install it by: {install_command(extra)}"
 
 
 def _pip_install(*what: str) -> str:

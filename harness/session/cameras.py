@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 
 from harness.cell.scope import Problems, Scope
 from harness.core.camera import Camera
+from harness.core.extras import install_command
 from harness.language.cameras import CameraSpec, VideoSpec
 
 
@@ -65,6 +67,11 @@ def _check_simulated(spec: CameraSpec, loc: tuple[str | int, ...], scope: Scope)
 def check_videos(videos: Sequence[VideoSpec], scope: Scope) -> dict[str, float]:
     """Frames a second of every camera that is recorded, by its name."""
     rates: dict[str, float] = {}
+    if videos and find_spec("av") is None:
+        hint = f"install it by: {install_command('video')}"
+        scope.problems.add(
+            ("videos",), "the Python package av, which films, is not installed", hint
+        )
     for index, spec in enumerate(videos):
         loc = ("videos", index, "camera")
         if spec.camera in rates:

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -138,6 +139,8 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHoo
             registry("reporter").find(name)
         except LookupError as error:
             raise UsageError(f"--reporter: {error.args[0]}") from None
+    if arguments.bag or "rosbag" in arguments.reporters:
+        import_module("rosbags")  # refused here where it is not installed
     root = None if arguments.no_report else Path(arguments.report_dir)
     if root is not None:
         clean_report_folder(root)

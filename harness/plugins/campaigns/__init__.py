@@ -1,4 +1,4 @@
 """Campaigns: suites of many runs, on several machines, searched, compared and queried."""
 
-EXTRAS = {"pyarrow": "parquet", "ray": "cluster"}
-"""Packages that it needs for Parquet files and for clusters, and the extra that has each."""
+EXTRAS = {"cmaes": "search", "pyarrow": "parquet", "ray": "cluster"}
+"""Packages that it needs for searches, Parquet files and clusters, and the extra that has each."""

@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from harness.plugins.iktest.kit import IkTest, check_ik, run_ik_test
     from harness.plugins.iktest.report import IkFinding, IkReport, PropertyResult
 
+EXTRAS = {"hypothesis": "ik-test"}
+"""Packages that it needs, and the extra that has each."""
 __all__ = ["IkFinding", "IkReport", "IkTest", "PropertyResult", "check_ik", "run_ik_test"]
 
 

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import closing
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -74,6 +75,7 @@ class SearchCommand(Command):
         """Search for conditions under which a scenario fails; exit code 1 when there are some."""
         from harness.plugins.campaigns.failure_search.write import search_document
 
+        import_module("cmaes")  # refused here where it is not installed
         found, written, code = _search(arguments)
         if arguments.json:
             say_json({**search_document(found, written), "exit_code": code})

@@ -1,0 +1,110 @@
+"""Packages that only some commands need, where they are not installed."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+from docs import ROOT
+from harness.core.error_text import error_text
+from harness.core.extras import EXTRAS, missing_extra
+
+BLOCKED = """\
+import sys
+from importlib.abc import MetaPathFinder
+
+class Absent(MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {packages!r}:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+sys.meta_path.insert(0, Absent())
+import importlib.util
+found = importlib.util.find_spec
+importlib.util.find_spec = lambda name, package=None: (
+    None if name.partition(".")[0] in {packages!r} else found(name, package)
+)
+from harness.cli.main import main
+sys.exit(main())
+"""
+
+
+def without(packages, folder, *arguments):
+    """Run a command in a Python that finds none of some packages."""
+    command = [sys.executable, "-c", BLOCKED.format(packages={*packages}), *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_the_first_commands_need_no_package_of_an_extra(tmp_path):
+    scenario = tmp_path / "a.scenario.yaml"
+    scenario.write_text(
+        "scenario: A\nrobot: {model: open_manipulator_x}\nworld: empty\nsteps: [{wait: 0.1 s}]\n"
+        "expect: [{always: within_limits}]\n"
+    )
+    done = without(EXTRAS, tmp_path, "run", "a.scenario.yaml", "--in-process")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / "reports/a/report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("package", "arguments"),
+    [
+        ("hypothesis", ["ik-test", "numeric", "--robot", "open_manipulator_x"]),
+        ("cmaes", ["search", "variation/pick_where_it_stands"]),
+        ("rosbags", ["run", "lessons/04_gripper_alone", "--bag"]),
+        ("zstandard", ["grade", "lessons/04_gripper_alone", "a.bag"]),
+        ("lz4", ["grade", "lessons/04_gripper_alone", "a.bag"]),
+    ],
+)
+def test_a_command_without_its_package_says_how_to_install_it(package, arguments, tmp_path):
+    (tmp_path / "a.bag").touch()
+    done = without([package], tmp_path, *arguments)
+    assert done.returncode == 2, done.stderr
+    [line] = done.stderr.splitlines()
+    assert line.startswith(
+        f"harness: the Python package {package} is not installed; install it by:"
+    )
+    assert f"{sys.executable} -m pip install" in line
+    assert not (tmp_path / "reports").exists()
+
+
+def test_a_video_without_its_package_is_refused_at_its_line(tmp_path):
+    done = without(["av"], tmp_path, "run", "cameras/01_gripper_camera", "--in-process")
+    assert done.returncode == 2
+    assert "cameras/01_gripper_camera.scenario.yaml:" in done.stdout
+    assert "the Python package av, which films, is not installed" in done.stdout
+    assert "pip install" in done.stdout
+
+
+def test_each_package_is_declared_in_its_extra_and_not_required():
+    project = tomllib.loads(Path(ROOT, "pyproject.toml").read_text())["project"]
+    required = {Requirement(each).name for each in project["dependencies"]}
+    for package, extra in EXTRAS.items():
+        stated = {Requirement(each).name for each in project["optional-dependencies"][extra]}
+        assert package in stated
+        assert package not in required
+
+
+def test_an_import_of_anything_else_keeps_its_traceback():
+    for name in ("no_such_module", "numpy.no_such_module", None):
+        error = ModuleNotFoundError("No module", name=name)
+        assert missing_extra(error) == ""
+        assert "ModuleNotFoundError" in error_text(error)
+    assert missing_extra(ImportError("x", name="av")) == ""
+
+
+def test_no_page_and_no_message_installs_the_distribution_from_an_index():
+    """It is on none: a clone, an address or a wheel is named instead."""
+    pages = [
+        *ROOT.glob("*.md"),
+        *(ROOT / "docs").rglob("*.md"),
+        *(ROOT / "scenarios").rglob("*.md"),
+    ]
+    sources = [*(ROOT / "harness").rglob("*.py"), *(ROOT / "harness/cli/templates").rglob("*.*")]
+    for file in [*pages, *sources]:
+        found = re.findall(r"pip install [^\n`]*?armharness\b(?! @)\S*", file.read_text("utf-8"))
+        assert [each for each in found if "./armharness" not in each] == [], file
