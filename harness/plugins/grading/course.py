@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from harness.core.registry import registry
 from harness.core.resources import data_folder
+from harness.language.reading.load import read_scenario
 from harness.plugins.grading.assignment import FILE, LoadedAssignment, read_assignment
-from harness.plugins.grading.merge import merged_text
+from harness.plugins.grading.merge import merged_text, refuse_scene_verbs
 from harness.suite.discovery import SUFFIX, UsageError
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def run_work(exercise: Exercise, file: Path, report: Path) -> CaseResult:
         report: The folder of the report.
 
     Raises:
-        SpecError: The student's file is no scenario.
+        SpecError: The student's file is no scenario, or changes the scene.
     """
     from harness.session.run_request import RunRequest
     from harness.suite.api import run_in_process
@@ -120,6 +121,7 @@ def run_work(exercise: Exercise, file: Path, report: Path) -> CaseResult:
     assert loaded.scenario is not None  # the test of a solver has no run
     if loaded.model.node is None:
         text = merged_text(file, loaded.scenario, loaded.model.takes)
+        refuse_scene_verbs(read_scenario(file, text=text), file, loaded.scenario)
         return run_in_process(RunRequest(file, text=text, report_dir=report))
     request = RunRequest(loaded.scenario.resolve(), report_dir=report.resolve())
     with chdir(file.parent):  # the command of the node names a file in the student's folder
@@ -133,7 +135,7 @@ def test_solver(exercise: Exercise, file: Path, report: Path) -> dict[str, bool]
         report: The folder of the report.
 
     Returns:
-        Whether each property is kept, by name.
+        Whether each property is kept, by name; none is where the function reaches no target.
     """
     ik = exercise.assignment.model.ik
     assert ik is not None
@@ -145,4 +147,7 @@ def test_solver(exercise: Exercise, file: Path, report: Path) -> dict[str, bool]
     command.run(parser.parse_args(words))
     [result] = report.rglob("ik_test.json")
     properties = json.loads(result.read_text(encoding="utf-8"))["properties"]
-    return {each["name"]: each["observed"] > 0 and not each["flawed"] for each in properties}
+    reaches = any(each["name"] == "reaches" and each["observed"] for each in properties)
+    return {
+        each["name"]: reaches and each["observed"] > 0 and not each["flawed"] for each in properties
+    }

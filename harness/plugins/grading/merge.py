@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Located, Place, Source
 from harness.language.files.yaml_file import parse_yaml, read_text
+from harness.language.reading.load import Reading, load_scenario
 from harness.language.step import Step
 
 CHANGES_SCENE = frozenset(
@@ -68,6 +69,25 @@ def scene_verbs(given: BaseModel, graded: BaseModel) -> list[str]:
     known = {step.verb for step in steps_in(graded)}
     changing = (s for s in steps_in(given) if s.moves_objects or s.verb in CHANGES_SCENE)
     return sorted({step.verb for step in changing} - known)
+
+
+def refuse_scene_verbs(reading: Reading, submission: Path, scenario: Path) -> None:
+    """Refuse steps of a student that change the scene where the assignment has none of the kind.
+
+    Args:
+        reading: The result of reading the merged text.
+        submission: The scenario file of the student.
+        scenario: The scenario file of the assignment.
+
+    Raises:
+        SpecError: It names the first of them.
+    """
+    if reading.loaded is None:
+        return
+    verbs = scene_verbs(reading.loaded.scenario, load_scenario(scenario).scenario)
+    if verbs:
+        message = f"the step `{verbs[0]}` changes the scene, which this exercise does not do"
+        raise SpecError([Problem(submission.name, 0, 0, message, "leave the step out")])
 
 
 def steps_in(value: object) -> Iterator[Step]:

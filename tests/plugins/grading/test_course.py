@@ -5,11 +5,11 @@ import os
 import re
 import shlex
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
 
-from docs import ROOT
 from docs.generators.course import FOLDER, LEFT_OUT, checked, index, mistakes, page_of, with_regions
 from harness.cli.main import main
 from harness.core.resources import data_folder
@@ -17,7 +17,8 @@ from harness.plugins.grading.course import exercises
 
 COURSE = data_folder("scenarios") / "course"
 EXERCISES = {exercise.folder_name: exercise for exercise in exercises().values()}
-DECIMALS = re.compile(r"-?\d+\.\d+(e-?\d+)?")
+MEASURED = re.compile(r"-?\d+\.\d+(e[+-]?\d+)?|-?\d+(?=(?: (?:mm|cm|N|deg|px|pixels)\b|°))")
+"""Measured numbers, which differ between processors."""
 POINTS = re.compile(r"(?m)^([\d.]+) of ([\d.]+) points")
 INVALID = re.compile(r"(?m)^\S+\.yaml:\d+:\d+: ")
 FULL = "10 of 10 points"
@@ -43,7 +44,7 @@ def test_the_page_shows_what_the_start_and_each_mistake_leave(name):
     exercise = EXERCISES[name]
     page = page_of(exercise).read_text(encoding="utf-8")
     made = with_regions(exercise)
-    assert DECIMALS.sub("#", page) == DECIMALS.sub("#", made), (
+    assert MEASURED.sub("#", page) == MEASURED.sub("#", made), (
         "the page is out of date; write it again: python -m docs.generators.course " + name
     )
 
@@ -84,7 +85,10 @@ def sh(page):
 
 def test_the_commands_of_the_first_page_and_of_the_teachers_page_run(here, capsys):
     shutil.copytree(COURSE / "02_gripper", here / "my_course/01_sort_the_cans")
-    codes = {"course": 0, "start": 0, "check": 1, "view": 0}
+    (here / "submissions").mkdir()
+    for name, file in {"ada": "answer.yaml", "ben": "mistakes/one_pad.yaml"}.items():
+        shutil.copy(COURSE / "02_gripper" / file, here / f"submissions/{name}.scenario.yaml")
+    codes = {"course": 0, "start": 0, "check": 1, "view": 0, "grade-class": 1}
     for line in [*sh("README.md"), *sh("teachers.md")]:
         words = shlex.split(line, comments=False)[1:]
         part = words[1] if words[0] == "course" and len(words) > 1 else words[0]
@@ -93,6 +97,8 @@ def test_the_commands_of_the_first_page_and_of_the_teachers_page_run(here, capsy
     printed = capsys.readouterr().out
     assert "4 of 10 points" in printed
     assert "reports/course/03_grasp/report.html#t=3.791" in printed
+    assert re.search(r"10/10 +ada", printed)
+    assert re.search(r"7/10 +ben", printed)
 
 
 @pytest.mark.parametrize("name", EXERCISES)
@@ -157,6 +163,25 @@ def test_a_students_expectations_earn_nothing(here, capsys):
     assert "points" in expect
 
 
+def test_steps_that_put_an_object_elsewhere_are_refused(here, capsys):
+    main(["course", "start", "3", "."])
+    file = here / "grasp.scenario.yaml"
+    jump = "  - move_object: {object: red_box, pose: {xyz: [0.36, 0, 1.3]}}\nexpect:\n"
+    file.write_text(file.read_text().replace("expect:\n", jump))
+    assert main(["course", "check", "--no-open"]) == 2
+    assert "the step `move_object` changes the scene" in capsys.readouterr().err
+
+
+def test_a_node_runs_in_the_folder_of_the_student(here, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", str(Path(sys.executable).parent), prepend=os.pathsep)
+    (here / "work").mkdir()
+    (here / "work/ros2_node.py").write_text("open('was_here', 'w').close()")
+    assert main(["course", "check", "work", "--no-open"]) in (1, 3)  # 3: the machine is too slow
+    assert "step `exercise` failed, TIMED_OUT" in capsys.readouterr().out
+    assert (here / "work/was_here").exists()
+    assert (here / "reports/course/12_ros2_node/report.html").exists()
+
+
 @pytest.mark.needs_ros
 @pytest.mark.parametrize(("file", "earned"), [("start.py", "5"), ("answer.py", "10")])
 def test_the_node_of_the_course_earns_its_points(monkeypatch, file, earned):
@@ -164,4 +189,8 @@ def test_the_node_of_the_course_earns_its_points(monkeypatch, file, earned):
     if python:
         monkeypatch.setenv("PATH", str(Path(python).parent), prepend=os.pathsep)
     exercise = EXERCISES["12_ros2_node"]
-    assert f"{earned} of 10 points" in checked(exercise, ROOT / exercise.start.parent / file)
+    for _ in range(3):  # a machine that cannot keep the pace judges no node, as a person sees
+        printed = checked(exercise, exercise.start.parent / file)
+        if "too slow to judge" not in printed:
+            break
+    assert f"{earned} of 10 points" in printed, printed

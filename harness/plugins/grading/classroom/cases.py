@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import Problem, SpecError
+from harness.core.errors import SpecError
 from harness.core.memory import limited_memory
 from harness.core.untrusted_json import parse_json
 from harness.plugins.grading.assignment import LoadedAssignment
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.classroom.confined import Confinement, adopt_orphans, end_children
-from harness.plugins.grading.merge import merged_text, placed, scene_verbs, steps_in
+from harness.plugins.grading.merge import merged_text, placed, refuse_scene_verbs, steps_in
 from harness.recording.stored_run import PAGE
 from harness.recording.verdict import Verdict
 from harness.reporting.progress_events import ProgressEvent
@@ -87,16 +87,12 @@ def _blank(case: GradedCase, outcome: Any, message: str = "") -> CaseResult:
 
 def _scenario(case: GradedCase, notify: Notify) -> CaseResult:
     """Run the student's steps in the exercise; places are those of the student's file."""
-    from harness.language.reading.load import load_scenario, read_scenario
+    from harness.language.reading.load import read_scenario
 
     own, takes = case.main, case.assignment.model.takes
     text = merged_text(own, case.file, takes)
     reading = read_scenario(case.file, case.overrides, case.seed, text)
-    exercise = load_scenario(case.file).scenario
-    verbs = scene_verbs(reading.loaded.scenario, exercise) if reading.loaded is not None else []
-    if verbs:
-        message = f"the step `{verbs[0]}` changes the scene, which this exercise does not do"
-        raise SpecError([Problem(own.name, 0, 0, message, "leave the step out")])
+    refuse_scene_verbs(reading, own, case.file)
     result = run_job(replace(case, text=text), notify)
     verdicts = (each if each.step else replace(each, line=0) for each in result.verdicts)
     problems = tuple(placed(each, own, case.file) for each in result.problems)
