@@ -26,7 +26,7 @@ def require_control_msgs():
     for module, missing in (("rclpy", pytest.fail), ("control_msgs.action", pytest.skip)):
         done = subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True, check=False)
         if done.returncode:
-            missing(f"{PYTHON} has no {module}; see tests/plugins/ros/build_control_msgs.py")
+            missing(f"{PYTHON} has no {module}; build it with harness.plugins.ros.build_messages")
 
 
 def scenario(folder, steps=STEPS, rest="expect: [{always: within_limits}]", robot=ROBOT):

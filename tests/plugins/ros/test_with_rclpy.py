@@ -1,7 +1,7 @@
 """Nodes of the real rclpy, with Fast DDS, against the bridge.
 
 HARNESS_ROS_PYTHON names the Python of an environment that has rclpy and control_msgs; the latter is
-built by `python -m tests.plugins.ros.build_control_msgs PREFIX`.
+built by `python -m harness.plugins.ros.build_messages PREFIX control_msgs`.
 """
 
 import json
