@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+import numpy as np
 
 from harness.core.geometry import Rgba
 from harness.core.types import FloatArray, IntArray
@@ -16,13 +18,13 @@ class MeshRecord:
     Attributes:
         path: The path of the file, as `Shape.geometry` names it; it need not be there any more.
         scale: The scale of `Shape.geometry`; the vertices are scaled already.
-        vertices: The vertices, shape (V, 3) [m].
-        faces: Indices of vertices, shape (F, 3).
+        vertices: The vertices, shape (V, 3) [m]; run.json has none, but visuals.npz.
+        faces: Indices of vertices, shape (F, 3); likewise.
         rgba: None where the file gives no colour: the shape's.
     """
 
     path: Path
     scale: tuple[float, float, float]
-    vertices: FloatArray
-    faces: IntArray
+    vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    faces: IntArray = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     rgba: Rgba | None = None

@@ -12,7 +12,6 @@ from typing import Any, cast, get_type_hints
 import numpy as np
 
 from harness.core.errors import HarnessError, Problem, SpecError
-from harness.core.geometry import Rgba
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.core.untrusted_json import parse_json
@@ -26,7 +25,6 @@ from harness.recording.consistency import (
     signal_flaws,
 )
 from harness.recording.files import FolderFiles, checked
-from harness.recording.mesh_record import MeshRecord
 from harness.recording.npz_file import NpzError, NpzFile
 from harness.recording.older_runs import FORMAT, KNOWN_FORMATS, in_present_form
 from harness.recording.plain import PlainError, from_plain
@@ -124,7 +122,7 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
         known = {
             name: from_plain(plain[name], hint, name)
             for name, hint in hints.items()
-            if name in plain and name not in ("signals", "meshes")
+            if name in plain and name != "signals"
         }
         for name in NEEDED:
             _needed(known, name)
@@ -137,7 +135,7 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
             )
             for index, (record, step) in enumerate(zip(known["steps"], steps, strict=True))
         )
-        run = Run(**known, signals=NO_SIGNALS, meshes=_meshes(document))
+        run = Run(**known, signals=NO_SIGNALS)
     return run, [step.get("trajectory") for step in steps]
 
 
@@ -249,18 +247,3 @@ def _files(folder: Path, run: Run) -> FolderFiles:
         return FolderFiles(folder, [checked(name) for name in names])
     except ValueError as error:
         raise PlainError("files", str(error)) from error
-
-
-def _meshes(document: Mapping[str, Any]) -> tuple[MeshRecord, ...]:
-    """The mesh files, without their triangles."""
-    plain = _mappings(document, "meshes") if "meshes" in document else []
-    return tuple(
-        MeshRecord(
-            path=_field(mesh, "path", Path, f"meshes[{index}]."),
-            scale=_field(mesh, "scale", tuple[float, float, float], f"meshes[{index}]."),
-            vertices=np.zeros((0, 3)),
-            faces=np.zeros((0, 3), dtype=np.int64),
-            rgba=_field(mesh, "rgba", Rgba | None, f"meshes[{index}]."),
-        )
-        for index, mesh in enumerate(plain)
-    )
