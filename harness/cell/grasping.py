@@ -296,7 +296,7 @@ def position_for_width(hand: Gripper, width: float) -> float:
 def least_gap(cell: Cell) -> float:
     """Gap between the pads of the closed gripper [m]."""
     hand = cell.gripper
-    return float(np.interp(hand.closed_position, hand.widths[:, 0], hand.widths[:, 1]))
+    return float(hand.gap_at(hand.closed_position))
 
 
 def _fits(width: float, cell: Cell) -> bool:

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from itertools import product
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from harness.cell.approach import approach_axis
+from harness.core.pose_arrays import rotations_of
 from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
@@ -130,16 +130,13 @@ class Candidates:
 
     def _box_width(self, gripper: Gripper) -> float:
         """Width of a box that the gripper can hold, in whole millimetres [m]."""
-
-        def gap(position: float) -> float:
-            return float(np.interp(position, gripper.widths[:, 0], gripper.widths[:, 1]))
-
         opened, closed = gripper.open_position, gripper.closed_position
-        least, opening = gap(closed), gap(opened)
+        least, opening = gripper.gap_at(np.array([closed, opened])).tolist()
         width = min(WIDEST_BOX, max(0.6 * opening, 0.5 * (least + opening)))
         turns = self._description.joint_by_name[gripper.joint].kind != "prismatic"
         if gripper.has_single_jaw and turns:
-            width = min(width, gap(closed + math.copysign(JAW_TURN, opened - closed)))
+            turned = closed + math.copysign(JAW_TURN, opened - closed)
+            width = min(width, float(gripper.gap_at(turned)))
         return math.floor(1e3 * width) / 1e3
 
     def _places(self, gripper: Gripper, heights: Sequence[float]) -> list[tuple[float, float]]:
@@ -154,10 +151,7 @@ class Candidates:
         opened[description.joint_index[gripper.joint]] = gripper.open_position
         opened = description.with_mimics(opened)
         axis = approach_axis(description, self._kinematics, self._scene, opened)
-        along = Rotation.from_quat(self._tcps[:, 3:], scalar_first=True).apply(
-            axis / np.linalg.norm(axis)
-        )
-        cosine = -along[:, 2]
+        cosine = -(rotations_of(self._tcps[:, 3:]) @ axis)[:, 2] / np.linalg.norm(axis)
         weights = np.exp(-((np.arccos(np.clip(cosine, -1.0, 1.0)) / DOWNWARD) ** 2))
         if not description.groups[description.arm_group].task_space.holds_pose:
             weights[:] = 1.0
