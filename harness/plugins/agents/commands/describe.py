@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.files import one_scenario
 from harness.cli.output import say_json, say_text
 from harness.cli.shared_options import add_json, add_preparation, add_seed
@@ -25,6 +25,7 @@ class DescribeCommand(Command):
     """Describe the scene of a scenario: objects, reach, clearances, graspable widths."""
 
     name: ClassVar[str] = "describe"
+    group: ClassVar[str] = SCENARIOS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness describe`."""

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SETUP, Command
 from harness.cli.output import say, say_text
 
 SKILL = Path(__file__).parents[1] / "SKILL.md"
@@ -16,6 +16,7 @@ class SkillCommand(Command):
     """Print SKILL.md, instructions for language-model agents."""
 
     name: ClassVar[str] = "skill"
+    group: ClassVar[str] = SETUP
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness skill`."""

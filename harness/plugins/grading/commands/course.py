@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.command import Command
+from harness.cli.command import SCENARIOS, Command
 from harness.cli.commands.view import open_browser
 from harness.cli.files import refuse_existing, write_text
 from harness.cli.output import say, say_json, say_text
@@ -24,6 +24,7 @@ class CourseCommand(Command):
     """Learn with exercises: list them, start one, check it."""
 
     name: ClassVar[str] = "course"
+    group: ClassVar[str] = SCENARIOS
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness course`."""

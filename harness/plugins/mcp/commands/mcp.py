@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.command import Command, UsageError
+from harness.cli.command import SETUP, Command, UsageError
 from harness.core.extras import install_command
 
 
@@ -17,6 +17,7 @@ class McpCommand(Command):
     """
 
     name: ClassVar[str] = "mcp"
+    group: ClassVar[str] = SETUP
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness mcp`."""
