@@ -23,6 +23,7 @@ PAGES = (
     ROOT / "docs/start.md",
     *sorted((ROOT / "docs/howto").glob("*.md")),
     *sorted((ROOT / "docs/explanation").glob("*.md")),
+    ROOT / "docs/guides/grade_class.md",
     ROOT / "harness/plugins/agents/SKILL.md",
 )
 """The pages whose every block is an example."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import resource
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -152,9 +153,10 @@ def _ik(case: GradedCase, _notify: Notify) -> CaseResult:
     assert exercise is not None
     hidden = case.assignment.model.hidden[case.number - 1] if case.number else None
     name = (hidden.robot if hidden else None) or exercise.robot
-    own = case.assignment.folder / name
-    robot = str(own.resolve()) if own.exists() else name
-    report = case.scratch / "report"
+    own, robot, report = case.assignment.folder / name, name, case.scratch / "report"
+    if own.is_dir():  # a copy, as the folder of the assignment may be hidden from programs
+        robot = str(shutil.copytree(own, case.scratch / "robot"))
+        case.confinement.own_folder()
     words = [sys.executable, "-m", "harness.cli", "ik-test"]
     words += [f"{case.main.name}:{exercise.function}", "--robot", robot, "--json"]
     words += ["--seed", str(case.seed if case.seed is not None else exercise.seed)]
@@ -202,7 +204,11 @@ def _property_verdict(each: Any, findings: Any, *, is_worth: bool) -> Verdict:
     shown = [finding for finding in findings if finding["number"] in each["findings"]]
     if is_worth and not shown and each["observed"]:
         return Verdict(each["says"], "passed")
-    reason = each["note"] or ("" if is_worth else "the function reaches no target")
+    reason = each["note"]
+    if not is_worth:
+        reason = ": it ".join(
+            ["the function reaches no target", *(f["kind"] for f in findings[:1])]
+        )
     if shown:
         first = shown[0]
         what = ": ".join(filter(None, (first["kind"], first["detail"])))

@@ -23,8 +23,9 @@ MOST_PICTURES = 4
 LARGEST_PICTURE = 10**6  # [bytes]
 
 PROTECTS = {
-    "user": "Each program ran as a user of its own, in a copy of its submission: it can neither"
-    " read nor change other submissions, results or pages.",
+    "user": "Each program ran as a user of its own, in a copy of its submission: it can change"
+    " nothing of other submissions, results or pages, and read what every user of this machine can."
+    " Folders of assignments, submissions and grades that only their owner can enter are hidden.",
     "process": "Each program ran as the user who graded, in a copy of its submission: a program"
     " that is written to harm can read and change what this user can. Start the command as root in"
     " a container, with a Python that all users can read, to prevent that.",

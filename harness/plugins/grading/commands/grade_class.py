@@ -13,6 +13,7 @@ from harness.cli.arguments import whole_number
 from harness.cli.command import EXCHANGE, Command
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
+from harness.core.printable import counted
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
 
@@ -83,7 +84,7 @@ class GradeClassCommand(Command):
         output().status(None)
         _print(grade)
         seconds = time.perf_counter() - begun
-        say(f"{len(submissions)} submissions in {seconds:.0f} s; page: {page}")
+        say(f"{counted(len(submissions), 'submission')} in {seconds:.0f} s", f"page: {page}")
         if arguments.one and (arguments.gradescope or arguments.classroom50):
             return 0  # the systems take another code for a failure of the grader
         is_full = all(each.is_full for each in grade.students)
