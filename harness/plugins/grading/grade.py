@@ -161,6 +161,9 @@ def _write_page(run: Run, grade: Grade, folder: Path) -> None:
     Raises:
         HarnessError: The folder cannot be written.
     """
+    from harness.session.observation.visuals import mesh_records
+
+    run = replace(run, meshes=mesh_records(run))
     verdicts = tuple(row.verdict for row in grade.rows)
     outcome = "passed" if grade.is_full else "failed"
     stored = StoredRun(run, verdicts, outcome, digest(run, verdicts), {})

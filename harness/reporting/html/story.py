@@ -138,24 +138,31 @@ def contact_facts(run: Run) -> list[dict[str, Any]]:
 
 
 def joint_facts(run: Run) -> list[dict[str, Any]]:
-    """What each joint did against its limits."""
+    """What each joint did against its limits; None where a recording does not say."""
     return [_joint(run, joint, column) for column, joint in enumerate(run.robot.movable_joints)]
 
 
 def _joint(run: Run, joint: Joint, column: int) -> dict[str, Any]:
     slides = joint.kind == "prismatic"
     factor = 1e3 if slides else 180 / math.pi
-    positions = run.signals.joint_positions[:, column]
+    positions, speeds, efforts = (
+        array[:, column][np.isfinite(array[:, column])]
+        for array in (
+            run.signals.joint_positions,
+            np.abs(run.signals.joint_velocities),
+            np.abs(run.signals.joint_efforts),
+        )
+    )
     return {
         "name": joint.name,
         "unit": "mm" if slides else "°",
-        "low": factor * float(positions.min()),
-        "high": factor * float(positions.max()),
+        "low": _number(factor * positions.min(initial=math.inf)),
+        "high": _number(factor * positions.max(initial=-math.inf)),
         "lower": _number(factor * joint.lower),
         "upper": _number(factor * joint.upper),
-        "speed": factor * float(np.abs(run.signals.joint_velocities[:, column]).max()),
+        "speed": _number(factor * speeds.max(initial=-math.inf)),
         "speedLimit": _number(factor * joint.velocity),
-        "effort": float(np.nanmax(np.abs(run.signals.joint_efforts[:, column]), initial=0.0)),
+        "effort": _number(efforts.max(initial=-math.inf)),
         "effortLimit": _number(joint.effort),
     }
 

@@ -1,5 +1,7 @@
 """CSV files of joint values over time as recordings."""
 
+import csv
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from harness.cli.main import main
 from harness.core.errors import SpecError
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.grade import grade_bag
+from harness.recording.read_run import read_run
 
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint"]
 JOINTS += ["wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
@@ -76,6 +79,24 @@ def test_a_turn_that_ends_early_loses_its_points(exercise, tmp_path, capsys):
     said = capsys.readouterr().out.splitlines()
     assert any(line.startswith("✗       0/3  line 5: eventually: joints") for line in said)
     assert said[-1] == "2 of 5 points"
+
+
+def test_a_class_that_hands_in_tables_gets_points_and_pages_with_the_arm(exercise, tmp_path):
+    """Speeds and efforts are not in the table; the page says so, and shows the arm's meshes."""
+    text = "assignment: Turn\nrecording: {scenario: turn.scenario.yaml, csv_period: 10 ms}\n"
+    (tmp_path / "turn").mkdir()
+    exercise.rename(tmp_path / "turn/turn.scenario.yaml")
+    (tmp_path / "turn/assignment.yaml").write_text(text)
+    (tmp_path / "all/late").mkdir(parents=True)
+    table(tmp_path / "all/good.csv", [], motion(0.01)[1])
+    table(tmp_path / "all/late/short.csv", [], motion(0.01, target=0.9)[1])
+    words = ["grade-class", str(tmp_path / "turn"), str(tmp_path / "all")]
+    assert main([*words, "--report-dir", str(tmp_path / "grades")]) == 1
+    rows = list(csv.DictReader((tmp_path / "grades/grades.csv").read_text().splitlines()))
+    assert [(row["submission"], row["points"]) for row in rows] == [("good", "5"), ("late", "2")]
+    kept = read_run(tmp_path / "grades/students/good/run")
+    assert kept.run.meshes
+    assert (tmp_path / "grades/students/good/run/report.html").is_file()
 
 
 def test_the_period_of_rows_is_an_option(exercise, tmp_path, capsys):

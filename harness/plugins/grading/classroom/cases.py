@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import SpecError
+from harness.core.errors import HarnessError, SpecError
 from harness.core.memory import limited_memory
 from harness.core.untrusted_json import parse_json
 from harness.plugins.grading.assignment import LoadedAssignment
@@ -77,6 +77,8 @@ def run_graded_case(case: RunRequest, notify: Notify) -> CaseResult:
             return _KINDS[case.assignment.model.kind](case, notify)
     except SpecError as error:
         return replace(_blank(case, "invalid"), problems=tuple(error.problems))
+    except HarnessError as error:
+        return _blank(case, "error", str(error))
     finally:
         end_children()
 

@@ -93,6 +93,8 @@ function findingList({ run }, seek) {
   );
 }
 
+const UNKNOWN = "not recorded";
+
 /** @param {import("./payload.js").Payload} payload */
 export function jointTable({ run }) {
   const head = ["joint", "reached", "limits", "peak speed", "peak effort"];
@@ -105,7 +107,7 @@ export function jointTable({ run }) {
         element(
           "tr", {},
           element("th", { scope: "row" }, joint.name),
-          element("td", {}, `${number(joint.low)} … ${number(joint.high)} ${joint.unit}`),
+          element("td", {}, joint.low === null ? UNKNOWN : `${number(joint.low)} … ${number(joint.high)} ${joint.unit}`),
           element("td", {}, joint.lower === null ? "none" : `${number(joint.lower)} … ${number(joint.upper)}`),
           element("td", {}, share(joint.speed, joint.speedLimit)),
           element("td", {}, share(joint.effort, joint.effortLimit)),
@@ -116,6 +118,7 @@ export function jointTable({ run }) {
 }
 
 function share(value, limit) {
+  if (value === null) return UNKNOWN;
   if (limit === null || limit <= 0) return number(value);
   return element("span.share", { title: `${number(value)} of ${number(limit)}` }, `${number((100 * value) / limit)} %`);
 }
