@@ -40,8 +40,7 @@ _LEAST_STEP = 0.01
 _SHORTCUTS = 10
 _SMOOTHINGS = 4
 
-WORTH = 0.01
-"""Share of the path that a shortcut must be able to save."""
+WORTH = 0.01  # Share of the path that a shortcut must be able to save
 
 
 def find_constrained_motion(

@@ -13,9 +13,7 @@ import numpy as np
 from harness.core.errors import ModelRefused
 from harness.core.world import WorldObject
 
-SMALLEST_MASS = 1e-14
-"""Smallest mass of a movable object [kg]; MuJoCo rejects less than 1e-15."""
-
+SMALLEST_MASS = 1e-14  # Smallest mass of a movable object [kg]; MuJoCo rejects less than 1e-15
 SMALLEST_MOMENT = 2e-14
 """Smallest principal moment of a movable object [kg m^2]; MuJoCo rejects less than 1e-14."""
 

@@ -14,17 +14,12 @@ from harness.core.types import FloatArray
 from harness.simulation.copied_contacts import Array, CopiedContacts, SampleContacts
 from harness.simulation.model import PhysicsModel
 
-ROWS = 2**16
-"""Samples for which the first arrays have room; what is not used takes no memory."""
-
+ROWS = 2**16  # Samples for which the first arrays have room; what is not used takes no memory
 CONTACTS_PER_ROW = 24
 """Contacts per sample for which the first arrays have room; more make them grow sooner."""
 
-BLOCK = 2**17
-"""Contacts that are sorted at a time."""
-
-BYTES = 52
-"""Memory that one contact takes in the arrays."""
+BLOCK = 2**17  # Contacts that are sorted at a time
+BYTES = 52  # Memory that one contact takes in the arrays
 
 BodyPair = tuple[str, str]
 

@@ -24,14 +24,9 @@ VELOCITY_SHARE = 0.8
 GOAL_TOLERANCE = 0.004
 """Largest position error at which the joint has reached its goal, as a share of its range."""
 
-STALL_TIME = 0.15
-"""Time for which the joint must be at rest to count as stalled [s]."""
-
-STALL_SPEED = 0.02
-"""Speed below which the joint is at rest, as a share of its closing speed."""
-
-CHECK_EVERY = 10
-"""Samples between two checks whether the joint reached its goal or stalled."""
+STALL_TIME = 0.15  # Time for which the joint must be at rest to count as stalled [s]
+STALL_SPEED = 0.02  # Speed below which the joint is at rest, as a share of its closing speed
+CHECK_EVERY = 10  # Samples between two checks whether the joint reached its goal or stalled
 
 
 class Servoed(Protocol):

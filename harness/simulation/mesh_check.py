@@ -11,8 +11,7 @@ from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.simulation.geoms import add_mesh, hull_points
 
-LEAST_SIZE = 1e-3
-"""The size below which a mesh is thought to have a wrong scale [m]."""
+LEAST_SIZE = 1e-3  # The size below which a mesh is thought to have a wrong scale [m]
 
 
 def check_mesh(geometry: Mesh) -> None:

@@ -40,14 +40,11 @@ from harness.simulation.step_state import refresh
 CHECK_EVERY = 100
 """Samples between checks of the path tolerance; the record shows which sample exceeded it."""
 
-SETTLE_EVERY = 10
-"""Samples between checks whether a goal is reached or everything is at rest."""
-
+SETTLE_EVERY = 10  # Samples between checks whether a goal is reached or everything is at rest
 SETTLE_FOR = 0.06
 """Time below the velocity limit that counts as rest; a swing's turning point is shorter [s]."""
 
-ABORT_HOLD = 0.2
-"""Time for which an aborted arm is held at its position [s]."""
+ABORT_HOLD = 0.2  # Time for which an aborted arm is held at its position [s]
 
 
 class MujocoSimulator:

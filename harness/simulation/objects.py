@@ -15,8 +15,7 @@ from harness.simulation.recording import Recording
 from harness.simulation.step_state import wake
 from harness.simulation.world_mjcf import weld_name
 
-SMALLEST_OVERLAP = 1e-4
-"""Depth above which two bodies overlap; resting objects penetrate less [m]."""
+SMALLEST_OVERLAP = 1e-4  # Depth above which two bodies overlap; resting objects penetrate less [m]
 
 
 class Objects:

@@ -21,9 +21,7 @@ from harness.simulation.step_state import refresh
 MOST_BYTES = 2**30
 """Largest record of states, sensors and contacts; judging it takes about four times as much."""
 
-LOOK_BACK = 25
-"""Number of samples before a failure in which contacts are searched."""
-
+LOOK_BACK = 25  # Number of samples before a failure in which contacts are searched
 _DIVERGED = (mujoco.mjtWarning.mjWARN_BADQACC, mujoco.mjtWarning.mjWARN_BADCTRL)
 
 

@@ -35,9 +35,7 @@ of its kind accelerates: without it, the wrist of a light arm yields to what its
 GRIPPER_SATURATION = 0.0025
 """Lag of a gripper's joint at its default grip effort, as a share of its range."""
 
-SHORTEST = 64
-"""Samples of a motion whose efforts are worth looking up."""
-
+SHORTEST = 64  # Samples of a motion whose efforts are worth looking up
 GRIPPER_BANDWIDTH_PER_STEP = 0.5
 """BANDWIDTH_PER_STEP of a gripper; its saturation gives the stiffness, and so its rotor inertia."""
 

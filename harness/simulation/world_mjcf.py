@@ -12,8 +12,7 @@ from harness.robot.description import Inertial
 from harness.simulation.geoms import add_collision_geom
 from harness.simulation.robot_mjcf import set_inertia
 
-WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)
-"""Impedance of a weld: nearly rigid."""
+WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)  # Impedance of a weld: nearly rigid
 
 
 def parking_pose(index: int) -> SE3:

@@ -24,12 +24,8 @@ from harness.planning.timing.joint_spline import CubicSpline
 from harness.recording.goal_failures import CollisionFailure
 from harness.recording.motion_failures import BlendFailure
 
-JOINT_STEP = 0.03
-"""Between the samples of a joint motion [rad]."""
-
-BLEND_STEP = 0.002
-"""Between the poses that are solved in a transition [m], about."""
-
+JOINT_STEP = 0.03  # Between the samples of a joint motion [rad]
+BLEND_STEP = 0.002  # Between the poses that are solved in a transition [m], about
 _FEWEST = 8
 _SEARCHED = 400  # points of a leg looked at for where it enters a sphere
 _SAME = 1e-5  # [rad] a transition that ends farther from the next leg is on another branch

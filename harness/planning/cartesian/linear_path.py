@@ -10,9 +10,7 @@ import pinocchio as pin
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
-POINT = 1e-6
-"""A shorter line is a point [m, rad]: a pose that the arm reached is exact within 1e-8."""
-
+POINT = 1e-6  # A shorter line is a point [m, rad]: a pose that the arm reached is exact within 1e-8
 _NOWHERE = 1e-9  # [m, rad] no division by less
 
 

@@ -35,13 +35,9 @@ from harness.recording.motion_failures import DeviationFailure, DistanceFailure,
 from harness.recording.plan_statistics import RateStatistics, WayStatistics
 from harness.recording.step_results import DistanceResult
 
-RELATIVE_STEP = 0.002
-"""Step of a motion that goes as far as it can [m]."""
-
-POSITION_DEVIATION = 1e-4
-"""How far the timed motion may leave its line or circle [m]."""
-ORIENTATION_DEVIATION = 1e-3
-"""How far it may be turned away from where it should be [rad]."""
+RELATIVE_STEP = 0.002  # Step of a motion that goes as far as it can [m]
+POSITION_DEVIATION = 1e-4  # How far the timed motion may leave its line or circle [m]
+ORIENTATION_DEVIATION = 1e-3  # How far it may be turned away from where it should be [rad]
 
 
 class LinkMotions:

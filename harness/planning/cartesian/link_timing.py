@@ -18,18 +18,13 @@ from harness.planning.timing.profiles import GRID, Curve, Trapezoid, smoothed
 from harness.ports.motion_planning import PlanningOptions
 from harness.ports.motions import CartesianLimits
 
-MAX_TRANSLATION_VELOCITY = 1.0
-"""pilz_cartesian_limits of ur_moveit_config [m/s]."""
-MAX_TRANSLATION_ACCELERATION = 2.25
-"""[m/s^2]"""
-MAX_ROTATION_VELOCITY = 1.57
-"""[rad/s]; the acceleration is in proportion, as Pilz has it."""
-
+MAX_TRANSLATION_VELOCITY = 1.0  # pilz_cartesian_limits of ur_moveit_config [m/s]
+MAX_TRANSLATION_ACCELERATION = 2.25  # [m/s^2]
+MAX_ROTATION_VELOCITY = 1.57  # [rad/s]; the acceleration is in proportion, as Pilz has it
 CENTRIPETAL_SHARE = 0.7
 """Of the link's acceleration that the speed on an arc may take; the rest is for its change."""
 
-CARTESIAN_TOLERANCE = 5e-3
-"""Share by which a final sample may exceed a Cartesian limit."""
+CARTESIAN_TOLERANCE = 5e-3  # Share by which a final sample may exceed a Cartesian limit
 
 
 Profile = tuple[FloatArray, ...]

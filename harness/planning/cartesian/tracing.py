@@ -21,13 +21,9 @@ from harness.ports.motions import JumpThreshold
 from harness.recording.motion_failures import TraceFailure
 from harness.robot.task_space import TaskSpace
 
-STEP_LENGTH = 0.005
-"""Distance between the poses that are solved on a way [m]."""
-STEP_ANGLE = 0.02
-"""Turn between them [rad]."""
-STEP_SWEEP = 0.1
-"""Angle of an arc between them [rad]."""
-
+STEP_LENGTH = 0.005  # Distance between the poses that are solved on a way [m]
+STEP_ANGLE = 0.02  # Turn between them [rad]
+STEP_SWEEP = 0.1  # Angle of an arc between them [rad]
 JUMP = JumpThreshold(revolute=0.15, prismatic=0.05)
 """A joint that moves farther from one pose to the next has jumped, or is at a singularity."""
 
@@ -42,12 +38,9 @@ CODES: dict[str, ErrorCode] = {
 STRIDES = (1, 2, 4, 8)
 """How many poses are tried for one step, until a curve through them stays on the way."""
 
-OFF_BETWEEN = 3e-5
-"""How far the curve may leave it in the middle between two poses [m]."""
-
+OFF_BETWEEN = 3e-5  # How far the curve may leave it in the middle between two poses [m]
 _FEWEST_STEPS = 8
-SOLVED = 1e-8
-"""Error of a solved state at most [m, rad]."""
+SOLVED = 1e-8  # Error of a solved state at most [m, rad]
 
 
 class LinkPath(Protocol):

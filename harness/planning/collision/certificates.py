@@ -20,9 +20,7 @@ from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
 
-ROUNDING = 1e-5
-"""Band around a margin that is left undecided, because of Coal's tolerance [m]."""
-
+ROUNDING = 1e-5  # Band around a margin that is left undecided, because of Coal's tolerance [m]
 MOST_LEFT = 64 * 1024
 """Size of the memory for the pairs that are left in the intervals of a motion; where it is full,
 all pairs of the whole interval are compared again."""
@@ -33,8 +31,7 @@ Arrays = tuple[Array, ...]
 VARYING = 4
 """Number of arrays that differ from motion to motion; they are the first ones of the table."""
 
-INTERVALS = 1024
-"""Number of intervals of a motion for which there is memory at first."""
+INTERVALS = 1024  # Number of intervals of a motion for which there is memory at first
 
 NONE: IntArray = np.empty((0, 2), dtype=np.int64)
 

@@ -28,15 +28,11 @@ from harness.ports.scene import Touch
 from harness.recording.explanation import LoweredMargin
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
 
-DEEPEST_START = 0.002
-"""Penetration at the start above which a motion is rejected [m]."""
-
+DEEPEST_START = 0.002  # Penetration at the start above which a motion is rejected [m]
 TOUCHING = 0.0001
 """Distance at the start below which a pair is in contact, like an object and its table [m]."""
 
-MARGIN_SLACK = 0.0005
-"""How much nearer a pair may get that is below its margin at the start [m]."""
-
+MARGIN_SLACK = 0.0005  # How much nearer a pair may get that is below its margin at the start [m]
 HOLD_RESOLUTION = 1 / 16
 """Joint-space distance between states at which the arm must be able to stand still [rad]: an effort
 changes by a few per cent between two of them."""

@@ -10,8 +10,7 @@ from harness.core.types import FloatArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.model.robot_model import GroupSpace
 
-_LONGEST = 1e6
-"""Of a lever without a bound [m]."""
+_LONGEST = 1e6  # Of a lever without a bound [m]
 
 
 def motion_rates(model: CollisionModel, space: GroupSpace) -> FloatArray:

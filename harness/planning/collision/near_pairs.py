@@ -18,8 +18,7 @@ from harness.planning.model.robot_model import pin_from_se3
 _ROUNDING = 1e-9  # [m] of the corners of boxes
 _MEASURED = 1e-4  # [m] extra margin within which shapes are measured
 
-_FAR = 1e6
-"""Where the box around a half space ends [m]."""
+_FAR = 1e6  # Where the box around a half space ends [m]
 
 
 class PlacedShapes:

@@ -26,9 +26,7 @@ from harness.robot.tree import carriers
 Reason = Literal["Adjacent", "Default", "Always", "Never"]
 REASONS: tuple[Reason, ...] = ("Adjacent", "Default", "Always", "Never")
 
-ALWAYS = 0.95
-"""Part of the samples from which a pair touches always, as in the Setup Assistant."""
-
+ALWAYS = 0.95  # Part of the samples from which a pair touches always, as in the Setup Assistant
 WORLD = "world"
 
 

@@ -12,8 +12,7 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.scene import Touch
 
-MOST_TOUCHES = 3
-"""Pairs that are named; of the rest only how many they are."""
+MOST_TOUCHES = 3  # Pairs that are named; of the rest only how many they are
 
 
 def length_text(metres: float, more_digits: int = 0) -> str:

@@ -22,9 +22,7 @@ from harness.planning.ik.numeric import LinkGoal
 from harness.ports.kinematics import IkSolver
 from harness.recording.explanation import FreeShift, NearestState, Stage
 
-MOST_DETAILS = 8
-"""Number of branches that are listed individually."""
-
+MOST_DETAILS = 8  # Number of branches that are listed individually
 _METHODS = {
     "ur": "closed form of Universal Robots",
     "open_manipulator_x": "closed form of OpenMANIPULATOR-X",

@@ -25,19 +25,14 @@ from harness.planning.verification.path_constraints import HeldConstraints
 from harness.ports.goals import AnyGoal, Goal, PoseGoal, PositionBox, PositionGoal
 from harness.recording.explanation import Alternative, Alternatives, GoalRegion
 
-SAMPLES = 24
-"""Number of poses sampled in a region in addition to its centre."""
-
+SAMPLES = 24  # Number of poses sampled in a region in addition to its centre
 ROOM = (0.005, 0.05)
 """Smallest tolerances of a goal region [m], [rad]; below them only the centre is solved."""
 
-WIDE = 0.2
-"""Angle tolerance from which all poses of a region are equivalent to its centre [rad]."""
-
+WIDE = 0.2  # Angle tolerance from which all poses of a region are equivalent to its centre [rad]
 MOST_CANDIDATES = 16
 
-PROJECTIONS = 64
-"""Number of random positions that are projected to a goal and to path constraints."""
+PROJECTIONS = 64  # Number of random positions that are projected to a goal and to path constraints
 
 
 def choose_goals(

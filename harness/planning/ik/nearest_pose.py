@@ -13,15 +13,11 @@ from harness.planning.ik.numeric import LinkGoal, LinkTask, starts
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import PoseGoal, PositionGoal
 
-RESTARTS = 12
-"""Number of searches from the pose table, in addition to the one from the seed."""
-
+RESTARTS = 12  # Number of searches from the pose table, in addition to the one from the seed
 EVEN, KEEP_TURN, KEEP_POINT = 0.1, 100.0, 1e-3
 """Metres that a radian counts: as a hand's breadth, above all, nearly nothing."""
 
-REACHED = 1e-5
-"""[m, rad] A goal that is missed by less is reached."""
-
+REACHED = 1e-5  # [m, rad] A goal that is missed by less is reached
 SHIFTS = (0.01, 0.02, 0.04, 0.08, 0.16)
 """How far a goal in collision is moved in search of a free place [m]."""
 

@@ -32,8 +32,7 @@ _WINDOW = 4  # iterations over which progress is measured
 _CONVERGES, _CONVERGES_FAST = 0.8, 0.5
 """Shares of the squared error that remain after a window, above which a restart is cheaper: while
 no solution is known, and once there is one."""
-_MINIMUM = 1 - 1e-9
-"""The same share at a minimum, of a goal that cannot be reached."""
+_MINIMUM = 1 - 1e-9  # The same share at a minimum, of a goal that cannot be reached
 _FOUND = 1e-8  # [m, rad] largest error of a solution
 _NO_HEADING = 1e-9  # [1] horizontal part below which the x axis is vertical
 UP = np.array([0.0, 0.0, 1.0])

@@ -12,8 +12,7 @@ from harness.planning.model.robot_model import GroupSpace, RobotModel
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.robot.tree import joints_to
 
-SIZE = 1024
-"""Joint positions in a table; it takes 2 ms to make, as long as ten searches."""
+SIZE = 1024  # Joint positions in a table; it takes 2 ms to make, as long as ten searches
 
 
 class PoseTable:

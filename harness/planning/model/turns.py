@@ -12,8 +12,7 @@ import pinocchio as pin
 from harness.core.pose_arrays import quats_from_rotations, rotation_vector
 from harness.core.types import FloatArray
 
-FREE = np.pi - 1e-6
-"""A tolerance about one axis from which on any turn about it is allowed [rad]."""
+FREE = np.pi - 1e-6  # A tolerance about one axis from which on any turn about it is allowed [rad]
 
 
 def free_axis(tolerance: Sequence[float]) -> int | None:

@@ -10,9 +10,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.ports.path_planning import PathRequest, PathResult
 
-RANGE = 1.5
-"""Longest edge [rad]."""
-
+RANGE = 1.5  # Longest edge [rad]
 SHORTER, SHORTEST = 0.95, 1 / 16
 """Factor by which a blocked edge shortens the next ones from its vertex, and the shortest edge as a
 share of the longest. Trees whose edges were halved took ten times as long in cages."""

@@ -28,8 +28,7 @@ IMPROVING_SHARE = 0.02
 so; the rest is for hard problems, and for a finer search should the path not hold. At the default
 budget BITstar improves for 0.6 s; 9 s would go into a twentieth of it."""
 
-STALLED = 100_000
-"""Iterations of a planner without a state check after which it has stalled."""
+STALLED = 100_000  # Iterations of a planner without a state check after which it has stalled
 _BEYOND = np.pi  # [rad] how far a continuous joint may leave the range of start and goals
 
 

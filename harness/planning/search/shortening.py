@@ -11,9 +11,7 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import MotionChecker
 
-TRIES = 60
-"""Random shortcuts tried on a path."""
-
+TRIES = 60  # Random shortcuts tried on a path
 WORTH = 0.01
 """Share of a path that a random shortcut must save to be checked: most save next to nothing."""
 

@@ -15,9 +15,7 @@ from harness.ports.path_planning import PathPlanner, PathRequest, PathResult
 from harness.recording.explanation import Explanation
 from harness.recording.motion_failures import PipelineFailure
 
-END_DISTANCE = 1e-6
-"""How far a path may begin from the start, and end from a goal [rad or m]."""
-
+END_DISTANCE = 1e-6  # How far a path may begin from the start, and end from a goal [rad or m]
 P = ParamSpec("P")
 
 

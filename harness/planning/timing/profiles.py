@@ -10,9 +10,7 @@ import numpy as np
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 
-GRID = 0.002
-"""Durations are whole multiples of this [s]: two of the physics' default time steps."""
-
+GRID = 0.002  # Durations are whole multiples of this [s]: two of the physics' default time steps
 SAMPLE_PERIOD = 0.01
 """Time between set points [s]: five steps of the grid; the last one may be nearer."""
 

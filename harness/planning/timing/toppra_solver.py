@@ -12,8 +12,7 @@ from harness.planning.timing.limits import Limits, TimingError
 from harness.planning.timing.profiles import Curve
 from harness.planning.timing.toppra_passes import Bounds, squared_rates
 
-UNLIMITED_EFFORT = 1e6
-"""Stands for no limit [N m or N]: the solver takes finite numbers."""
+UNLIMITED_EFFORT = 1e6  # Stands for no limit [N m or N]: the solver takes finite numbers
 
 
 class JointCurve(Protocol):

@@ -24,9 +24,7 @@ INNER_SHARE = 0.8
 """Of every tolerance that states are projected to, so that the lines between them hold it too; half
 of the rest is left to the last step of a projection."""
 
-GOAL_SHARE = 0.98
-"""The same share for goals, which may be at the bounds."""
-
+GOAL_SHARE = 0.98  # The same share for goals, which may be at the bounds
 LIMIT_MARGIN = 0.01
 """Distance of projected states from joint limits, so that a smooth curve through them keeps these
 [rad or m]."""

@@ -25,12 +25,8 @@ VERIFIED_RESOLUTION = 1 / 65536
 neighbours. At 1/384 rad, 8 of 1,680 paths came up to 0.1 mm nearer than their padding in between;
 at 1/1024 rad, 14 of 1,680 on meshes without padding were up to 0.04 mm deep [rad]."""
 
-END_TOLERANCE = 1e-6
-"""How far a trajectory may start or end from where it should [rad or m]."""
-
-LIMIT_TOLERANCE = 1e-3
-"""Share by which a sampled velocity or acceleration may exceed its limit."""
-
+END_TOLERANCE = 1e-6  # How far a trajectory may start or end from where it should [rad or m]
+LIMIT_TOLERANCE = 1e-3  # Share by which a sampled velocity or acceleration may exceed its limit
 EFFORT_TOLERANCE = 1e-2
 """Share by which an effort may exceed its limit between the samples that were timed."""
 

@@ -13,8 +13,7 @@ Certify = Callable[[int, int, int], int]
 BUILD = "harness/planning/collision/native/build.py"
 """The script that compiles it in a source tree."""
 
-FULL = -(2**62)
-"""The result of `certify` when the memory for intervals is full."""
+FULL = -(2**62)  # The result of `certify` when the memory for intervals is full
 
 
 def _loaded() -> Certify | None:
