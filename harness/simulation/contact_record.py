@@ -5,13 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from harness.core.pose_arrays import conjugate, rotate
 from harness.core.types import FloatArray
-from harness.simulation.copied_contacts import Array, CopiedContacts, SampleContacts
 from harness.simulation.model import PhysicsModel
 
 ROWS = 2**16  # Samples for which the first arrays have room; what is not used takes no memory
@@ -22,13 +22,16 @@ BLOCK = 2**17  # Contacts that are sorted at a time
 BYTES = 52  # Memory that one contact takes in the arrays
 
 BodyPair = tuple[str, str]
+Array = np.ndarray[Any, Any]
+
+_ROWS = np.arange(3)  # of a contact's forces: normal, then friction along the other two axes
+_NOTHING = np.zeros(3)
 
 
 class ContactRecord:
     """The contacts of consecutive samples, and sums of them for each pair of bodies.
 
-    Keeping a sample only copies what MuJoCo has computed; everything else follows from the copies
-    of many samples at a time. MuJoCo computes no contacts of bodies that are asleep: as nothing
+    MuJoCo computes no contacts of bodies that are asleep: as nothing
     moves there, they are those of the last sample in which the bodies were awake.
     """
 
@@ -42,9 +45,8 @@ class ContactRecord:
         self._normals = np.empty((size, 3), dtype=np.float32)
         self._points = np.empty((size, 3), dtype=np.float32)
         self._frictions = np.empty((size, 3), dtype=np.float32)
-        self._copied = CopiedContacts(data)
-        self._resolved = 0
         self._sleep = b""  # the state of sleep for which contacts of bodies asleep are known
+        self._asleep = tuple(values[:0] for values in self._values)
         self.count = 0
 
     def reserve(self, rows: int) -> None:
@@ -54,24 +56,35 @@ class ContactRecord:
 
     def rewind(self, rows: int) -> None:
         """Forget the contacts of all samples after the first `rows`."""
-        self._resolve(self.count)
-        self.count = self._resolved = int(self._end[rows - 1]) if rows else 0
+        self.count = int(self._end[rows - 1]) if rows else 0
         self._sleep = b""
 
     def keep(self, row: int) -> None:
         """Copy the contacts of the current physics state as those of one sample."""
         if self._data.tree_asleep.tobytes() != self._sleep:
             self._find_asleep(row)
-        begin, count = self.count, self._data.ncon
-        self.count = end = begin + count + len(self._copied.asleep.forces)
-        self._end[row] = end
-        if begin == end:
-            return
+        begin, count, asleep = self.count, self._data.ncon, self._asleep
+        middle = begin + count
+        self._end[row] = self.count = end = middle + len(asleep[0])
         if end > len(self._forces):
             self._grow()
-        if not self._copied.keep(count):
-            self._resolve(begin)
-            self._copied.keep(count)
+        if end > middle:
+            for values, of_asleep in zip(self._values, asleep, strict=True):
+                values[middle:end] = of_asleep
+        if not count:
+            return
+        contact = self._data.contact
+        axes, addresses = contact.frame, contact.efc_address
+        self._geoms[begin:middle] = contact.geom
+        self._points[begin:middle] = contact.pos
+        self._normals[begin:middle] = axes[:, :3]
+        # An inactive contact has no constraint rows and the address -1; it has no forces.
+        padded = np.concatenate([self._data.efc_force, _NOTHING])
+        pressed = padded.take(np.where(addresses < 0, len(padded) - 3, addresses)[:, None] + _ROWS)
+        self._forces[begin:middle] = pressed[:, 0]
+        friction = pressed[:, 1:2] * axes[:, 3:6]
+        friction += pressed[:, 2:] * axes[:, 6:]
+        self._frictions[begin:middle] = friction
 
     def _find_asleep(self, row: int) -> None:
         """Take the contacts of bodies asleep from the sample before."""
@@ -79,10 +92,9 @@ class ContactRecord:
         self._sleep = data.tree_asleep.tobytes()
         is_asleep = np.append(data.tree_asleep, -1) >= 0
         trees = model.body_treeid[model.geom_bodyid]  # -1, the last, for a static body
-        self._resolve(self.count)
         before = slice(self._begin(max(0, row - 1)), self._begin(row))
         chosen = is_asleep[trees[self._geoms[before]]].any(axis=1)
-        self._copied.asleep = SampleContacts(*(values[before][chosen] for values in self._values))
+        self._asleep = tuple(values[before][chosen] for values in self._values)
 
     @property
     def _values(self) -> tuple[Array, ...]:
@@ -95,11 +107,6 @@ class ContactRecord:
     def _grow(self) -> None:
         for name in ("_geoms", "_forces", "_normals", "_points", "_frictions"):
             setattr(self, name, doubled(getattr(self, name), self.count))
-
-    def _resolve(self, end: int) -> None:
-        """Decode the contacts that are only copied so far."""
-        self._copied.resolve(*(values[self._resolved : end] for values in self._values))
-        self._resolved = end
 
     def forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
@@ -217,7 +224,6 @@ class ContactRecord:
             The ids of two bodies, the smaller first; then, for their contacts in some samples, in
             the order of recording, the sample counted from `first` and the contact's index.
         """
-        self._resolve(self.count)
         ends = self._end[first:last]
         row = 0
         while row < len(ends):
