@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -108,22 +108,8 @@ class GLRenderer:
 Picture = np.ndarray  # RGB, shape (height, width, 3), uint8
 
 
-class Renderer(Protocol):
-    """Draws a posed picture model.
-
-    Attributes:
-        backend: `egl`, `osmesa` or `rays`.
-    """
-
-    backend: str
-
-    def render(self, view: View) -> Picture:
-        """The picture of a view."""
-        ...
-
-    def close(self) -> None:
-        """Free the resources of the graphics library."""
-        ...
+Renderer = GLRenderer | RayRenderer
+"""Draws a posed picture model; its `backend` is `egl`, `osmesa` or `rays`."""
 
 
 def make_renderer(

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import deepcopy
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -15,6 +15,9 @@ from harness.core.types import FloatArray
 from harness.simulation.geoms import set_smaller_frictions
 from harness.simulation.model import PhysicsModel
 from harness.simulation.step_state import wake
+
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 STALL_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of the stop that holds a stalled joint."""
@@ -27,17 +30,12 @@ _STATE = ("grip_share", "_stalled", "_deviation", "_latency", "_waiting", "_rng"
 """Attributes of the faults that a snapshot copies."""
 
 
-class Holding(Protocol):
-    """The part of the simulator that a push and a weakened gripper need."""
-
-    def hold(self, duration: float) -> None: ...
-    def renew_grip_limit(self) -> None: ...
-
-
 class MujocoFaults:
     """The active faults; the simulator passes its controls through `distorted`."""
 
-    def __init__(self, simulator: Holding, physics: PhysicsModel, data: mujoco.MjData) -> None:
+    def __init__(
+        self, simulator: MujocoSimulator, physics: PhysicsModel, data: mujoco.MjData
+    ) -> None:
         self._simulator = simulator
         self._physics = physics
         self._data = data

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from harness.core.antipodal import combined_press, is_antipodal, least_thickness
-from harness.core.types import FloatArray, IntArray
 from harness.ports.simulation import GripperResult
 from harness.robot.description import Gripper, RobotDescription
-from harness.simulation.model import PhysicsModel
 from harness.simulation.recording import Recording
 from harness.simulation.set_points import SetPoints, ramp
+
+if TYPE_CHECKING:
+    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 CLOSING_SPEED = 0.075
 """Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
@@ -29,26 +30,10 @@ STALL_SPEED = 0.02  # Speed below which the joint is at rest, as a share of its 
 CHECK_EVERY = 10  # Samples between two checks whether the joint reached its goal or stalled
 
 
-class Servoed(Protocol):
-    """The part of the simulator that a gripper needs."""
-
-    physics: PhysicsModel
-    description: RobotDescription
-
-    def joint_positions(self) -> FloatArray: ...
-    def commanded_positions(self) -> FloatArray: ...
-    def whole(self, points: SetPoints, columns: IntArray) -> SetPoints: ...
-    def controls(self, points: SetPoints) -> FloatArray: ...
-    def follow(self, points: SetPoints, controls: FloatArray | None) -> None: ...
-    def command(self, positions: FloatArray) -> None: ...
-    def hold_samples(self, count: int) -> None: ...
-    def limit_grip(self, actuator: int, effort: float) -> None: ...
-
-
 class GripperDrive:
     """The gripper's joint under a force-limited servo; after a stall it keeps squeezing."""
 
-    def __init__(self, simulator: Servoed, recording: Recording) -> None:
+    def __init__(self, simulator: MujocoSimulator, recording: Recording) -> None:
         gripper = simulator.description.gripper
         assert gripper is not None
         self._simulator = simulator

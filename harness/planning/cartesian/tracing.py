@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from harness.core.errors import ErrorCode
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.planning.cartesian.circular_path import CircularPath
+from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
@@ -43,40 +44,8 @@ _FEWEST_STEPS = 8
 SOLVED = 1e-8  # Error of a solved state at most [m, rad]
 
 
-class LinkPath(Protocol):
-    """A link's way through space, its parameter running evenly from 0 to 1."""
-
-    link: str
-    name: str
-    start: SE3
-
-    @property
-    def length(self) -> float:
-        """Length of the translation [m]."""
-        ...
-
-    @property
-    def angle(self) -> float:
-        """Angle of the rotation [rad]."""
-        ...
-
-    @property
-    def radius(self) -> float:
-        """Radius of the curvature [m]."""
-        ...
-
-    @property
-    def is_point(self) -> bool:
-        """Whether the link neither moves nor turns."""
-        ...
-
-    def pose(self, parameter: float) -> SE3:
-        """T_world_link at a parameter."""
-        ...
-
-    def nearest(self, pose: SE3) -> tuple[float, float]:
-        """The parameter nearest to a pose's origin, and the distance there [m]."""
-        ...
+LinkPath = LinearPath | CircularPath
+"""A link's way through space, its parameter running evenly from 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -30,11 +29,9 @@ FindTouches = Callable[[FloatArray], Sequence[Touch]]
 _STRAIGHT = 1e-6  # [m] an elbow this near the line from shoulder to wrist is neither up nor down
 
 
-class _Poses(Protocol):
-    def link_pose(self, joint_positions: FloatArray, link: str) -> SE3: ...
-
-
-def branch_name(kinematics: _Poses, space: GroupSpace, method: str, positions: FloatArray) -> str:
+def branch_name(
+    kinematics: PinocchioKinematics, space: GroupSpace, method: str, positions: FloatArray
+) -> str:
     """Name the posture of an arm: `forwards, elbow up, wrist_2_joint < 0`.
 
     Forwards is the side to which the arm is stretched at zero; up is along joint 1's axis. Both
@@ -66,7 +63,7 @@ def branch_name(kinematics: _Poses, space: GroupSpace, method: str, positions: F
 
 
 def _landmarks(
-    kinematics: _Poses, space: GroupSpace, positions: FloatArray
+    kinematics: PinocchioKinematics, space: GroupSpace, positions: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, SE3]:
     """Origins of joints 2, 3 and 4, and T_world_link1."""
     links = _links(space)
@@ -75,7 +72,7 @@ def _landmarks(
     return poses[1].translation, poses[2].translation, poses[3].translation, poses[0]
 
 
-def _zero_heading(kinematics: _Poses, space: GroupSpace) -> FloatArray:
+def _zero_heading(kinematics: PinocchioKinematics, space: GroupSpace) -> FloatArray:
     """Direction from joint 2 to joint 4 at zero, across joint 1's axis, in link 1's frame."""
     shoulder, _, wrist, turntable = _landmarks(kinematics, space, np.zeros(space.dof))
     ahead = turntable.rotation.T @ (wrist - shoulder)
