@@ -106,7 +106,7 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
 
 
 def _searched(task: PlanningTask, goals: Sequence[FloatArray], explanation: Details) -> _Motion:
-    """Search, shorten, time and verify; with a finer resolution after a failed verification."""
+    """Search, shorten, time and verify."""
     effort = Effort()
     found = _first_verified_motion(task, goals, task.options, effort)
     if isinstance(found, _Motion):
@@ -149,19 +149,18 @@ def _first_verified_motion(
     """
     defect: Defect | None = None
     for found in verified_paths(task.checker, task.start, goals, options, effort):
-        for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
-            short = shorten(found.waypoints, task.checker, resolution, found.seed)
-            try:
-                timed = task.overload(short) or _timed(task, short)
-            except TimingError as problem:
-                timed = Defect(str(problem), problem.details)
-            if isinstance(timed, JointTrajectory):
-                moved = sum(task.space.effort(*edge) for edge in pairwise(short))
-                planner_id = found.result.planner_id
-                statistics = task.statistics(planner_id, timed, short, found.waypoints)
-                search = _search_statistics(found, effort, short, timed)
-                return _Motion(timed, short[-1], moved, statistics, search)
-            defect = timed
+        short = shorten(found.waypoints, task.checker, VERIFIED_RESOLUTION, found.seed)
+        try:
+            timed = task.overload(short) or _timed(task, short)
+        except TimingError as problem:
+            timed = Defect(str(problem), problem.details)
+        if isinstance(timed, JointTrajectory):
+            moved = sum(task.space.effort(*edge) for edge in pairwise(short))
+            planner_id = found.result.planner_id
+            statistics = task.statistics(planner_id, timed, short, found.waypoints)
+            search = _search_statistics(found, effort, short, timed)
+            return _Motion(timed, short[-1], moved, statistics, search)
+        defect = timed
     return defect
 
 
@@ -173,7 +172,7 @@ def _search_statistics(
         found.attempt + 1,
         effort.checks,
         found.result.vertices,
-        found.resolution,
+        VERIFIED_RESOLUTION,
         float(away.max()),
     )
 
@@ -214,8 +213,6 @@ def _search_failure(
     who = described(PathPlanner.plugin_kind, pipeline)
     owner = Details.of(None if is_built_in(pipeline) else PipelineFailure(pipeline))
     is_plugin = bool(owner.parts)
-    if defect is None and effort.refused is not None and not effort.is_used_up:
-        defect = path_collision(effort.refused, task.checker)
     if defect is not None:
         whose = f"paths of {who}" if is_plugin else "paths"
         return PlanningFailed(

@@ -31,7 +31,8 @@ class PathRequest:
         is_edge_free: Whether the straight line from free joint positions to others is free.
         state_checks: The number of state checks used by this search.
         max_state_checks: The budget of this search.
-        resolution: Largest distance between the states that an edge check checks [rad].
+        resolution: Joint-space distance at which a planner's own checks of edges are fine enough
+            [rad]; `is_edge_free` checks more finely.
         seed: The only source of randomness; the same request must give the same path.
         parameters: The planner's parameters, by name.
     """

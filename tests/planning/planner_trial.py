@@ -44,7 +44,6 @@ class Trial:
             self.checker(),
             self.start,
             [self.goal] if goals is None else goals,
-            resolution=RESOLUTION,
             max_state_checks=budget,
             seed=seed,
         )

@@ -34,7 +34,7 @@ def test_a_way_leads_from_the_start_to_the_goal_along_free_edges(trial, name):
 
 @pytest.mark.parametrize("name", ["PRMstar", "BITstar"])
 def test_a_planner_that_improves_its_way_uses_its_share_and_finds_shorter_ones(trial, name):
-    budgets = (100_000, 800_000)
+    budgets = (200_000, 1_600_000)
     quick, thorough = (
         [trial.search(name, seed, budget) for seed in range(3)] for budget in budgets
     )
@@ -56,6 +56,6 @@ def test_a_roadmap_leads_to_the_goal_that_is_nearest_along_it(trial):
 
 def test_a_roadmap_in_parts_reports_how_far_they_are_apart(trial):
     apart = np.linalg.norm(trial.goal - trial.start)
-    gaps = [trial.search("PRM", seed, 150).gap for seed in range(6)]
+    gaps = [trial.search("PRM", seed, 300).gap for seed in range(6)]
     assert all(0.1 < gap <= apart + 1e-9 for gap in gaps)
     assert min(gaps) < apart

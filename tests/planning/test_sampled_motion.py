@@ -42,7 +42,7 @@ def test_a_motion_without_length_is_one_state():
 
 def test_states_of_fine_motions_are_counted_at_a_fixed_distance():
     ends = np.array([[0.0, 0.0], [1.0, 0.0]])
-    for resolution, count in ((0.1, 10), (1 / 128, 128), (COUNTED_RESOLUTION, 512), (1e-5, 512)):
+    for resolution, count in ((0.1, 10), (1 / 16, 16), (COUNTED_RESOLUTION, 32), (1e-5, 32)):
         assert SampledMotion.of(ends, METRIC, resolution).counted == count
 
 

@@ -23,7 +23,6 @@ def test_a_path_shortened_at_the_resolution_of_verification_is_verified():
             checker,
             start,
             [goal],
-            resolution=VERIFIED_RESOLUTION,
             max_state_checks=200_000,
             seed=seed,
         )

@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.core.types import FloatArray
 
-COUNTED_RESOLUTION = 1 / 512
+COUNTED_RESOLUTION = 1 / 32
 """Joint-space distance between the states that are counted: of motions that are checked more finely
 most states are certified by others [rad]."""
 

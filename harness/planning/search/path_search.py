@@ -1,4 +1,4 @@
-"""Searches paths with the requested pipeline and a budget of state checks: coarse, then finer."""
+"""Searches paths with the requested pipeline and a budget of state checks."""
 
 from __future__ import annotations
 
@@ -15,9 +15,7 @@ from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESO
 from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
 from harness.ports.path_planning import PathRequest
 
-PLANNING_RESOLUTIONS = (1 / 32, 1 / 64, 1 / 128, *(VERIFIED_RESOLUTION,) * 3)
-"""Joint-space distance between checked states while searching [rad]; finer when a path fails, then
-from other seeds."""
+SEARCHES = 6  # of an attempt, from other seeds, while no path becomes a verified motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +44,6 @@ def search(
     start: FloatArray,
     goals: Sequence[FloatArray],
     *,
-    resolution: float,
     max_state_checks: int,
     seed: int,
 ) -> Search:
@@ -59,7 +56,6 @@ def search(
         checker: The checker of states and edges.
         start: The start positions of the group, free of collisions.
         goals: Group positions, each free.
-        resolution: The resolution of the edge checks [rad].
         max_state_checks: Budget of this search.
         seed: The seed of samples.
 
@@ -76,10 +72,10 @@ def search(
         start=start,
         goals=tuple(goals),
         is_state_free=checker.state_free,
-        is_edge_free=lambda first, second: checker.edge_free(first, second, resolution),
+        is_edge_free=lambda first, second: checker.edge_free(first, second, VERIFIED_RESOLUTION),
         state_checks=lambda: checker.checks - before,
         max_state_checks=max_state_checks,
-        resolution=resolution,
+        resolution=FINAL_RESOLUTION,
         seed=seed,
         parameters=options.parameters,
     )
@@ -100,34 +96,28 @@ class Effort:
     Attributes:
         checks: The state checks of all searches.
         gaps: The remaining distances of the searches that failed, where they are known [rad].
-        refused: The path of the last search, if it is not free at `FINAL_RESOLUTION`.
         planner_id: The planner of the last search.
-        is_used_up: Whether a budget was used up.
     """
 
     checks: int = 0
     gaps: list[float] = field(default_factory=list[float])
-    refused: FloatArray | None = None
     planner_id: str = ""
-    is_used_up: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class FoundPath:
-    """A path that is free at `FINAL_RESOLUTION`, and how it was found.
+    """A path, and how it was found.
 
     Attributes:
         result: The result of the planner.
         waypoints: The waypoints, not shortened, shape (N, dof).
         attempt: The number of the attempt, from 0.
-        resolution: The resolution of the search [rad].
         seed: The seed of that search, and of what is made of the path.
     """
 
     result: Search
     waypoints: FloatArray
     attempt: int
-    resolution: float
     seed: int
 
 
@@ -138,7 +128,7 @@ def verified_paths(
     options: PlanningOptions,
     effort: Effort,
 ) -> Iterator[FoundPath]:
-    """Paths, each searched more finely than the one before, until budget and attempts end.
+    """Paths, each from another seed, until budget and attempts end.
 
     Raises:
         ValueError: A pipeline, a planner or a parameter is unknown.
@@ -146,32 +136,26 @@ def verified_paths(
     """
     for attempt in range(options.attempts):
         left = options.max_state_checks
-        for level, resolution in enumerate(PLANNING_RESOLUTIONS):
-            seed = _derived_seed(options.seed, attempt, level)
+        for number in range(SEARCHES):
+            seed = _derived_seed(options.seed, attempt, number)
             result = search(
                 options,
                 checker,
                 start,
                 goals,
-                resolution=resolution,
                 max_state_checks=left,
                 seed=seed,
             )
             effort.checks += result.checks
             effort.planner_id = result.planner_id
             left -= result.checks
-            effort.is_used_up = left <= 0
-            effort.refused = None
             if result.waypoints is None:
                 effort.gaps += [] if result.gap is None else [result.gap]
                 break
-            if checker.path_free(result.waypoints, FINAL_RESOLUTION):
-                yield FoundPath(result, result.waypoints, attempt, resolution, seed)
-            else:
-                effort.refused = result.waypoints
+            yield FoundPath(result, result.waypoints, attempt, seed)
             if left <= 0:
                 break
 
 
-def _derived_seed(seed: int, attempt: int, level: int) -> int:
-    return int(np.random.SeedSequence([seed % 2**63, attempt, level]).generate_state(1)[0])
+def _derived_seed(seed: int, attempt: int, number: int) -> int:
+    return int(np.random.SeedSequence([seed % 2**63, attempt, number]).generate_state(1)[0])

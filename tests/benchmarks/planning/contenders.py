@@ -14,7 +14,7 @@ import ompl.util as ou
 from harness.core.types import FloatArray
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
-from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
+from harness.planning.verification.verify import VERIFIED_RESOLUTION
 from harness.ports.motion_planning import PlanningOptions
 from tests.benchmarks.planning.problems import Problem, free_by_broad_phase, free_by_pairs
 
@@ -61,10 +61,9 @@ def ours(problem: Problem, seed: int = 1) -> Outcome:
     options = PlanningOptions(seed=seed)
     for found in verified_paths(checker, problem.start, [problem.goal], options, effort):
         planned = planned or time.process_time()
-        for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
-            short = shorten(found.waypoints, checker, resolution, found.seed)
-            if checker.path_free(short, VERIFIED_RESOLUTION):
-                return Outcome(scene, planned - begin, time.process_time() - begin, short)
+        short = shorten(found.waypoints, checker, VERIFIED_RESOLUTION, found.seed)
+        if checker.path_free(short, VERIFIED_RESOLUTION):
+            return Outcome(scene, planned - begin, time.process_time() - begin, short)
     spent = time.process_time() - begin
     return Outcome(scene, spent, spent, None)
 

@@ -25,7 +25,7 @@ from harness.planning.motion_planner import VerifiedPlanner
 from harness.planning.search.ompl_planner import make_problem
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
-from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION
+from harness.planning.verification.verify import VERIFIED_RESOLUTION
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion
@@ -50,10 +50,9 @@ def searched(problem: Problem) -> Outcome:
     begin, checker = time.process_time(), problem.checker()
     ends = problem.start, [problem.goal]
     for found in verified_paths(checker, *ends, OPTIONS, Effort()):
-        for resolution in (FINAL_RESOLUTION, VERIFIED_RESOLUTION):
-            short = shorten(found.waypoints, checker, resolution, found.seed)
-            if checker.path_free(short, VERIFIED_RESOLUTION):
-                return time.process_time() - begin, True
+        short = shorten(found.waypoints, checker, VERIFIED_RESOLUTION, found.seed)
+        if checker.path_free(short, VERIFIED_RESOLUTION):
+            return time.process_time() - begin, True
     return time.process_time() - begin, False
 
 
