@@ -116,7 +116,7 @@ def test_a_python_file_of_the_folder_is_not_imported(converse, tmp_path):
     assert converse(talk) == "passed"
 
 
-def test_the_language_is_described_in_small_parts(converse):
+def test_the_language_and_a_cell_are_described(converse):
     async def talk(assistant):
         keys = await assistant.answer("schema")
         assert {"steps", "expect", "robot"} <= set(keys)
@@ -126,16 +126,10 @@ def test_the_language_is_described_in_small_parts(converse):
         is_error, steps = await assistant.text("list", kind="steps")
         assert not is_error
         assert "move_to" in steps
-        is_error, program = await assistant.text("explain", file="lessons/04_ur_pick_by_friction")
+        is_error, program = await assistant.text("explain", file="lessons/04_gripper_alone")
         assert not is_error
-        assert "lifted green_cylinder" in program
-
-    converse(talk)
-
-
-def test_a_cell_is_described(converse):
-    async def talk(assistant):
-        facts = await assistant.answer("describe", file="lessons/04_ur_pick_by_friction")
-        assert facts["robot"]["name"] == "ur3e + rh_p12_rn_a"
+        assert "duration, at most 10.0 s" in program
+        facts = await assistant.answer("describe", file="lessons/04_gripper_alone")
+        assert facts["robot"]["name"] == "rh_p12_rn_a"
 
     converse(talk)
