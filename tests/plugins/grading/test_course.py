@@ -149,6 +149,15 @@ def test_a_list_and_a_check_have_json(capsys):
     assert (found["earned"], found["points"], found["outcome"]) == (4, 10, "failed")
 
 
+@pytest.mark.nightly
+def test_the_points_of_a_function_have_json(here, capsys):
+    (here / "own_ik.py").write_text("def ik(x, y, z, pitch):\n    return None\n")
+    assert main(["course", "check", "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert (found["earned"], found["points"]) == (0, 10)
+    assert not found["properties"]["reaches"]
+
+
 def test_a_students_expectations_earn_nothing(here, capsys):
     main(["course", "start", "2", "."])
     file = here / "gripper.scenario.yaml"

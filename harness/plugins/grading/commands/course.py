@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -103,7 +104,9 @@ def _check(arguments: argparse.Namespace) -> int:
     exercise, file = find_work(Path(arguments.work), own)
     report = Path(arguments.report_dir) / "course" / exercise.folder_name
     if exercise.assignment.model.kind == "ik":
-        return _show_properties(test_solver(exercise, file, report), exercise)
+        with redirect_stdout(sys.stderr if arguments.json else sys.stdout):
+            kept = test_solver(exercise, file, report)
+        return _show_properties(kept, exercise, arguments)
     return _show_case(run_work(exercise, file, report), file, arguments)
 
 
@@ -142,8 +145,14 @@ def _show_case(case: CaseResult, file: Path, arguments: argparse.Namespace) -> i
     return code
 
 
-def _show_properties(kept: dict[str, bool], exercise: Exercise) -> int:
+def _show_properties(
+    kept: dict[str, bool], exercise: Exercise, arguments: argparse.Namespace
+) -> int:
     """Print the points of the properties that a function keeps, each worth the same."""
     points = exercise.assignment.model.points or float(len(kept))
-    say("", f"{points * sum(kept.values()) / len(kept):.3g} of {points:g} points")
+    earned = points * sum(kept.values()) / len(kept)
+    if arguments.json:
+        say_json({"points": points, "earned": earned, "properties": kept})
+    else:
+        say("", f"{earned:.3g} of {points:g} points")
     return 0 if all(kept.values()) else EXIT_CODES["failed"]
