@@ -78,7 +78,10 @@ BRANCH = RIGHT.replace("for elbow in (angle, -angle):", "for elbow in (angle,):"
 BRANCH = BRANCH.replace("(facing + pi, -distance)", "(facing, distance)")
 CRASHING = """\
 import os, subprocess, sys
-subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"], start_new_session=True)
+if not os.path.exists("begun"):  # one process that outlives the function, in a session of its own
+    open("begun", "w").close()
+    code = "import time; time.sleep(1000)"
+    subprocess.Popen([sys.executable, "-c", code], start_new_session=True)
 def ik(x, y, z, pitch):
     os.abort()
 """
