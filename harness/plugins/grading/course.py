@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from harness.reporting.result import CaseResult
 
 START = "start"
-NUMBERED = re.compile(r"(?:\d+_)?(?P<name>.+)")
 
 
 @dataclass(frozen=True)
@@ -39,8 +38,7 @@ class Exercise:
     @property
     def file_name(self) -> str:
         """The name of the student's file: `grasp.scenario.yaml`."""
-        found = NUMBERED.fullmatch(self.folder_name)
-        stem = found["name"] if found else self.folder_name
+        stem = re.sub(r"^\d+_(?=.)", "", self.folder_name)
         return f"{stem}{SUFFIX if self.start.suffix == '.yaml' else self.start.suffix}"
 
 
