@@ -33,7 +33,7 @@ COLUMNS = 110
 
 BLOCK = re.compile(r"(?ms)^(?:`(?P<file>[\w./-]+)`:\n\n)?```(?P<language>\w+)\n(?P<text>.*?)^```$")
 TIMES = re.compile(r"(?: at [\d.]+x real time)|(?: in [\d.]+ ?s$)", re.MULTILINE)
-VARYING = re.compile(r"\d+\.\d+|digest [0-9a-f]+")
+VARYING = re.compile(r"\d+\.\d+|digest:? [0-9a-f]+")
 
 
 def printed_again(page: str, folder: Path) -> str:
@@ -76,8 +76,8 @@ def shown(text: str) -> list[str]:
 
 
 def comparable(text: str) -> str:
-    """A text without what differs between processor families: decimals and digests."""
-    return VARYING.sub("#", text)
+    """A text without what differs between processor families: decimals, digests, line breaks."""
+    return VARYING.sub("#", " ".join(text.split()))
 
 
 def _run(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
