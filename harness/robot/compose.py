@@ -90,6 +90,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     tree_links, tree_joints = in_tree_order(links, joints, source)
     srdf = replace(srdf, disabled=_allowed(srdf, tree_links, tree_joints, source))
     facts = next((part.facts.gripper for part in parts[::-1] if part.facts.gripper), None)
+    bounds = first.facts.controller_tolerances
     return RobotDescription(
         name=source,
         urdf=write_urdf(source, tree_links, tree_joints),
@@ -106,6 +107,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         start_state=_start_state(parts, srdf),
         cameras=_cameras(parts, tree_links),
         tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
+        controller_tolerances=None if bounds is None else TrackingTolerances(**bounds.model_dump()),
         ik_solver=first.facts.ik_solver,
         controllers={
             kind: names

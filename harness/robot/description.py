@@ -219,7 +219,9 @@ class RobotDescription:
         base_link: First link of the arm.
         start_state: Joint positions by name at the start of a run.
         cameras: Cameras on links, by name.
-        tracking: Tolerances of the trajectory controller.
+        tracking: Tolerances of the scenario's own motions.
+        controller_tolerances: Tolerances of its ROS 2 controllers for trajectories of nodes; None
+            where their file has none.
         ik_solver: A plug-in of the kind `ik_solver`, such as `ur`, `open_manipulator_x` or
             `numeric`; or `auto`: the first of these that fits.
         position_only_groups: Groups whose pose goals fix the position alone, as with MoveIt's
@@ -245,6 +247,7 @@ class RobotDescription:
     start_state: Mapping[str, float]
     cameras: Mapping[str, Camera] = field(default_factory=dict)
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
+    controller_tolerances: TrackingTolerances | None = None
     ik_solver: str = "numeric"
     position_only_groups: frozenset[str] = frozenset()
     controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

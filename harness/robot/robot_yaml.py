@@ -144,7 +144,7 @@ class CameraFacts(CameraFields):
 
 
 class Tracking(SpecModel):
-    """Tolerances of the trajectory controller [rad or m], and its settling time [s]."""
+    """Tolerances of a trajectory controller [rad or m], and its settling time [s]."""
 
     trajectory: Annotated[float, Field(gt=0)] = Field(
         default=0.2, description="The largest deviation of a joint during a motion [rad or m]."
@@ -242,7 +242,12 @@ class RobotYaml(SpecModel):
         description="The cameras on links of the robot, by name.",
     )
     tracking: Tracking = Field(
-        default=Tracking(), description="The tolerances of the trajectory controller."
+        default=Tracking(), description="The tolerances of the scenario's own motions."
+    )
+    controller_tolerances: Tracking | None = Field(
+        default=None,
+        description="The tolerances that the file of the robot's ROS 2 controllers has, for "
+        "trajectories of nodes; without them a node's goal has those that it names.",
     )
     controllers: Controllers = Field(
         default=Controllers(), description="The names of the robot's ROS 2 controllers."

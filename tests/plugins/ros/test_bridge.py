@@ -11,6 +11,7 @@ from harness.plugins.ros.interfaces import CANCEL, TRAJECTORY
 from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
+from tests.robot.models import robot
 
 HOLD = "- external: {}"
 END = [0.2, 0, 0, 0]
@@ -72,6 +73,22 @@ def test_invalid_goals_are_rejected_and_their_results_have_the_error_codes(tmp_p
     assert not any(goal.is_accepted for goal in ended.values())
     assert "no joint 'elbow', 'wrist'" in ended["no such joint"].result.error_string
     assert results[0].case.outcome == "passed"
+
+
+def test_only_tolerances_of_the_controllers_file_end_a_motion_that_is_blocked(tmp_path):
+    """The OpenMANIPULATOR-X's file has none: the lesson's node presses, and lifts again."""
+    assert robot(model="open_manipulator_x").controller_tolerances is None
+    ur = robot(model="ur5e").controller_tolerances
+    assert (ur.trajectory, ur.goal) == (0.2, 0.1)
+    into_the_ground, back = [0, 1.4, 0.9, 0], [0, 0.5, 0, 0]
+    with bridge(scenario(tmp_path, HOLD), factor=2.0) as (node, _):
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.ready()
+        pressed = node.send(follow(point(1.5, into_the_ground)))
+        assert abs(states[-1].position[1] - 1.4) > 0.2
+        assert pressed.status is Status.SUCCEEDED
+        assert node.send(follow(point(1.5, back))).status is Status.SUCCEEDED
+        node.wait(lambda: abs(states[-1].position[1] - 0.5) < 0.02)
 
 
 def test_tolerances_cancel_and_preemption(tmp_path):

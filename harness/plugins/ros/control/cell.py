@@ -49,7 +49,8 @@ class ExternalCell:
         self.controllers: dict[str, Controller] = {}
         if names.arm:
             joints = description.groups[description.arm_group].joint_names
-            arm = self._controller(joints, description.tracking, ("trajectory",))
+            bounds = description.controller_tolerances or UNBOUNDED
+            arm = self._controller(joints, bounds, ("trajectory",))
             self.controllers.update(dict.fromkeys(names.arm, arm))
         if description.gripper is not None:
             finger = (description.gripper.joint,)
