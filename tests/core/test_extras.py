@@ -50,7 +50,7 @@ def test_the_first_commands_need_no_package_of_an_extra(tmp_path):
     assert (tmp_path / "reports/a/report.html").is_file()
 
 
-@pytest.mark.nightly(but=[0, 2])
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize(
     ("package", "arguments"),
     [
