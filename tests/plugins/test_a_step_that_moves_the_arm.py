@@ -94,6 +94,7 @@ class Turn(Step):
 """
 
 
+@pytest.mark.nightly(but=["gripper_left_joint"])
 @pytest.mark.parametrize("joint", ["gripper_left_joint", "elbow"])
 def test_a_motion_made_by_a_step_names_joints_of_its_group(tmp_path, joint):
     (tmp_path / "nod.py").write_text(TURN % joint)

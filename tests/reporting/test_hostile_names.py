@@ -22,7 +22,7 @@ ATTACK = (
 )
 LETTERS = "kar robotyczny ramię über 漢字 العربية \u202eright to left\u202c \u2028 \x00 \udcff 🤖"
 LONG = "a_name_without_any_place_to_break_it_" * 12
-NAMES = {"attack": ATTACK, "letters": LETTERS, "long": LONG}
+NAMES = {"attack": f"{ATTACK}{LETTERS}", "long": LONG}
 
 
 def hostile_run(name):

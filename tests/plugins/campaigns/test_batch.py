@@ -103,15 +103,29 @@ steps: [{wait: 2 ms}]
 """
 
 
-@pytest.mark.parametrize("name", ["./arm", "arm", "'../cases/arm'"])
-def test_a_node_gets_the_folder_of_a_robot(tmp_path, monkeypatch, name):
+def arm_in_a_folder(tmp_path, monkeypatch, name):
+    """A scenario whose robot has a folder, and the files that a node gets of it."""
     (tmp_path / "cases").mkdir()
     monkeypatch.chdir(tmp_path / "cases")
     shutil.copytree(data_folder("robots") / "open_manipulator_x", "arm")
     trimesh.creation.box((0.1, 0.1, 0.1)).export("part.glb")
     file = Path("a.scenario.yaml")
     file.write_text(ARM % name)
-    contents = {os.path.abspath(path): data for path, data in named_files(file)}  # noqa: PTH100
+    return file, {os.path.abspath(path): data for path, data in named_files(file)}  # noqa: PTH100
+
+
+@pytest.mark.parametrize("name", ["./arm", "'../cases/arm'"])
+def test_the_folder_of_a_robot_is_sent_however_it_is_named(tmp_path, monkeypatch, name):
+    _, contents = arm_in_a_folder(tmp_path, monkeypatch, name)
+    here = Path.cwd()
+    files = {str(path) for path in here.rglob("*") if path.is_file() and path.suffix != ".md"}
+    assert files <= {*contents}
+
+
+@pytest.mark.nightly(but=["arm"])
+@pytest.mark.parametrize("name", ["./arm", "arm", "'../cases/arm'"])
+def test_a_node_gets_the_folder_of_a_robot(tmp_path, monkeypatch, name):
+    file, contents = arm_in_a_folder(tmp_path, monkeypatch, name)
     files = Files(contents, str(Path.cwd()), {})
     shutil.rmtree(tmp_path / "cases")
     (tmp_path / "elsewhere").mkdir()
