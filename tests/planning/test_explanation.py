@@ -158,6 +158,22 @@ def test_the_branches_of_a_ur_have_eight_names():
     assert over == "backwards, elbow up, wrist_2_joint < 0"
 
 
+@pytest.mark.parametrize("place", [(0.3, 0.0, 1.1), (0.2, 0.15, 1.15)])
+def test_branches_of_one_name_are_listed_with_their_joint_positions(place):
+    cell = Cell(open_manipulator())
+    start = cell.kinematics.link_pose(cell.state, "link4").translation
+    cell.scene.add_object(thing("crate", at(*start), Shape(Box((0.02, 0.02, 0.02)))), at(*start))
+    goal = PositionGoal(TCP, np.array(place))
+    error = explained(
+        cell.planner.plan, MotionRequest("arm", cell.state, FreeMotion(goal), OPTIONS)
+    )
+    listed = stage(error, "inverse kinematics").details[:-1]  # the last counts the others
+    names = [line.partition(":")[0] for line in listed]
+    assert len(set(names)) == len(names) > 2
+    postures = {name.partition(" [")[0] for name in names}
+    assert len(postures) < len(names)
+
+
 def test_a_start_in_collision_is_reported_next_to_what_is_known_of_the_goal():
     cell = Cell(ur("ur3e"))
     tip = cell.kinematics.link_pose(cell.state, "wrist_1_link").translation

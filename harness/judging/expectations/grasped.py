@@ -117,10 +117,10 @@ class Grasped(ObjectPredicate):
                 if measure.name == HELD.name and measure.value < measure.limit:
                     brief = f"; held for {' of '.join(amounts(measure.value, HOLD_TIME, 's'))}"
                 return f"{forces}; {drift}{brief}{weld_note(run, name)}"
-            where = _where_pressed(run, name, window.start + index)
-            return (
-                f"{forces}; {name} is not between the fingers{where}{_planners_belief(run, name)}"
-            )
+            sample = window.start + index
+            where = _where_pressed(run, name, sample)
+            belief = _planners_belief(run, name, sample)
+            return f"{forces}; {name} is not between the fingers{where}{belief}"
 
         return all_of(window, parts, text, present=window.cut(present(run, name)), shown=len(parts))
 
@@ -135,7 +135,7 @@ def _where_pressed(run: Run, name: str, sample: int) -> str:
     return f", {why}" if why else ""
 
 
-def _planners_belief(run: Run, name: str) -> str:
+def _planners_belief(run: Run, name: str, sample: int) -> str:
     """What the planning scene assumed of an object that the physics does not hold."""
     if not object_record(run, name).in_simulation:
         stands_for = [
@@ -145,6 +145,6 @@ def _planners_belief(run: Run, name: str) -> str:
         ]
         hint = f": it stands for {stands_for[0]}" if stands_for else ""
         return f", it is not in the physics{hint}"
-    if attached(run, name).any():
+    if attached(run, name)[sample]:
         return ", though the planning scene has it attached"
     return ""

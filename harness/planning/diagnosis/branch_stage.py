@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 
 from harness.core.registry import described
+from harness.core.types import FloatArray
 from harness.planning.collision.checker import touch_records
 from harness.planning.collision.wording import (
     counted_noun,
@@ -65,16 +67,25 @@ def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) ->
 
 
 def _branch_lines(request: StageRequest, study: GoalStudy) -> tuple[str, ...]:
-    """Describe each branch, and why it is ruled out."""
+    """Each branch, and why it is ruled out; joint positions distinguish those of one name."""
+    outside = study.answer.outside_limits
+    counts = Counter([*(branch.name for branch in study.branches), *study.outside])
+
+    def title(number: int, name: str, positions: FloatArray) -> str:
+        if not name:
+            return f"solution {number}"
+        values = ", ".join(f"{value + 0.0:.3f}" for value in np.round(positions, 3))
+        return f"{name} [{values}]" if counts[name] > 1 else name
+
     lines = [
-        f"{branch.name or f'solution {number}'}: "
+        f"{title(number, branch.name, branch.positions)}: "
         + (touches(branch.touches, most=1) if branch.touches else "free")
         for number, branch in enumerate(study.branches, start=1)
     ]
-    for solution, name in zip(study.answer.outside_limits, study.outside, strict=True):
+    for solution, name in zip(outside, study.outside, strict=True):
         joint, excess = solution.joint, abs(solution.value - solution.limit)
         lines.append(
-            f"{name or f'solution {len(lines) + 1}'}: {joint} would be at "
+            f"{title(len(lines) + 1, name, solution.positions)}: {joint} would be at "
             f"{joint_value(request.space, joint, solution.value)}, "
             f"{joint_value(request.space, joint, excess)} beyond its limit"
         )

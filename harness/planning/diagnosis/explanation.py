@@ -96,10 +96,7 @@ def _joint_findings(request: StageRequest, positions: FloatArray) -> list[StageF
     nearest = NearestState(
         "goal in collision", request.joints(positions), touches=touch_records(found)
     )
-    advice = (
-        f"choose other joint positions, or move {found[0].second} out of the way; with a `pose` "
-        "the planner chooses among all branches"
-    )
+    advice = f"choose other joint positions, or move {found[0].second} out of the way"
     return [reach, StageFinding(stage, nearest, advice)]
 
 

@@ -160,7 +160,7 @@ def _probe(trial: SolverTrial) -> None:
             raise UnusableSolver(
                 f"{trial.solver.name} {outcome.text}; the joints are {', '.join(chain.joint_names)}"
             )
-        if outcome.kind == "answered":
+        if outcome.kind in ("answered", "hung"):
             return
 
 
@@ -298,7 +298,7 @@ class _Search:
             for flaw in flaws:
                 if flaw.kind not in smallest or size < smallest[flaw.kind][0]:
                     smallest[flaw.kind] = size, flaw
-            return HANGS not in kinds
+            return all(outcome.kind != "hung" for outcome in trial.outcomes)
 
         count = max(10, round(each.share * self._test.examples))
         draw(each.cases(trial), visit, count, self._test.seed)

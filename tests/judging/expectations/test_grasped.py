@@ -82,6 +82,15 @@ def test_an_object_only_attached_is_neither_grasped_nor_lifted():
     assert verdict(run, Lifted(object="box")).status == "failed"
 
 
+@pytest.mark.parametrize("span", [(20, 100), (150, 180)])
+def test_an_attachment_at_another_time_is_not_mentioned(span):
+    run = make_run(attachments=[attachment("box", *span)])
+    answer = verdict(run, Grasped(object="box"))
+    assert answer.status == "failed"
+    assert "is not between the fingers" in answer.reason
+    assert "attached" not in answer.reason
+
+
 def test_a_planning_object_is_not_grasped_and_the_real_one_is_named():
     stand_in = thing("stand_in", physics=False, pose=(0, 0, 0.02, 1, 0, 0, 0))
     run = lift_run(

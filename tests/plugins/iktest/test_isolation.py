@@ -44,6 +44,14 @@ def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
     assert not report.has_passed
 
 
+@pytest.mark.parametrize("where", ["True", "z < 9"])
+def test_a_function_that_always_hangs_costs_a_few_calls(tmp_path, where):
+    report = report_of(tmp_path, f"    while {where}: pass\n", patience=0.1)
+    assert [finding.kind for finding in report.findings] == ["does not come back"]
+    assert report.properties[0].tried == 1
+    assert [each.note for each in report.properties[2:]] == ["not tried: it hangs"] * 5
+
+
 DELAYS = """
 import time
 import numpy as np
