@@ -11,6 +11,7 @@ from tests.plugins.ros.bridging import PYTHON, bridge, require_control_msgs
 from tests.session.front_door import check_file
 
 PAGE = (ROOT / "docs/guides/ros2.md").read_text(encoding="utf-8")
+MOVE_GROUP = (ROOT / "docs/guides/move_group.md").read_text(encoding="utf-8")
 
 
 def block(language):
@@ -19,7 +20,7 @@ def block(language):
 
 def test_the_table_lists_what_the_bridge_serves(tmp_path):
     listed = set()
-    for row in re.findall(r"^\| (`/.*?) \| `?(action )?", PAGE, re.MULTILINE):
+    for row in re.findall(r"^\| (`/.*?) \| `?(action )?", PAGE + MOVE_GROUP, re.MULTILINE):
         listed |= set(re.findall(r"`(/[^`]+)`", row[0]))
     file = tmp_path / "turn.scenario.yaml"
     file.write_text(block("yaml"))
@@ -29,7 +30,7 @@ def test_the_table_lists_what_the_bridge_serves(tmp_path):
         node.wait(lambda: any(use.topic == info for use in node.graph.uses()[1]))
         node.sleep(0.3)
         _, bridged = node.graph.uses()
-    assert {re.sub(r"/_action/.*", "", use.topic) for use in bridged} == listed
+    assert {re.sub(r"/_(action/|service).*", "", use.topic) for use in bridged} == listed
 
 
 def test_the_scenario_of_the_page_is_correct(tmp_path):

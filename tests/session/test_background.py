@@ -85,8 +85,17 @@ def test_a_process_that_was_begun_before_receives_a_value_later():
 
 
 def test_a_process_whose_value_never_comes_ends_with_the_one_that_was_to_send_it():
-    (pid,) = in_a_process_without_threads(f"{LATER}print(background._pid)")
-    wait_for(lambda: not Path("/proc", pid).exists())
+    started = "open(f'/proc/{background._pid}/stat').read().rpartition(')')[2].split()[19]"
+    pid, when = in_a_process_without_threads(f"{LATER}print(background._pid, {started})")
+
+    def is_over():
+        """Whether it ended; a later process may have its number."""
+        try:
+            return Path("/proc", pid, "stat").read_text().rpartition(")")[2].split()[19] != when
+        except OSError:
+            return True
+
+    wait_for(is_over)
 
 
 def test_a_process_that_is_closed_ends_at_once():

@@ -190,6 +190,7 @@ def test_a_folder_for_gradescope_is_complete(tmp_path, capsys):
 def test_the_written_script_grades_a_submission(tmp_path, system):
     """The script as the system starts it, with this installation and other folders."""
     main(["new", "--assignment", system, str(tmp_path / "source")])
+    (tmp_path / "results").mkdir()
     (tmp_path / "submission").mkdir()
     (tmp_path / "submission/mine.scenario.yaml").write_text(SOLUTION)
     harness = tmp_path / "harness"
