@@ -85,15 +85,16 @@ def test_a_process_that_was_begun_before_receives_a_value_later():
 
 
 def test_a_process_whose_value_never_comes_ends_with_the_one_that_was_to_send_it():
-    started = "open(f'/proc/{background._pid}/stat').read().rpartition(')')[2].split()[19]"
-    pid, when = in_a_process_without_threads(f"{LATER}print(background._pid, {started})")
+    state = "open(f'/proc/{background._pid}/stat').read().rpartition(')')[2].split()"
+    pid, when = in_a_process_without_threads(f"{LATER}print(background._pid, {state}[19])")
 
     def is_over():
-        """Whether it ended; a later process may have its number."""
+        """Whether it ended; one that was not waited for is a zombie, a later one has its number."""
         try:
-            return Path("/proc", pid, "stat").read_text().rpartition(")")[2].split()[19] != when
+            state = Path("/proc", pid, "stat").read_text().rpartition(")")[2].split()
         except OSError:
             return True
+        return state[0] == "Z" or state[19] != when
 
     wait_for(is_over)
 
