@@ -1,4 +1,4 @@
-"""The services, actions and topics of `move_group`, and the controller manager's services."""
+"""The services, actions and topics of `move_group`."""
 
 from __future__ import annotations
 
