@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from harness.core.geometry import Friction, Shape
 from harness.core.spatial import SE3
+from harness.core.surface_motion import SurfaceMotion
 from harness.core.types import FloatArray
 
 MOST_OBJECTS = 1000  # of all kinds; 300 that move take 2 s of wall time per simulated second
@@ -27,6 +28,8 @@ class WorldObject:
         in_planning: Whether the planning scene has the object.
         in_simulation: Whether the physics has the object.
         visuals: Shapes that pictures show, where they differ from `shapes`.
+        surface_motion: How the surface of a belt or a turntable moves at the start; None: it never
+            moves.
     """
 
     name: str
@@ -40,6 +43,7 @@ class WorldObject:
     in_planning: bool = True
     in_simulation: bool = True
     visuals: tuple[Shape, ...] = ()
+    surface_motion: SurfaceMotion | None = None
 
     def friction_of(self, shape: Shape) -> Friction:
         """Friction of one of the object's shapes."""

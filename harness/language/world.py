@@ -8,11 +8,14 @@ from typing import Annotated, Any, ClassVar, Literal, cast
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from harness.core.geometry import CollisionMode
+from harness.core.surface_motion import SurfaceMotion
 from harness.language.base import (
+    AngularVelocity,
     Color,
     Duration,
     Flag,
     Length,
+    LinearVelocity,
     Mass,
     Name,
     Number,
@@ -102,6 +105,21 @@ SurfaceFriction = Annotated[
 ]
 
 
+SurfaceVelocity = Annotated[
+    Annotated[LinearVelocity, Tag("one")]
+    | Annotated[tuple[LinearVelocity, LinearVelocity, LinearVelocity], Tag("many")],
+    Discriminator(kind_of),
+]
+"""The velocity of a surface along the x axis of its object, or in the object's axes."""
+
+
+def surface_motion(velocity: SurfaceVelocity | None, rotation: float | None) -> SurfaceMotion:
+    """The motion of a surface as a file says it."""
+    if isinstance(velocity, tuple):
+        return SurfaceMotion(velocity, rotation or 0.0)
+    return SurfaceMotion((velocity or 0.0, 0.0, 0.0), rotation or 0.0)
+
+
 class ShapeSpec(SpecModel):
     """A shape: exactly one geometry, placed on its object."""
 
@@ -148,11 +166,6 @@ class ObjectSpec(SpecModel):
     """
 
     not_yet: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("conveyor", "belt"),
-            "no surface moves what lies on it: a belt at rest is a `static` box, and the step"
-            " `move_object` puts an object farther along",
-        ),
         **dict.fromkeys(
             ("suction", "vacuum", "magnet"),
             "a gripper holds objects between two finger sides; `grasp: {object: NAME, mode: weld}`"
@@ -207,14 +220,37 @@ class ObjectSpec(SpecModel):
         alias="in",
         description="The scenes that know the object: the planning scene, the physics, or both.",
     )
+    surface_velocity: SurfaceVelocity | None = Field(
+        default=None,
+        description="The velocity of the surface of a `static` object at the start, as a belt's"
+        " [m/s]: a number along the object's x axis, or a vector in the object's axes. 0 for a"
+        " belt that the step `conveyor` starts.",
+    )
+    surface_rotation: AngularVelocity | None = Field(
+        default=None,
+        description="The rate at which the surface of a `static` object turns about the object's z"
+        " axis at the start, as a turntable's [rad/s].",
+    )
     replace: Flag = Field(
         default=False,
         description="Whether this replaces the world's object of this name; used in `objects`.",
     )
 
+    @property
+    def surface_motion(self) -> SurfaceMotion | None:
+        """How the surface of a belt or a turntable moves at the start; None for other objects."""
+        if self.surface_velocity is None and self.surface_rotation is None:
+            return None
+        return surface_motion(self.surface_velocity, self.surface_rotation)
+
     @classmethod
     def unknown_key_hint(cls, key: str, content: Mapping[str, Any]) -> str:
         """The key of the shape that a message of MoveIt has in `type` and `dimensions`."""
+        if key in ("conveyor", "belt", "turntable"):
+            return (
+                "a belt is `static: true` with `surface_velocity: 0.1`, a turntable one with"
+                " `surface_rotation`; the step `conveyor` starts and stops either"
+            )
         return _shape_words(content) if key in ("type", "dimensions") else ""
 
     @model_validator(mode="after")
@@ -224,6 +260,11 @@ class ObjectSpec(SpecModel):
         if len(given) > 1 or (bool(given) == bool(self.shapes) and not is_only_seen):
             raise ValueError(
                 f"an object is exactly one of {', '.join(GEOMETRIES)}, or several `shapes`"
+            )
+        if not self.static and self.surface_motion is not None:
+            raise ValueError(
+                "only the surface of a static object moves: add `static: true`, or leave out"
+                " `surface_velocity` and `surface_rotation`"
             )
         return self
 

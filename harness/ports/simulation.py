@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from harness.core.spatial import SE3
+from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.scene import Touch
@@ -172,6 +173,14 @@ class Simulator(Protocol):
 
     def move_object(self, name: str, pose: SE3) -> None:
         """Set T_world_object, at rest."""
+        ...
+
+    def surface_motion(self, name: str) -> SurfaceMotion:
+        """How the surface of a belt or a turntable moves now."""
+        ...
+
+    def drive_surface(self, name: str, motion: SurfaceMotion, duration: float) -> None:
+        """Change the motion of a belt's surface evenly, while a duration passes [s]."""
         ...
 
     def weld(self, name: str, link: str) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from harness.cell.program import Program, ProgramStep
 from harness.core.details import Details
 from harness.core.spatial import SE3
+from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.goals import JointGoal
@@ -59,6 +60,11 @@ class DrySimulator:
         self._description = program.description
         self._positions = program.description.start_positions()
         self._poses = {obj.name: obj.pose for obj in program.world.objects}
+        self._surfaces = {
+            obj.name: obj.surface_motion
+            for obj in program.all_objects()
+            if obj.surface_motion is not None
+        }
         self._movable = tuple(
             obj.name for obj in program.all_objects() if obj.in_simulation and not obj.is_static
         )
@@ -144,6 +150,13 @@ class DrySimulator:
 
     def move_object(self, name: str, pose: SE3) -> None:
         self._poses[name] = pose
+
+    def surface_motion(self, name: str) -> SurfaceMotion:
+        return self._surfaces[name]
+
+    def drive_surface(self, name: str, motion: SurfaceMotion, duration: float) -> None:
+        del duration
+        self._surfaces[name] = motion
 
     def weld(self, name: str, link: str) -> None:
         del name, link

@@ -12,6 +12,7 @@ import numpy as np
 
 from harness.core.errors import ModelRefused, StepFailed
 from harness.core.spatial import SE3
+from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
@@ -36,6 +37,7 @@ from harness.simulation.snapshot import (
     saved_state,
 )
 from harness.simulation.step_state import refresh
+from harness.simulation.surfaces import Surfaces
 
 CHECK_EVERY = 100
 """Samples between checks of the path tolerance; the record shows which sample exceeded it."""
@@ -100,6 +102,7 @@ class MujocoSimulator:
         self._data.ctrl[:] = self._control
         self._grip: tuple[int, float] | None = None  # actuator, effort limit
         self.faults = MujocoFaults(self, self.physics, self._data)
+        self._surfaces = Surfaces(self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         refresh(self._model, self._data)
         self._refuse_unusable_start()
@@ -244,6 +247,19 @@ class MujocoSimulator:
         """Set T_world_object; the object is at rest."""
         self._objects.move(name, pose)
 
+    def surface_motion(self, name: str) -> SurfaceMotion:
+        """How the surface of a belt or a turntable moves now."""
+        return self._surfaces.motions[name]
+
+    def drive_surface(self, name: str, motion: SurfaceMotion, duration: float) -> None:
+        """Change the motion of a belt's surface evenly, a little at each sample."""
+        before, samples = self.surface_motion(name), round(duration / self._timestep)
+        self._recording.refuse_beyond(samples)
+        for sample in range(samples):
+            self._surfaces.set(name, before.between(motion, (sample + 0.5) / samples))
+            self.hold_samples(1)
+        self._surfaces.set(name, motion)
+
     def weld(self, name: str, link: str) -> None:
         """Fix an object to a link at its current pose."""
         self._objects.weld(name, link)
@@ -271,7 +287,10 @@ class MujocoSimulator:
             self._command.copy(), self._control.copy(), self._grip, pending, self._drive.copy()
         )
         history, faults = self._objects.history, self.faults.state()
-        return saved_state(self._model, self._data, command, self.sample_count, history, faults)
+        surfaces = dict(self._surfaces.motions)
+        return saved_state(
+            self._model, self._data, command, self.sample_count, history, faults, surfaces
+        )
 
     def restore(self, state: PhysicsState) -> None:
         """Go back to a snapshot of this simulator; later samples are forgotten."""
@@ -284,6 +303,7 @@ class MujocoSimulator:
             self._gripper.pending = command.pending
         self._objects.history = state.history
         self.faults.restore(state.faults)
+        self._surfaces.motions = dict(state.surfaces)
         self._recording.rewind(state.samples)
 
     def command(self, positions: FloatArray) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import mujoco
 
+from harness.core.surface_motion import SurfaceMotion
 from harness.core.types import FloatArray
 from harness.ports.joint_control import JointController
 from harness.simulation.set_points import SetPoints
@@ -20,6 +21,7 @@ CHANGED_IN_PLACE = (
     "geom_conaffinity",
     "geom_friction",
     "geom_priority",
+    "geom_surfacevel",
     "body_gravcomp",
     "body_pos",
     "body_quat",
@@ -34,7 +36,7 @@ CHANGED_IN_PLACE = (
     "jnt_solref",
     "jnt_solimp",
 )
-"""Arrays of the model that objects, welds, grip limits and faults write to during a run."""
+"""Arrays of the model that objects, surfaces, welds, grips and faults write to during a run."""
 
 History = Mapping[str, list[tuple[int, FloatArray | None]]]
 
@@ -69,6 +71,7 @@ class PhysicsState:
         samples: The number of samples recorded so far.
         history: Since when each object stands where it was put.
         faults: The state of the active faults.
+        surfaces: How surfaces of static objects move.
     """
 
     step: StepState
@@ -77,6 +80,7 @@ class PhysicsState:
     samples: int
     history: History
     faults: Mapping[str, Any]
+    surfaces: Mapping[str, SurfaceMotion]
 
 
 def saved_state(
@@ -86,10 +90,13 @@ def saved_state(
     samples: int,
     history: History,
     faults: Mapping[str, Any],
+    surfaces: Mapping[str, SurfaceMotion],
 ) -> PhysicsState:
     """The snapshot of a model, its data, and what the simulator keeps besides."""
     arrays = {name: getattr(model, name).copy() for name in CHANGED_IN_PLACE}
-    return PhysicsState(step_state(model, data), arrays, command, samples, history, faults)
+    return PhysicsState(
+        step_state(model, data), arrays, command, samples, history, faults, surfaces
+    )
 
 
 def load_state(model: mujoco.MjModel, data: mujoco.MjData, state: PhysicsState) -> None:

@@ -12,6 +12,9 @@ from harness.robot.description import Inertial
 from harness.simulation.geoms import add_collision_geom
 from harness.simulation.robot_mjcf import set_inertia
 
+COMPILED_SURFACE = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""A surface that moves: MuJoCo ignores those that do not when the model is compiled."""
+
 WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)  # Impedance of a weld: nearly rigid
 
 
@@ -37,6 +40,9 @@ def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3) -> None:
     body.quat = pose.quat_wxyz
     for shape in obj.shapes:
         add_collision_geom(spec, body, shape)
+    if obj.surface_motion is not None:
+        for geom in body.geoms:
+            geom.surfacevel = COMPILED_SURFACE
     if obj.is_static:
         return
     body.add_freejoint(name=obj.name)

@@ -78,6 +78,7 @@ def resolve_object(
         in_planning=spec.in_ in ("planning", "both"),
         in_simulation=spec.in_ in ("simulation", "both"),
         visuals=_looks(spec, parts, base_dir) or (given if len(shapes) > len(given) else ()),
+        surface_motion=spec.surface_motion,
     )
 
 

@@ -15,7 +15,6 @@ def messages(text):
 @pytest.mark.parametrize(
     ("key", "word"),
     [
-        ("conveyor: {speed: 0.1}", "`static` box"),
         ("suction: true", "`grasp: {object: NAME, mode: weld}`"),
         ("joint: {type: hinge}", "rigid"),
         ("joints: [{type: slide}]", "rigid"),

@@ -16,7 +16,9 @@ GRIPPER = SimpleNamespace(
 
 
 def thing(name, *, static=False, simulated=True):
-    return SimpleNamespace(name=name, is_static=static, in_simulation=simulated, pose=name)
+    return SimpleNamespace(
+        name=name, is_static=static, in_simulation=simulated, pose=name, surface_motion=None
+    )
 
 
 class Hand:

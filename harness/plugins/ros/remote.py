@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
+from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.plugins.ros.actions import ActionClient, ClientGoal, Status
@@ -192,7 +193,13 @@ class RemoteArm:
     add_object = _refuses("an object would have to appear in the real cell; add it `in: planning`")
     remove_object = _refuses("an object cannot be taken out of the real cell by a program")
     move_object = _refuses("an object cannot be moved in the real cell by a program")
+    drive_surface = _refuses("a belt of the real cell is not driven by a scenario")
     weld = _refuses("an object cannot be welded to the gripper of a real robot")
+
+    def surface_motion(self, name: str) -> SurfaceMotion:
+        """A surface as the scenario has it; it is not measured."""
+        belts = (each for each in self._program.all_objects() if each.name == name)
+        return next(belt.surface_motion for belt in belts if belt.surface_motion is not None)
 
     def unweld(self, name: str) -> None:
         del name
