@@ -318,6 +318,6 @@ def _held(terms: Terms, values: FloatArray, times: FloatArray, decision: Decisio
         return ""
     longest = longest_hold(np.nan_to_num(values, nan=-1.0), times)
     if longest >= terms.hold:
-        return f"; it held for {amount(terms.hold, 's')}, but not in the required time"
+        return f". It was true for {amount(terms.hold, 's')}, but not in the required time"
     held, required = amounts(longest, terms.hold, "s")
-    return f"; held for {held} at most, {required} required"
+    return f". It was true for {held} at a time at most, and `for` requires {required}"

@@ -115,7 +115,8 @@ class Grasped(ObjectPredicate):
                 drift = f"{name} moved {moved} and turned {turned} in the hand"
                 brief = ""
                 if measure.name == HELD.name and measure.value < measure.limit:
-                    brief = f"; held for {' of '.join(amounts(measure.value, HOLD_TIME, 's'))}"
+                    pressed, least = amounts(measure.value, HOLD_TIME, "s")
+                    brief = f"; pressed for {pressed} so far, a grasp takes {least}"
                 return f"{forces}; {drift}{brief}{weld_note(run, name)}"
             sample = window.start + index
             where = _where_pressed(run, name, sample)

@@ -172,8 +172,10 @@ class _Hold:
             ), []
         duration, moved = float(self._duration[sample]), float(self._moved[sample])
         if duration < HOLD_TIME - TIME_RESOLUTION:
-            shown = " of ".join(amounts(duration, HOLD_TIME, "s"))
-            return f"held for {shown}", [measured(HELD, duration, HOLD_TIME, ">=", time, name)]
+            pressed, least = amounts(duration, HOLD_TIME, "s")
+            return f"pressed for {pressed} so far, a grasp takes {least}", [
+                measured(HELD, duration, HOLD_TIME, ">=", time, name)
+            ]
         if self._carried is not None and self._carried[sample] < self._least:
             carried = float(self._carried[sample])
             shown = " of ".join(amounts(carried, 2 * self._least, "N"))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
+from harness.judging.expectations.eventually import Eventually
 from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.gripper import GripperState
 from harness.judging.expectations.lifted import Lifted
@@ -163,7 +164,9 @@ def test_a_grasp_lasts_for_a_tenth_of_a_second(samples, status):
     run = lift_run(grip=(200 - samples, 200), leave=200)
     answer = verdict(run, Grasped(object="box"))
     assert answer.status == status
-    assert (answer.status == "passed") or "held for 0.08 s of 0.1 s" in answer.reason
+    assert (
+        answer.status == "passed"
+    ) or "pressed for 0.08 s so far, a grasp takes 0.1 s" in answer.reason
 
 
 EVIDENCE = Evidence(
@@ -208,3 +211,13 @@ EVIDENCE = Evidence(
         ),
     ),
 )
+
+
+def test_a_hold_that_is_too_short_states_the_two_rules_in_two_sentences():
+    """A grasp takes 0.1 s of pressing, and `for` requires a second of it."""
+    spec = Eventually(predicate=Grasped(object="box"), for_=1.0)
+    answer = verdict(lift_run(grip=(192, 200)), spec)
+    assert answer.status == "failed"
+    first, second = answer.reason.split(". It was true ")
+    assert first.split(" at t=")[0].endswith("pressed for 0.07 s so far, a grasp takes 0.1 s")
+    assert second == "for 0.0 s at a time at most, and `for` requires 1.0 s"
