@@ -75,7 +75,7 @@ def find_constrained_motion(
         if is_free and task.overload(ends) is None:
             trajectory = time_straight(names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
-                statistics = task.statistics("straight line", trajectory, [task.start, end])
+                statistics = task.statistics("direct joint motion", trajectory, [task.start, end])
                 return MotionPlan(trajectory, Details.of(statistics), explanation)
     defect: Defect | None = None
     for attempt in range(task.options.attempts):

@@ -100,7 +100,7 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
         if checker.edge_free(task.start, end, FINAL_RESOLUTION) and task.overload(ends) is None:
             trajectory = time_straight(space.joint_names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
-                statistics = task.statistics("straight line", trajectory, ends)
+                statistics = task.statistics("direct joint motion", trajectory, ends)
                 return _Motion(trajectory, end, space.effort(task.start, end), statistics)
     return None
 

@@ -13,7 +13,7 @@ class PlanStatistics(Detail):
     """What every planned motion has.
 
     Attributes:
-        planner_id: The planner, or `straight line` where no search was needed.
+        planner_id: The planner, or `direct joint motion` where no search was needed.
         state_checks: States that were checked for collision.
         waypoints: The number of waypoints.
         path_length: Joint-space length of the path [rad].

@@ -85,7 +85,7 @@ def test_the_motions_of_the_lesson_are_planned_and_hold(model):
             assert max(shift, angle) < 1e-6
         cell.state = end
     assert planners["up"] == "BalancedConnect"  # the boxes stand in the straight way
-    assert planners["mogi_down"] == "straight line"
+    assert planners["mogi_down"] == "direct joint motion"
 
 
 def test_without_the_boxes_the_way_is_another():
@@ -95,7 +95,7 @@ def test_without_the_boxes_the_way_is_another():
     free = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), options))
     cell.add(boxes(*FIRST_BOXES))
     around = cell.planner.plan(MotionRequest(ARM, cell.state, FreeMotion(goal), options))
-    assert free.statistics.find(PlanStatistics).planner_id == "straight line"
+    assert free.statistics.find(PlanStatistics).planner_id == "direct joint motion"
     assert (
         around.statistics.find(PlanStatistics).path_length
         > free.statistics.find(PlanStatistics).path_length
@@ -392,7 +392,7 @@ def test_cheaper_branches_are_searched_within_the_budget_that_is_given():
         for checks in (200_000, 1)
     )
     assert np.allclose(ample.trajectory.positions[-1], branches[0], atol=1e-9)
-    assert scarce.statistics.find(PlanStatistics).planner_id == "straight line"
+    assert scarce.statistics.find(PlanStatistics).planner_id == "direct joint motion"
     assert (
         scarce.statistics.find(PlanStatistics).state_checks
         < ample.statistics.find(PlanStatistics).state_checks
