@@ -7,7 +7,7 @@ from array import array
 from collections.abc import Callable
 from pathlib import Path
 
-from harness.cli.progress import remaining
+from harness.cli.work_bar import remaining
 from harness.core.lazy import LazySequence
 from harness.suite.suite_run import SuiteRun
 

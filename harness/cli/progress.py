@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from harness.cli.output import Output, complain
+from harness.cli.work_bar import pace, remaining
 from harness.reporting.progress_events import (
     Judged,
     ProgressEvent,
@@ -16,20 +17,31 @@ from harness.reporting.progress_events import (
     Working,
 )
 from harness.reporting.result import CaseResult
-from harness.reporting.terminal import Style, case_line, step_done, step_running
+from harness.reporting.terminal import Style, case_line, step_done, step_head, step_running
 
-Moment = tuple[float, float]  # wall time and simulation time [s]
-ENOUGH_FOR_AN_ESTIMATE = 3.0  # [s], before the remaining time is estimated from what is done
+
+@dataclass
+class _OpenStep:
+    """A step that has begun and has not ended.
+
+    Attributes:
+        has_head: Whether its line stands above those of the steps nested in it.
+        is_explained: Whether a step nested in it failed, whose line says why.
+    """
+
+    begin: StepStarted
+    has_head: bool = False
+    is_explained: bool = False
 
 
 class ProgressLines:
     """Shows a case's steps as they begin and end, and the case's outcome.
 
-    One case at a time has its file as a headline and its steps below; with several at the same
-    time, every line begins with the case that it belongs to. In a pipe or a file, and with very
-    many cases, a case is one line, written when it has ended. On a terminal the last line says
-    what is going on now: the step or the part of the report, how far it is, and how many of the
-    cases are done.
+    One case at a time has its file as a headline and its steps below, each above those that are
+    nested in it; with several at the same time, every line begins with the case that it belongs to.
+    In a pipe or a file, and with very many cases, a case is one line, written when it has ended. On
+    a terminal the last line says what is going on now: the step or the part of the report, how far
+    it is, and how many of the cases are done.
     """
 
     def __init__(
@@ -50,7 +62,7 @@ class ProgressLines:
         self._clock = clock
         self._headline = -1
         self._noted: set[str] = set()  # every sample of a file has the same
-        self._begun: dict[int, list[Moment]] = defaultdict(list)  # steps nest
+        self._open: dict[int, list[_OpenStep]] = defaultdict(list)  # the innermost step is last
         self._activities: dict[int, tuple[str, float]] = {}
         self._shown: dict[int, str] = {}  # outcomes that are shown before the report is written
         self._done = 0
@@ -60,11 +72,9 @@ class ProgressLines:
     def step(self, index: int, event: ProgressEvent) -> None:
         """Take note of a progress event of a running case."""
         if isinstance(event, StepStarted):
-            self._begun[index].append((event.wall_time, event.sim_time))
-        elif isinstance(event, StepFinished) and not self._is_brief:
-            self._begin(index)
-            speed = self._speed(index, event)
-            self._line(index, step_done(replace(event, speed=speed), self._style))
+            self._step_begins(index, event)
+        elif isinstance(event, StepFinished):
+            self._step_ends(index, event)
         elif isinstance(event, Judged) and len(self._cases) == 1:
             self._verdict(index, event.result)
         if not self._output.stream.isatty():
@@ -88,6 +98,30 @@ class ProgressLines:
                     self._line(index, f"  {self._style.quiet(line)}")
         is_last = self._done == len(self._cases)
         self._output.status(None if is_last else self._status(None, index))
+
+    def _step_begins(self, index: int, event: StepStarted) -> None:
+        """Show the steps that a step is nested in, before its own line."""
+        outer = self._open[index]
+        for depth, each in enumerate(outer):
+            if not (each.has_head or self._is_brief):
+                each.has_head = True
+                self._begin(index)
+                self._line(index, step_head(each.begin, depth))
+        outer.append(_OpenStep(event))
+
+    def _step_ends(self, index: int, event: StepFinished) -> None:
+        """Show how a step ended, unless the lines of the steps nested in it do."""
+        outer = self._open[index]
+        step = outer.pop() if outer else None
+        is_good = event.status in {"passed", "expected error"}
+        if outer and event.status == "failed":
+            outer[-1].is_explained = True
+        is_shown = step is not None and step.has_head and (is_good or step.is_explained)
+        if self._is_brief or is_shown:
+            return
+        self._begin(index)
+        speed = None if step is None else _speed(step.begin, event)
+        self._line(index, step_done(replace(event, speed=speed), self._style, len(outer)))
 
     def _verdict(self, index: int, result: CaseResult) -> None:
         """Show a case's outcome, its report written or not."""
@@ -116,8 +150,8 @@ class ProgressLines:
         total, done = len(self._cases), self._done
         if total < 2:
             return ""
-        left = remaining(self._start, self._last_end, self._clock(), done, total)
-        return f"  {done} of {total} runs done{left};"
+        times = self._start, self._last_end, self._clock()
+        return f"  {pace(*times, done, total, has_signs=self._style.has_signs)};"
 
     def _case_status(
         self, event: StepStarted | Working | None, index: int, begin: float, now: float
@@ -134,14 +168,6 @@ class ProgressLines:
         count = f", {event.done} of {event.total}" if event.total else ""
         left = remaining(begin, now, time, event.done, event.total)
         return f"{name}{event.what}{count}{passed}{left}"
-
-    def _speed(self, index: int, event: StepFinished) -> float | None:
-        """Simulated over wall seconds of a step, its planning included."""
-        if not self._begun[index]:
-            return None
-        wall, simulated = self._begun[index].pop()
-        passed = event.wall_time - wall
-        return (event.sim_time - simulated) / passed if passed > 0 else None
 
     def _named(self, index: int, line: str) -> str:
         return f"{self._cases[index]}  {line}"
@@ -162,14 +188,7 @@ def slow_work_on_stderr(_index: int, event: ProgressEvent) -> None:
         complain(event.what)
 
 
-def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:
-    """`, about 40 s left` at the pace so far; empty while there is too little to judge by.
-
-    Args:
-        begin: When the first part began [s].
-        last: When the last of those that are done ended.
-    """
-    if not done or done >= total or last - begin < ENOUGH_FOR_AN_ESTIMATE:
-        return ""
-    left = max(1.0, (last - begin) / done * (total - done) - (now - last))
-    return f", about {left / 60:.0f} min left" if left >= 90 else f", about {left:.0f} s left"
+def _speed(begin: StepStarted, end: StepFinished) -> float | None:
+    """Simulated over wall seconds of a step, its planning included."""
+    passed = end.wall_time - begin.wall_time
+    return (end.sim_time - begin.sim_time) / passed if passed > 0 else None

@@ -94,6 +94,12 @@ def add_format(command: argparse.ArgumentParser, **more: str) -> None:
     command.add_argument("--json", action="store_const", const="json", dest="format", help=text)
 
 
+def add_verbose(command: argparse.ArgumentParser) -> None:
+    """`--verbose`, of commands that print results of runs."""
+    text = "show digests, and how many times faster than real time the simulation was"
+    command.add_argument("-v", "--verbose", action="store_true", help=text)
+
+
 def add_report_dir(
     command: argparse.ArgumentParser,
     written: str = "write reports into this folder",

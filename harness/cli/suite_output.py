@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.output import complain, output, say, say_text
+from harness.core.printable import counted
 from harness.suite.hooks import NO_HOOKS, SuiteHooks
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def show_json(suite: SuiteRun) -> int:
 
 def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
     """Print a line for each problem: for editors, or as GitHub's annotations."""
+    from harness.reporting.sampled import missed
     from harness.reporting.suite.cause import short_lines
     from harness.reporting.suite.github import error_annotations
 
@@ -69,6 +71,10 @@ def show_lines(arguments: argparse.Namespace, suite: SuiteRun) -> int:
             output().command(line)
     else:
         say(*short_lines(suite.failures()))
+        if rates := missed(suite.rates):
+            say(rates)
+        elif not suite.exit_code and not suite.is_interrupted:
+            say(f"{counted(len(suite.results), 'case')} passed")
     return suite.exit_code
 
 

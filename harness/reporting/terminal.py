@@ -24,13 +24,17 @@ class Style:
     """How text may look: with colours, with signs beyond ASCII.
 
     Its control sequences are for `core.printable.terminal_text`, which writes no others.
+
+    Attributes:
+        is_verbose: Whether digests and real-time factors are shown.
     """
 
     has_color: bool = False
     has_signs: bool = False
+    is_verbose: bool = False
 
     @classmethod
-    def of(cls, stream: TextIO) -> Style:
+    def of(cls, stream: TextIO, *, is_verbose: bool = False) -> Style:
         """Colours on a terminal unless NO_COLOR is set; signs where the encoding has them."""
         try:
             "✓✗…".encode(stream.encoding or "ascii")
@@ -38,7 +42,7 @@ class Style:
         except (UnicodeEncodeError, LookupError):
             has_signs = False
         has_color = stream.isatty() and not os.environ.get("NO_COLOR")
-        return cls(has_color and os.environ.get("TERM") != "dumb", has_signs)
+        return cls(has_color and os.environ.get("TERM") != "dumb", has_signs, is_verbose)
 
     def good(self, text: str) -> str:
         """Green."""
@@ -83,21 +87,33 @@ def step_running(event: StepStarted, style: Style = PLAIN) -> str:
     return f"    {_count(event)}  {printable(event.step)}{dots}  t={event.sim_time:.2f} s"
 
 
-def step_done(event: StepFinished, style: Style = PLAIN) -> str:
+def step_head(event: StepStarted, depth: int = 0) -> str:
+    """The line of a step above the steps nested in it, which has no result yet."""
+    return f"    {_count(event)}  {_nested(event.step, depth)}"
+
+
+def step_done(event: StepFinished, style: Style = PLAIN, depth: int = 0) -> str:
     """The line of a step that is over: sign, number, what it said, simulation time, failure.
 
     The speed is how many times faster than the real thing it was, where anything moved.
+
+    Args:
+        depth: The number of steps that it is nested in.
     """
     is_good = event.status in {"passed", "expected error"}
-    line = f"  {style.mark(is_good)} {_count(event)}  {printable(event.step)}"
+    line = f"  {style.mark(is_good)} {_count(event)}  {_nested(event.step, depth)}"
     line += style.quiet(f"  t={event.sim_time:.2f} s")
-    if event.speed:
+    if event.speed and style.is_verbose:
         line += style.quiet(f"  {speed_text(event.speed)}")
     if event.status == "expected error":
         line += style.quiet("  failed as expected")
     if not is_good and event.message:
         line += f"  {printable(event.message.splitlines()[0])}"
     return line
+
+
+def _nested(step: str, depth: int) -> str:
+    return "  " * depth + printable(step)
 
 
 def speed_text(speed: float) -> str:
@@ -119,14 +135,15 @@ def case_line(result: CaseResult, style: Style = PLAIN) -> str:
     if result.outcome in {"passed", "failed"}:
         held = sum(verdict.status == "passed" for verdict in result.verdicts)
         simulated = f"{result.sim_time:.1f} s simulated"
-        if wall := sum(result.wall_times.values()):
+        if style.is_verbose and (wall := sum(result.wall_times.values())):
             simulated += f" at {speed_text(result.sim_time / wall)}"
         parts.append(f"{counted(len(result.steps), 'step')}, {simulated}")
         count = len(result.verdicts)
         holds = "holds" if count == 1 else "hold"
         held_of = f"{held} of {counted(count, 'expectation')} {holds}"
         parts.append(held_of if result.verdicts else "expects nothing")
-        parts.append(style.quiet(f"digest {result.digest[:12]}"))
+        if style.is_verbose:
+            parts.append(style.quiet(f"digest {result.digest[:12]}"))
     return printable("  ".join(parts))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,7 @@ from harness.robot_tools import robot_findings as look_at
 
 KINEMATIC_SAMPLES = 20
 IK_SAMPLES = 100
+OnProgress = Callable[[str, int, int], None]  # the check, its parts that are done, all parts
 ALONG_AN_AXIS = math.cos(math.radians(5))  # least cosine of a direction with an axis
 
 
@@ -49,6 +50,7 @@ def check_robot(
     samples: int = 2000,
     seed: int = 0,
     propose: bool = False,
+    on_progress: OnProgress = lambda *_: None,
 ) -> Checked:
     """Check a robot.
 
@@ -58,11 +60,14 @@ def check_robot(
         samples: Random configurations for self-collisions and reach.
         seed: The seed of the configurations, and of numeric inverse kinematics.
         propose: Whether the report proposes pairs that need not be checked.
+        on_progress: Called with the name of a long check, and how many of its parts are done.
     """
     positions = sample_robot_positions(description, samples, np.random.default_rng(seed))
     kinematics = PinocchioKinematics(description)
-    touches = self_touches(description, positions)
-    findings = tuple(_findings(description, kinematics, touches, positions, seed))
+    touches = self_touches(
+        description, positions, lambda done: on_progress("self-collisions", done, samples)
+    )
+    findings = tuple(_findings(description, kinematics, touches, positions, seed, on_progress))
     reported = {detail for finding in findings for detail in finding.details}
     driven = [joint for joint in description.movable_joints if joint.mimic is None]
     report = RobotReport(
@@ -88,6 +93,7 @@ def _findings(
     touches: SelfTouches,
     positions: FloatArray,
     seed: int,
+    on_progress: OnProgress,
 ) -> Iterator[RobotFinding]:
     yield look_at.forward_kinematics(description, kinematics, positions[:KINEMATIC_SAMPLES])
     yield look_at.masses(description)
@@ -102,7 +108,11 @@ def _findings(
         yield look_at.reach(description, kinematics, free)
         if len(free):
             try:
-                trial = try_ik(kinematics, free[:IK_SAMPLES], seed)
+                some = free[:IK_SAMPLES]
+                trial = try_ik(
+                    kinematics, some, seed,
+                    lambda done: on_progress("inverse kinematics", done, len(some)),
+                )  # fmt: skip
             except PlanningFailed as error:  # joints outside the group move the TCP as well
                 text = f"not tried, there are no pose goals: {error.message}"
                 yield RobotFinding("inverse kinematics", text)

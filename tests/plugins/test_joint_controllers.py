@@ -41,7 +41,7 @@ def scenario(tmp_path):
 
 
 def digest(folder, *options):
-    out = harness(folder, "run", "move.scenario.yaml", *CONTROLLERS, "--no-report", *options)
+    out = harness(folder, "run", "move.scenario.yaml", *CONTROLLERS, "-v", "--no-report", *options)
     return out.split("digest ")[1].split()[0]
 
 

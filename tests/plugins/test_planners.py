@@ -51,7 +51,7 @@ def use(folder, old, new):
 
 @pytest.mark.nightly
 def test_a_planner_s_path_is_timed_verified_executed_and_recorded(wall):
-    out = harness(wall, "run", "post.scenario.yaml", *PLANNERS)
+    out = harness(wall, "run", "post.scenario.yaml", "-v", *PLANNERS)
     (file,) = wall.glob("reports/**/run.json")
     _, step = json.loads(file.read_text(encoding="utf-8"))["steps"]
     planner = step["planner"]
@@ -59,7 +59,7 @@ def test_a_planner_s_path_is_timed_verified_executed_and_recorded(wall):
     assert planner["vertices"] >= 1
     assert planner["search_checks"] > 0
     assert planner["path_length"] <= planner["raw_path_length"]
-    again = harness(wall, "run", "post.scenario.yaml", "--no-report", *PLANNERS)
+    again = harness(wall, "run", "post.scenario.yaml", "-v", "--no-report", *PLANNERS)
     assert again.split("digest ")[1].split()[0] == out.split("digest ")[1].split()[0]
 
 

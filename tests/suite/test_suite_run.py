@@ -284,6 +284,9 @@ def test_failures_are_reported_in_the_format_that_is_requested(varied):
     short = harness("run", path, *words, "--format", "short", cwd=path.parent)
     assert short.stdout.startswith(f"{path}:7:1: [0.2_s-1] duration")
     assert len(short.stdout.splitlines()) == 1
+    passed = harness("run", path, "--no-report", "--case", "0.1_s-1", "--format", "short",
+                     cwd=path.parent)  # fmt: skip
+    assert (passed.returncode, passed.stdout) == (0, "1 case passed\n")
     reported = harness("run", path, *words, "--format", "github", cwd=path.parent)
     assert reported.stdout.startswith(f"::error file={path},line=7,title=Wait [0.2_s-1]::duration")
     path.write_text(GRID.replace("wait", "wiat"))

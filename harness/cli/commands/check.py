@@ -12,6 +12,7 @@ from typing import ClassVar
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import output, say, say_json, say_text
 from harness.cli.shared_options import add_format, add_paths, add_seed
+from harness.cli.work_bar import WorkBar
 from harness.core.errors import Problem
 from harness.core.printable import counted
 from harness.suite.discovery import discover
@@ -49,7 +50,10 @@ class CheckCommand(Command):
         problems: list[Problem] = []
         predicted: list[Problem] = []
         format_problem = problem_annotation if arguments.format == "github" else short_problem
-        for file, case, overrides in _cases(arguments, files):
+        work_bar = WorkBar()
+        for number, (file, case, overrides) in enumerate(_cases(arguments, files)):
+            if len(files) > 1:
+                work_bar("checking", number, max(number + 1, len(files)))
             found = check_file(file, overrides=overrides, seed=arguments.seed)
             outcome = "invalid" if found.problems else "failed" if found.predicted else "passed"
             code = max(code, EXIT_CODES[outcome])
@@ -89,6 +93,8 @@ class CheckCommand(Command):
         write = output().command if arguments.format == "github" else say
         for line in dict.fromkeys(lines):
             write(line)
+        if arguments.format == "short" and not code:
+            say(f"{counted(len(documents), 'case')} checked, no problem found")
         return code
 
 

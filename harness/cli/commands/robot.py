@@ -13,6 +13,7 @@ from harness.cli.files import refuse_existing, refusing_unwritable, write_text
 from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json
+from harness.cli.work_bar import WorkBar
 from harness.suite.discovery import UsageError
 
 if TYPE_CHECKING:
@@ -80,6 +81,7 @@ def _check(arguments: argparse.Namespace) -> int:
         samples=arguments.samples or (SAMPLES_FOR_SRDF if srdf else SAMPLES),
         seed=arguments.seed,
         propose=source.has_no_srdf or srdf is not None,
+        on_progress=WorkBar(),
     )
     extra_lines: list[str] = []
     if srdf is not None:

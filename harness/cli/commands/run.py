@@ -24,6 +24,7 @@ from harness.cli.shared_options import (
     add_paths,
     add_report_dir,
     add_seed,
+    add_verbose,
 )
 from harness.cli.suite_output import (
     has_page,
@@ -70,6 +71,7 @@ class RunCommand(Command):
         command.add_argument("--no-page", action="store_true", help=text)
         add_history(command)
         add_format(command)
+        add_verbose(command)
         add_hard_cap(command, "scenario")
         add_node(command, "the step `external` to start this command")
         for mode in self._modes:
@@ -110,7 +112,7 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
             names,
             is_side_by_side=arguments.workers > 1 and not arguments.in_process,
             is_brief=len(names) > BRIEF_FROM,
-            style=Style.of(sys.stdout),
+            style=Style.of(sys.stdout, is_verbose=arguments.verbose),
         )
 
         def on_result(index: int, result: CaseResult) -> None:

@@ -8,6 +8,7 @@ starts, always, or in no sample.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
@@ -105,10 +106,22 @@ def _ends(joint: Joint) -> tuple[float, float]:
     return lower, joint.upper if np.isfinite(joint.upper) else lower + 1.0
 
 
-def self_touches(description: RobotDescription, positions: FloatArray) -> SelfTouches:
-    """Look for touching links at joint positions, description order, shape (N, n)."""
+def self_touches(
+    description: RobotDescription,
+    positions: FloatArray,
+    on_checked: Callable[[int], None] = lambda _: None,
+) -> SelfTouches:
+    """Look for touching links at joint positions, description order, shape (N, n).
+
+    Args:
+        on_checked: Called with the number of rows that are checked.
+    """
     checker = _Checker(description)
-    touched = np.array([checker.touching(row) for row in positions], dtype=bool)
+    found: list[BoolArray] = []
+    for row in positions:
+        found.append(checker.touching(row))
+        on_checked(len(found))
+    touched = np.array(found, dtype=bool)
     at_start = checker.touching(description.start_positions())
     shape = (len(positions), len(checker.pairs))
     return SelfTouches(description, checker.pairs, touched.reshape(shape), at_start)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,13 +35,19 @@ class IkTrial:
         return self.solved / self.poses if self.poses else 0.0
 
 
-def try_ik(kinematics: PinocchioKinematics, positions: FloatArray, seed: int) -> IkTrial:
+def try_ik(
+    kinematics: PinocchioKinematics,
+    positions: FloatArray,
+    seed: int,
+    on_solved: Callable[[int], None] = lambda _: None,
+) -> IkTrial:
     """Solve for the TCP's poses at joint positions, seeded with the robot's start state.
 
     Args:
         kinematics: The kinematics of a robot with an arm group.
         positions: Joint positions in description order, shape (N, n).
         seed: The seed of solvers that draw joint positions.
+        on_solved: Called with the number of poses that were tried.
     """
     description = kinematics.description
     start = description.start_positions()
@@ -56,4 +63,5 @@ def try_ik(kinematics: PinocchioKinematics, positions: FloatArray, seed: int) ->
             solved += 1
             found = kinematics.link_pose(space.whole(answer.solutions[0]), description.tcp_link)
             worst = max(worst, float(np.linalg.norm(found.translation - pose.translation)))
+        on_solved(number + 1)
     return IkTrial(solver, solved, len(positions), worst)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-import time
 from collections.abc import Sequence
 from contextlib import closing
 from importlib import import_module
@@ -23,6 +22,7 @@ from harness.cli.shared_options import (
     add_report_dir,
     add_seed,
 )
+from harness.cli.work_bar import WorkBar
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -132,24 +132,22 @@ class _Progress:
         self._done = 0
         self._failed = 0
         self._stage = "starting"
-        self._begin = self._last = time.monotonic()
+        self._bar = WorkBar()
 
     def stage(self, text: str) -> None:
         """Show what the search does next."""
         self._stage = text
-        output().status(self._text)
+        self._show()
 
     def run(self, number: int, result: CaseResult) -> None:
         """Count a run."""
-        self._done, self._last = number, time.monotonic()
+        self._done = number
         self._failed += result.outcome != "passed"
-        output().status(self._text, is_frequent=True)
+        self._show()
 
-    def _text(self) -> str:
-        from harness.cli.progress import remaining
-
-        left = remaining(self._begin, self._last, time.monotonic(), self._done, self._runs)
-        return f"  {self._stage}: {self._done} runs, {self._failed} failed{left}"
+    def _show(self) -> None:
+        failed = f"; {self._failed} failed" if self._failed else ""
+        self._bar(self._stage, self._done, max(self._runs, self._done), failed)
 
 
 def _show(

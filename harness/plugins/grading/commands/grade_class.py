@@ -13,6 +13,7 @@ from harness.cli.arguments import whole_number
 from harness.cli.command import EXCHANGE, Command
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
+from harness.cli.work_bar import WorkBar
 from harness.core.printable import counted
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
@@ -68,12 +69,12 @@ class GradeClassCommand(Command):
         submissions = [one_submission(place)] if arguments.one else find_submissions(place)
         folder = _new_folder(Path(arguments.report_dir))
         total, done = len(submissions) * (1 + len(loaded.model.hidden)), 0
+        work_bar = WorkBar()
 
-        def show(owner: str, number: int, result: CaseResult) -> None:
+        def show(_owner: str, _number: int, _result: CaseResult) -> None:
             nonlocal done
             done += 1
-            case = f" hidden {number}" if number else ""
-            output().status(lambda: f"{done} of {total}: {owner}{case}: {result.outcome}")
+            work_bar("submissions", done, total)
 
         begun = time.perf_counter()
         grade = grade_class(loaded, submissions, folder, arguments.workers, show)
