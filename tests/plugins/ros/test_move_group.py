@@ -6,6 +6,7 @@ import pytest
 from harness.core.errors import ErrorCode
 from harness.plugins.ros.actions import Status
 from harness.plugins.ros.handover import replay
+from harness.plugins.ros.interfaces import EXECUTE, MOVE
 from harness.plugins.ros.moveit.values import NUMBERS
 from harness.recording.read_run import read_run
 from harness.reporting.rosbag.messages import message
@@ -248,3 +249,55 @@ def test_requests_that_mean_nothing_are_answered_with_moveits_codes(tmp_path):
     assert all(code.message for code in answers.values())
     assert results[0].case.outcome == "passed"
     assert any("unknown planner 'MyPlanner'" in note for note in said)
+
+
+def outcome(sent):
+    return sent.status, sent.result.error_code.val
+
+
+def test_goals_that_are_canceled_before_they_are_planned_do_not_move_the_arm(tmp_path):
+    home = {"elbow_joint": 1.0}
+    with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": tmp_path / "run"}) as (
+        node,
+        results,
+    ):
+        client = MoveGroupClient(node)
+        # The first goal occupies the bridge, so that the second one and its end arrive meanwhile.
+        far = message(f"{MOVE}_Goal", request=request(pose_goal(pose((0.4, 0.1, 0.4)))))
+        sent = [client.move.send(far)]
+        sent.append(client.move.send(message(f"{MOVE}_Goal", request=request(joint_goal(home)))))
+        client.move.cancel(sent[1])
+        sent.append(client.execute.send(message(f"{EXECUTE}_Goal")))
+        client.execute.cancel(sent[2])
+        node.wait(lambda: all(each.is_over for each in sent))
+        plan = client.move_to(joint_goal(home), plan_only=True).result.planned_trajectory
+        events = node.graph.advertise("/trajectory_execution_event", "std_msgs/msg/String")
+        node.wait(lambda: events.subscribers)
+        running = client.execute.send(message(f"{EXECUTE}_Goal", trajectory=plan))
+        node.wait(lambda: running.is_accepted)
+        events.publish(message("std_msgs/msg/String", data="halt"))
+        events.publish(message("std_msgs/msg/String", data="stop"))
+        node.wait(lambda: running.is_over)
+        slow = client.move.send(
+            message(
+                f"{MOVE}_Goal",
+                request=request(joint_goal({"elbow_joint": 0}), max_velocity_scaling_factor=0.1),
+            )
+        )
+        node.wait(lambda: slow.is_accepted)
+        client.call("compute_fk", "GetPositionFK")  # which is answered after the goal is planned
+        client.move.cancel(slow)
+        node.wait(lambda: slow.is_over)
+    preempted = NUMBERS["PREEMPTED"]
+    assert [outcome(each) for each in sent] == [
+        (Status.SUCCEEDED, SUCCESS),
+        (Status.CANCELED, preempted),
+        (Status.CANCELED, preempted),
+    ]
+    assert outcome(running) == (Status.ABORTED, preempted)
+    assert outcome(slow) == (Status.CANCELED, preempted)
+    commands = read_run(tmp_path / "run").run.commands
+    kinds = [each.kind for each in commands if each.kind != "end"]
+    assert kinds == ["plan", "trajectory", "plan", "trajectory", "cancel", "plan", "trajectory",
+                     "cancel"]  # fmt: skip
+    assert replay(tmp_path / "run").digest == results[0].case.digest

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 TICK = 0.01  # [s] of simulated time between updates of controllers: 100 Hz, as in the course
 
+CANCELED = "canceled"
 PREEMPTED = "a newer command replaced this goal"
 STOPPED = "the session ended while this goal was active"
 UNBOUNDED = TrackingTolerances(np.inf, np.inf)
@@ -132,7 +133,7 @@ class ExternalCell:
         for controller in self._each:
             if controller.motion is not None and controller.motion.goal == goal:
                 self._hold(controller, self._servos.joint_positions()[controller.places])
-                self._interrupt(controller, Code.SUCCESSFUL, "canceled")
+                self._interrupt(controller, Code.SUCCESSFUL, CANCELED)
                 return
         raise GoalRefused("no such goal is active")
 

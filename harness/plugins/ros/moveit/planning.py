@@ -12,7 +12,14 @@ from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.registry import registry
 from harness.core.types import FloatArray
 from harness.plugins.ros.moveit.goals import arc_point_of, goal_of, path_constraints_of
-from harness.plugins.ros.moveit.values import frame_of, link_of, pose_of, positions_of
+from harness.plugins.ros.moveit.values import (
+    frame_of,
+    link_of,
+    pose_of,
+    positions_of,
+    robot_trajectory,
+    state_message,
+)
 from harness.ports.goals import AnyGoal, JointGoal, PoseGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOptions
 from harness.ports.motions import (
@@ -26,6 +33,7 @@ from harness.ports.motions import (
     WaypointMotion,
 )
 from harness.recording.step_results import CartesianPathResult
+from harness.reporting.rosbag.messages import message
 
 PILZ = "pilz_industrial_motion_planner"
 PLANNERS = {
@@ -48,6 +56,19 @@ class Planned:
     plan: MotionPlan
     start: FloatArray
     group: str
+
+
+def plan_fields(cell: Cell, planned: Planned | None) -> dict[str, Any]:
+    """The fields of a result that a plan fills."""
+    if planned is None:
+        return {
+            "trajectory_start": message("moveit_msgs/msg/RobotState"),
+            "planned_trajectory": robot_trajectory(None),
+        }
+    return {
+        "trajectory_start": state_message(cell, planned.start),
+        "planned_trajectory": robot_trajectory(planned.plan.trajectory),
+    }
 
 
 def plan_motion(cell: Cell, request: Any) -> Planned:

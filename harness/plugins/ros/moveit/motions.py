@@ -1,0 +1,163 @@
+"""The actions of `move_group`: goals that wait, are planned, and are followed by a controller."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from harness.core.errors import StepFailed
+from harness.plugins.ros.actions import ActionServer
+from harness.plugins.ros.control.cell import CANCELED, PREEMPTED
+from harness.plugins.ros.control.controller import Outcome
+from harness.plugins.ros.interfaces import EXECUTE, MOVE
+from harness.plugins.ros.moveit.planning import plan_fields
+from harness.plugins.ros.moveit.requests import Requests
+from harness.plugins.ros.moveit.scene_changes import changes_of_scene
+from harness.plugins.ros.moveit.values import error_code
+from harness.plugins.ros.rtps.graph import Graph
+from harness.plugins.ros.wiring import trajectory_content
+from harness.reporting.rosbag.messages import message
+
+FARTHEST_START = 0.01
+"""How far a joint may be from the start of a trajectory that is executed [rad or m]: MoveIt's
+`allowed_start_tolerance`."""
+
+EVENTS = "/trajectory_execution_event"
+"""The topic with which clients of MoveIt stop what is executed, by the word `stop`."""
+
+
+@dataclass
+class _Goal:
+    """A goal of an action, and the result that its client will get.
+
+    Attributes:
+        content: What the client sent.
+        is_followed: Whether a controller follows its trajectory; before that it waits.
+    """
+
+    server: ActionServer
+    content: Any
+    result: Any
+    is_followed: bool = False
+
+
+class Motions:
+    """Serves `move_action` and `execute_trajectory`."""
+
+    def __init__(self, graph: Graph, requests: Requests) -> None:
+        """Serve them on a graph."""
+        self._requests, self._control = requests, requests.control
+        self._goals: dict[str, _Goal] = {}
+        clock = lambda: requests.control.time  # noqa: E731 - one function for both
+        self._servers = [
+            ActionServer(graph, f"/{name}", kind, clock, partial(self._take, place), self._cancel)
+            for place, (name, kind) in enumerate(
+                (("move_action", MOVE), ("execute_trajectory", EXECUTE))
+            )
+        ]
+        graph.subscribe(EVENTS, "std_msgs/msg/String", self._take_event)
+
+    def end(self) -> None:
+        """End the goals that still wait, which nothing will plan."""
+        for goal in [*self._goals]:
+            if not self._goals[goal].is_followed:
+                self._finish(goal, StepFailed("ABORT", "the session ended before this goal"))
+
+    def finish(self, outcome: Outcome) -> None:
+        """Give the client of a trajectory its result."""
+        if outcome.goal not in self._goals:
+            return
+        reason = str(outcome.result.error_string)
+        if outcome.has_succeeded and reason != CANCELED:
+            self._finish(outcome.goal)
+        else:
+            is_ended = reason in (PREEMPTED, CANCELED)
+            code = "PREEMPTED" if is_ended else "CONTROL_FAILED"
+            self._finish(outcome.goal, StepFailed(code, reason))
+
+    def _take(self, place: int, goal: str, content: Any) -> bool:
+        if self._requests.scene is None:
+            return False
+        server = self._servers[place]
+        self._goals[goal] = _Goal(server, content, message(f"{server.kind}_Result"))
+        begin = self._plan if server.kind == MOVE else self._execute
+        self._requests.put(lambda: begin(goal) if goal in self._goals else None)
+        return True
+
+    def _cancel(self, goal: str) -> None:
+        known = self._goals.get(goal)
+        if known is not None and not known.is_followed:
+            self._finish(goal, StepFailed("PREEMPTED", f"{CANCELED} before it was begun"))
+            return
+        self._requests.note(self._control.receive("cancel", goal=goal))
+
+    def _take_event(self, event: Any) -> None:
+        """Stop what is executed, and what waits to be."""
+        if str(event.data) == "stop":
+            for goal in [*self._goals]:
+                self._cancel(goal)
+
+    def _finish(self, goal: str, failure: StepFailed | None = None) -> None:
+        known = self._goals.pop(goal)
+        known.result.error_code = error_code(failure)
+        known.server.finish(goal, failure is None, known.result)
+
+    def _plan(self, goal: str) -> None:
+        """Plan a goal of `move_action`, and follow the plan unless it is requested alone."""
+        known, requests = self._goals[goal], self._requests
+        options = known.content.planning_options
+        if not requests.change(changes_of_scene, options.planning_scene_diff):
+            self._finish(goal, StepFailed("FAILURE", "planning_scene_diff cannot be applied"))
+            return
+        planned, code, seconds = requests.plan(known.content.request)
+        fields = plan_fields(requests.here.cell, planned)
+        kind = f"{MOVE}_Result"
+        known.result = message(kind, error_code=code, planning_time=seconds, **fields)
+        if planned is None or options.plan_only:
+            self._goals.pop(goal)
+            known.server.finish(goal, planned is not None, known.result)
+            return
+        known.result.executed_trajectory = known.result.planned_trajectory
+        self._follow(goal, known.result.planned_trajectory)
+
+    def _execute(self, goal: str) -> None:
+        self._follow(goal, self._goals[goal].content.trajectory)
+
+    def _follow(self, goal: str, trajectory: Any) -> None:
+        """Give a trajectory to the controller that has its joints."""
+        joints = trajectory.joint_trajectory
+        name = self._controller_of([str(each) for each in joints.joint_names])
+        if reason := self._start_error(joints) if name else "no controller has these joints":
+            failure = StepFailed("CONTROL_FAILED", reason)
+            self._requests.report(failure)
+            self._finish(goal, failure)
+            return
+        self._goals[goal].is_followed = True
+        content = trajectory_content(joints)
+        self._requests.note(self._control.receive("trajectory", name, goal, **content))
+
+    def _controller_of(self, joints: list[str]) -> str:
+        for name, controller in self._control.controllers.items():
+            fits = {joint.name for joint in controller.joints} == {*joints}
+            if fits and "trajectory" in controller.kinds:
+                return name
+        return ""
+
+    def _start_error(self, trajectory: Any) -> str:
+        """Why a trajectory cannot be begun from where the arm is; empty where it can."""
+        if not trajectory.points:
+            return "the trajectory has no points"
+        cell = self._requests.here.cell
+        now, index = cell.planning_start(), cell.description.joint_index
+        first = trajectory.points[0]
+        if len(first.positions) != len(trajectory.joint_names):
+            return "the first point has another number of positions than there are joints"
+        for name, value in zip(trajectory.joint_names, first.positions, strict=True):
+            off = abs(float(value) - now[index[str(name)]])
+            if not off <= FARTHEST_START:
+                return (
+                    f"the trajectory begins {off:.4g} rad or m from where {name} is; plan from the"
+                    " present state"
+                )
+        return ""

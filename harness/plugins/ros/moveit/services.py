@@ -1,0 +1,148 @@
+"""The services of `move_group`: kinematics, plans, and the planning scene."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from harness.cell.cell import Cell
+from harness.core.errors import StepFailed
+from harness.plugins.ros.interfaces import header
+from harness.plugins.ros.moveit.planning import (
+    PLANNERS,
+    plan_cartesian_path,
+    plan_fields,
+    solve_pose,
+)
+from harness.plugins.ros.moveit.requests import Requests
+from harness.plugins.ros.moveit.scene_changes import changes_of_scene
+from harness.plugins.ros.moveit.values import (
+    error_code,
+    frame_of,
+    link_of,
+    positions_of,
+    state_message,
+)
+from harness.plugins.ros.rtps.graph import Graph
+from harness.reporting.rosbag.messages import message, pose_message
+
+SRV = "moveit_msgs/srv/"
+
+
+def serve(graph: Graph, requests: Requests) -> None:
+    """Serve them on a graph."""
+    for name, kind, answer in (
+        ("compute_ik", "GetPositionIK", _inverse),
+        ("compute_fk", "GetPositionFK", _forward),
+        ("check_state_validity", "GetStateValidity", _validity),
+        ("query_planner_interface", "QueryPlannerInterfaces", _planners),
+        ("get_planner_params", "GetPlannerParams", _parameters),
+        ("plan_kinematic_path", "GetMotionPlan", partial(_plan, requests)),
+        ("compute_cartesian_path", "GetCartesianPath", partial(_cartesian, requests)),
+        ("get_planning_scene", "GetPlanningScene", partial(_scene, requests)),
+        ("apply_planning_scene", "ApplyPlanningScene", partial(_apply, requests)),
+    ):
+        graph.serve(f"/{name}", SRV + kind, requests.service(answer))
+
+
+def _inverse(cell: Cell, request: Any) -> Any:
+    kind = f"{SRV}GetPositionIK_Response"
+    try:
+        state = state_message(cell, solve_pose(cell, request.ik_request))
+    except StepFailed as failure:
+        return message(kind, error_code=error_code(failure))
+    return message(kind, solution=state, error_code=error_code(None))
+
+
+def _forward(cell: Cell, request: Any) -> Any:
+    kind = f"{SRV}GetPositionFK_Response"
+    names = [str(name) for name in request.fk_link_names] or [cell.description.tcp_link]
+    frame_id = str(request.header.frame_id) or "world"
+    try:
+        back = frame_of(cell, frame_id).inverse()
+        positions = positions_of(cell, request.robot_state)
+        links = [link_of(cell, name) for name in names]
+    except StepFailed as failure:
+        return message(kind, error_code=error_code(failure))
+    stamped = [
+        message(
+            "geometry_msgs/msg/PoseStamped",
+            header=header(cell.simulator.time, frame_id),
+            pose=pose_message([*(back @ cell.kinematics.link_pose(positions, link)).as_vector()]),
+        )
+        for link in links
+    ]
+    return message(kind, pose_stamped=stamped, fk_link_names=names, error_code=error_code(None))
+
+
+def _validity(cell: Cell, request: Any) -> Any:
+    kind = f"{SRV}GetStateValidity_Response"
+    try:
+        cell.sync_scene()
+        positions = positions_of(cell, request.robot_state)
+    except StepFailed:
+        return message(kind, valid=False)
+    touches = cell.scene.touches(positions)
+    contacts = [
+        message(
+            "moveit_msgs/msg/ContactInformation",
+            contact_body_1=each.first,
+            contact_body_2=each.second,
+            depth=-each.distance,
+        )
+        for each in touches
+    ]
+    return message(kind, valid=not touches, contacts=contacts)
+
+
+def _planners(_cell: Cell, _request: Any) -> Any:
+    kind = "moveit_msgs/msg/PlannerInterfaceDescription"
+    each = [
+        message(kind, name=name, pipeline_id=name, planner_ids=list(planners))
+        for name, planners in PLANNERS.items()
+    ]
+    return message(f"{SRV}QueryPlannerInterfaces_Response", planner_interfaces=each)
+
+
+def _parameters(_cell: Cell, _request: Any) -> Any:
+    return message(f"{SRV}GetPlannerParams_Response")
+
+
+def _plan(requests: Requests, cell: Cell, request: Any) -> Any:
+    planned, code, seconds = requests.plan(request.motion_plan_request)
+    fields = plan_fields(cell, planned)
+    response = message(
+        "moveit_msgs/msg/MotionPlanResponse",
+        group_name=str(request.motion_plan_request.group_name),
+        trajectory=fields["planned_trajectory"],
+        trajectory_start=fields["trajectory_start"],
+        planning_time=seconds,
+        error_code=code,
+    )
+    return message(f"{SRV}GetMotionPlan_Response", motion_plan_response=response)
+
+
+def _cartesian(requests: Requests, cell: Cell, request: Any) -> Any:
+    kind = f"{SRV}GetCartesianPath_Response"
+    try:
+        planned, fraction = plan_cartesian_path(cell, request)
+    except StepFailed as failure:
+        requests.report(failure)
+        return message(kind, fraction=-1.0, error_code=error_code(failure))
+    fields = plan_fields(cell, planned)
+    return message(
+        kind,
+        start_state=fields["trajectory_start"],
+        solution=fields["planned_trajectory"],
+        fraction=fraction,
+        error_code=error_code(None),
+    )
+
+
+def _scene(requests: Requests, _cell: Cell, _request: Any) -> Any:
+    return message(f"{SRV}GetPlanningScene_Response", scene=requests.here.as_message())
+
+
+def _apply(requests: Requests, _cell: Cell, request: Any) -> Any:
+    done = requests.change(changes_of_scene, request.scene)
+    return message(f"{SRV}ApplyPlanningScene_Response", success=done)
