@@ -18,13 +18,14 @@ import numpy as np
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Rgba
 from harness.core.inputs import read_input
+from harness.core.limits import READING_MEMORY
 from harness.core.memory import limited_memory
 from harness.core.types import FloatArray, IntArray
 from harness.core.user_cache import cached, store
 from harness.language.base import LARGEST_NUMBER
 from harness.language.files.yaml_file import read_text
 from harness.robot.collada import refuse_unreadable
-from harness.robot.mesh_file import MEMORY, metres_per_unit, read_triangles
+from harness.robot.mesh_file import metres_per_unit, read_triangles
 
 GRID = 0.002  # [m], of the cells in which vertices merge: about a pixel in a picture of an arm
 LARGE = 2**16  # [bytes], of OBJ files whose parts are kept
@@ -165,7 +166,7 @@ def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
     """The triangles of a mesh file, one part per colour; empty when it cannot be read."""
     try:
         metres_per_unit(geometry)  # refuses what is too large
-        with limited_memory(MEMORY):
+        with limited_memory(READING_MEMORY):
             match geometry.path.suffix.lower():
                 case ".obj":
                     return load_obj(geometry)

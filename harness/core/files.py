@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,6 +28,24 @@ def is_dir(path: Path) -> bool:
 def path_exists(path: Path) -> bool:
     """Whether a file or folder is there; not where the path cannot be one."""
     return os.path.exists(path)  # noqa: PTH110 - as above
+
+
+def read_at_most(path: Path, most: int) -> bytes:
+    """The bytes of a file that anybody may have written.
+
+    Args:
+        most: The largest size [bytes].
+
+    Raises:
+        OSError: It cannot be read, is no regular file, or is larger.
+    """
+    status = path.stat()
+    if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
+        raise OSError(errno.EINVAL, "not a regular file", str(path))
+    if status.st_size > most:
+        reason = f"{status.st_size / 1e6:.0f} MB; at most {most / 1e6:.0f} MB are read"
+        raise OSError(errno.EFBIG, reason, str(path))
+    return path.read_bytes()
 
 
 @contextmanager

@@ -7,6 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from harness.core.errors import Problem, SpecError
+from harness.core.files import read_at_most
+from harness.core.limits import PICTURE_FILE, PICTURE_PIXELS
+from harness.recording.picture_size import pixels_of
+
+OTHERS = (".mp4", ".webm", ".npz")  # files of cameras that are no pictures
 
 
 class FolderFiles(Mapping[str, bytes]):
@@ -23,9 +28,14 @@ class FolderFiles(Mapping[str, bytes]):
         if not path.is_relative_to(self._folder.resolve()):
             raise _damaged(self._folder / name, "this file leads out of the run's folder")
         try:
-            return path.read_bytes()
+            content = read_at_most(path, PICTURE_FILE)
+            if path.suffix in OTHERS or pixels_of(content) <= PICTURE_PIXELS:
+                return content
+        except ValueError as error:
+            raise _damaged(path, str(error)) from error
         except OSError as error:
             raise _damaged(path, f"cannot be read: {error.strerror or error}") from error
+        raise _damaged(path, f"it has more than {PICTURE_PIXELS:,} pixels")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

@@ -11,6 +11,8 @@ import av
 import numpy as np
 from av.error import FFmpegError
 
+from harness.core.limits import PICTURE_PIXELS
+
 SUFFIX, MEDIA_TYPE = ".mp4", "video/mp4"
 OPTIONS = {"preset": "veryfast", "crf": "23"}  # one thread, so that equal pictures give equal bytes
 
@@ -51,6 +53,9 @@ def decoded_film(content: bytes) -> Iterator[np.ndarray]:
     try:
         film: Any = av.open(io.BytesIO(content))
         with film:
+            codec = film.streams.video[0].codec_context
+            if codec.width * codec.height > PICTURE_PIXELS:
+                return
             for frame in film.decode(video=0):
                 yield frame.to_ndarray(format="rgb24")
     except (FFmpegError, IndexError):

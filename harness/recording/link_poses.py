@@ -12,6 +12,8 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
+SAMPLES_AT_ONCE = 10_000  # whose matrices of all links take 10 MB
+
 
 def replayed_link_poses(
     robot: RobotDescription, joint_positions: FloatArray, links: Collection[str] | None = None
@@ -23,9 +25,14 @@ def replayed_link_poses(
         joint_positions: Columns in description order, shape (N, n).
         links: The links to return; all when None.
     """
-    poses = LinkPoses(robot.joints, joint_positions, links)
-    names = poses.rotations if links is None else links
-    return {name: poses.rows(name) for name in names if name in poses.rotations}
+    found: dict[str, list[FloatArray]] = {}
+    for first in range(0, max(len(joint_positions), 1), SAMPLES_AT_ONCE):
+        part = joint_positions[first : first + SAMPLES_AT_ONCE]
+        poses = LinkPoses(robot.joints, part, links)
+        for name in poses.rotations if links is None else links:
+            if name in poses.rotations:
+                found.setdefault(name, []).append(poses.rows(name))
+    return {name: np.concatenate(parts) for name, parts in found.items()}
 
 
 def planned_tcp_poses(

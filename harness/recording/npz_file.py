@@ -8,12 +8,13 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, BinaryIO
 
 import numpy as np
 
+from harness.core.limits import RUN_ARRAYS
+
 Array = np.ndarray[Any, Any]
-LARGEST = 2 * 2**30  # Of all arrays of a file together, unpacked [bytes]
 SUFFIX = ".npy"
 
 
@@ -47,7 +48,7 @@ class NpzFile:
     """An open .npz file.
 
     Opening reads the headers alone. Arrays that hold pickled objects are refused, and so is a file
-    whose arrays take more memory than `LARGEST`, whatever their compressed size.
+    whose arrays take more than `most` bytes, whatever their compressed size.
 
     Attributes:
         headers: The headers of every array, by name.
@@ -57,12 +58,12 @@ class NpzFile:
         OSError: It cannot be opened.
     """
 
-    def __init__(self, path: Path) -> None:
-        stream = path.open("rb")
+    def __init__(self, file: Path | BinaryIO, most: int = RUN_ARRAYS) -> None:
+        stream = file.open("rb") if isinstance(file, Path) else file
         try:
             with _located(""):
                 self._archive = zipfile.ZipFile(stream)
-            self.headers = dict(self._headers())
+            self.headers = dict(self._headers(most))
         except BaseException:
             stream.close()
             raise
@@ -86,11 +87,11 @@ class NpzFile:
                 raise NpzError(name, "more data than its header says")
         return array
 
-    def _headers(self) -> Iterator[tuple[str, ArrayHeader]]:
+    def _headers(self, most: int) -> Iterator[tuple[str, ArrayHeader]]:
         seen: set[str] = set()
         total = sum(entry.file_size for entry in self._archive.infolist())
-        if total > LARGEST:
-            raise NpzError("", f"its arrays take {total} bytes; at most {LARGEST} are read")
+        if total > most:
+            raise NpzError("", f"its arrays take {total} bytes; at most {most} are read")
         for entry in self._archive.infolist():
             name = entry.filename.removesuffix(SUFFIX)
             if name in seen:

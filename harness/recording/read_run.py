@@ -12,6 +12,8 @@ from typing import Any, cast, get_type_hints
 import numpy as np
 
 from harness.core.errors import HarnessError, Problem, SpecError
+from harness.core.files import read_at_most
+from harness.core.limits import RUN_DOCUMENT
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.core.untrusted_json import parse_json
@@ -86,7 +88,7 @@ def read_run(folder: Path) -> StoredRun:
 
 def _read_text(path: Path) -> str:
     with _damaged(path):
-        return path.read_bytes().decode("utf-8")
+        return read_at_most(path, RUN_DOCUMENT).decode("utf-8")
 
 
 def _read_document(path: Path) -> dict[str, Any]:

@@ -6,15 +6,13 @@ import re
 from functools import cache
 
 from harness.core.errors import RobotError, SpecError
+from harness.core.limits import COLLADA_NODES
 from harness.language.files.xml_file import XmlElement, parse_xml
 
 HEADER = 20_000  # The first bytes of a file, which have its unit
 
 UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([0-9.eE+-]+)\s*[\"']")
 ROOT = b"<COLLADA"
-
-MOST_INSTANCES = 100_000
-"""Largest number of nodes of a scene, where a node counts as often as it is repeated."""
 
 
 def metres_of_unit(content: bytes, name: str) -> float:
@@ -64,8 +62,8 @@ def refuse_unreadable(content: bytes, name: str) -> None:
         ]
         count = 1 + sum(map(instances, inside))
         open_nodes.remove(id(node))
-        if count > MOST_INSTANCES:
-            raise RobotError(f"{name} repeats its nodes more than {MOST_INSTANCES} times")
+        if count > COLLADA_NODES:
+            raise RobotError(f"{name} repeats its nodes more than {COLLADA_NODES} times")
         return count
 
     try:

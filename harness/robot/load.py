@@ -13,10 +13,11 @@ from typing import Any
 from harness.core.errors import RobotOptionError
 from harness.core.files import is_dir, is_file
 from harness.core.geometry import CollisionMode
+from harness.core.limits import XML_FILE
 from harness.core.registry import broken_plugins
 from harness.core.resources import data_folder
 from harness.core.suggestion import did_you_mean
-from harness.language.files.xml_file import LARGEST_FILE, XmlElement, read_xml
+from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.files.yaml_file import read_text
 from harness.language.scenario import RobotSpec
 from harness.robot.assumed_limits import with_assumed_limits_listed, with_plausible_efforts
@@ -273,7 +274,7 @@ def _read(folder: Path, facts: RobotYaml, variant: str, args: Mapping[str, Any])
 
 
 def _text(path: Path) -> str:
-    return read_text(path, kind="robot description", largest=LARGEST_FILE)
+    return read_text(path, kind="robot description", largest=XML_FILE)
 
 
 def _rendered(

@@ -22,6 +22,7 @@ import numpy as np
 from harness.core.errors import RobotError
 from harness.core.geometry import Hull, Mesh, Shape
 from harness.core.inputs import read_input
+from harness.core.limits import MESH_FILE, READING_MEMORY
 from harness.core.memory import limited_memory
 from harness.core.solids import solid_of
 from harness.core.types import FloatArray, IntArray
@@ -31,14 +32,10 @@ from harness.robot.decomposition.convex_parts import Decomposition, stored_decom
 
 SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".glb")
 KINDS = "STL, OBJ, DAE, PLY or GLB"
-LARGEST_FILE = 64_000_000  # Largest mesh file [bytes]
 
 FLAT = 1e-6
 """Thickness below which a mesh is flat, as a share of its extent: coordinates in single precision
 are rounded to a tenth of that. Qhull crashes on points within 1e-8."""
-
-MEMORY = 1_000_000_000
-"""Most memory for reading a file; one of the largest size takes about as much [bytes]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +65,13 @@ def read_triangles(geometry: Mesh) -> Triangles:
     if kind == "dae":
         refuse_unreadable(content, path.name)
     try:
-        with limited_memory(MEMORY):
+        with limited_memory(READING_MEMORY):
             vertices, faces = _read(content, kind)
             vertices = vertices * scale
             corners = vertices[faces]
     except MemoryError as error:
-        raise RobotError(f"{path.name} takes more than {MEMORY / 1e9:g} GB to read") from error
+        most = f"{READING_MEMORY / 1e9:g} GB"
+        raise RobotError(f"{path.name} takes more than {most} to read") from error
     except Exception as error:  # every format's reader has errors of its own
         raise RobotError(
             f"{path.name} cannot be read: it is damaged or not in {kind.upper()} format"
@@ -245,8 +243,8 @@ def metres_per_unit(geometry: Mesh) -> float:
             header = file.read(HEADER)
     except OSError as error:
         raise RobotError(f"{path.name} cannot be read: {error.strerror}") from error
-    if size > LARGEST_FILE:
-        largest = LARGEST_FILE / 1e6
+    if size > MESH_FILE:
+        largest = MESH_FILE / 1e6
         raise RobotError(f"{path.name} has {size / 1e6:.0f} MB; at most {largest:.0f} MB are read")
     if suffix != ".dae":
         return 1.0

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.core.errors import Problem, SpecError
+from harness.core.files import read_at_most
+from harness.core.limits import YAML_FILE
 from harness.suite.discovery import SUFFIX
 from harness.suite.variation import ONE_CASE, Variation
 
@@ -43,7 +45,7 @@ class ScenarioHeader:
 def source_lines(file: Path) -> list[str]:
     """Lines of a file, to quote from; none of one that cannot be read."""
     try:
-        return file.read_text(encoding="utf-8").splitlines()
+        return read_at_most(file, YAML_FILE).decode("utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
         return []
 

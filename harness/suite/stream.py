@@ -16,6 +16,7 @@ from pydantic_core import from_json
 
 from harness.core.errors import HarnessError
 from harness.core.inputs import content_hash
+from harness.core.limits import RESULTS_LINE
 from harness.recording.older_runs import in_present_form
 from harness.recording.run import Outcome
 from harness.reporting.json_text import compact_json
@@ -307,7 +308,7 @@ class Stream:
 def lines_of(file: BinaryIO) -> Iterator[tuple[Place, bytes]]:
     """The lines of a file from where it stands, without one that has no end."""
     offset = file.tell()
-    for line in file:
+    for line in iter(lambda: file.readline(RESULTS_LINE), b""):
         if line.endswith(b"\n"):
             yield Place(offset, len(line)), line
         offset += len(line)

@@ -1,8 +1,9 @@
 import pytest
 
 from harness.core.errors import SpecError
+from harness.core.limits import YAML_FILE
 from harness.language.files.source import Source
-from harness.language.files.yaml_file import LARGEST_FILE, parse_value, parse_yaml, read_text
+from harness.language.files.yaml_file import parse_value, parse_yaml, read_text
 
 
 def parse(text):
@@ -164,7 +165,7 @@ def test_aliases_that_deepen_are_bounded():
 
 def test_a_missing_file_a_folder_and_a_huge_file_are_problems(tmp_path):
     huge = tmp_path / "huge.yaml"
-    huge.write_bytes(b"#" * (LARGEST_FILE + 1))
+    huge.write_bytes(b"#" * (YAML_FILE + 1))
     for path, message in (
         (tmp_path / "none.yaml", "there is no such file"),
         (tmp_path, "this is a folder"),

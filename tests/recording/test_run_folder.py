@@ -6,6 +6,7 @@ import zipfile
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -45,6 +46,7 @@ EXPECTED = [
 
 TRIANGLE = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.25, 0.0]])
 RED = (1.0, 0.0, 0.0, 1.0)
+PICTURE = cv2.imencode(".png", np.zeros((2, 3, 3), np.uint8))[1].tobytes()
 
 
 def full_run():
@@ -127,7 +129,7 @@ def full_run():
             ),
         ),
         files={
-            "cameras/eye/1.png": b"picture",
+            "cameras/eye/1.png": PICTURE,
             "cameras/eye/all.webm": b"film",
         },
     )

@@ -11,14 +11,9 @@ from xml.parsers import expat
 
 from harness.core.errors import Problem, SpecError
 from harness.core.inputs import read_input
+from harness.core.limits import XML_ATTRIBUTES, XML_ELEMENTS, XML_FILE, XML_LEVELS
 from harness.language.files.source import Place, Source
 
-LARGEST_FILE = 16_000_000  # bytes; the largest robot descriptions are under 1 MB
-
-MOST_ELEMENTS = 200_000
-MOST_ATTRIBUTES = 200  # of one element; MuJoCo's reader takes hours for a million
-
-DEEPEST = 200
 QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")
 """Root elements of robots and worlds. A scenario can name any file of the machine, so messages
 quote only files that are of these kinds."""
@@ -107,7 +102,7 @@ def read_bounded(path: Path) -> bytes:
     """A file's bytes.
 
     Raises:
-        SpecError: It cannot be read, or has more than LARGEST_FILE bytes.
+        SpecError: It cannot be read, or has more than XML_FILE bytes.
     """
     name = str(path)
     try:
@@ -115,11 +110,11 @@ def read_bounded(path: Path) -> bytes:
             reason = "is no file" if path.exists() else "does not exist"
             raise SpecError([Problem(name, 0, 0, reason)])
         size = path.stat().st_size
-        if size <= LARGEST_FILE:
+        if size <= XML_FILE:
             return read_input(path)
     except OSError as error:
         raise SpecError([Problem(name, 0, 0, f"cannot be read: {error.strerror}")]) from error
-    message = f"is too large: {size / 1e6:.0f} MB, and at most {LARGEST_FILE / 1e6:.0f} are read"
+    message = f"is too large: {size / 1e6:.0f} MB, and at most {XML_FILE / 1e6:.0f} are read"
     raise SpecError([Problem(name, 1, 1, message)])
 
 
@@ -194,12 +189,12 @@ class _Reader:
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
-        if self._count > MOST_ELEMENTS:
-            self._refuse(f"more than {MOST_ELEMENTS} elements")
-        if len(attributes) > MOST_ATTRIBUTES:
-            self._refuse(f"<{tag}> has more than {MOST_ATTRIBUTES} attributes")
-        if len(self._open) >= DEEPEST:
-            self._refuse(f"elements are nested more than {DEEPEST} deep")
+        if self._count > XML_ELEMENTS:
+            self._refuse(f"more than {XML_ELEMENTS} elements")
+        if len(attributes) > XML_ATTRIBUTES:
+            self._refuse(f"<{tag}> has more than {XML_ATTRIBUTES} attributes")
+        if len(self._open) >= XML_LEVELS:
+            self._refuse(f"elements are nested more than {XML_LEVELS} deep")
         here = self._here(tag)
         place = Place(here.source, here.line, here.column + 1, len(tag))  # after the bracket
         element = XmlElement(tag, attributes, place)

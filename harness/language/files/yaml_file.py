@@ -20,12 +20,11 @@ import yaml
 
 from harness.core.errors import Problem, SpecError
 from harness.core.inputs import read_input
+from harness.core.limits import YAML_FILE, YAML_LEVELS, YAML_VALUES
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
 from harness.language.files.yaml_scalars import scalar_of, scalar_of_yaml_11
-from harness.language.files.yaml_wording import DEEPEST, TOO_DEEP, syntax_problem
+from harness.language.files.yaml_wording import TOO_DEEP, syntax_problem
 
-LARGEST_FILE = 2_000_000  # [bytes]
-LARGEST_TREE = 100_000  # values, aliases expanded
 UNITS = {
     "!radians": 1.0,
     "!degrees": math.pi / 180,
@@ -39,7 +38,7 @@ UNITS = {
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def read_text(path: Path, *, kind: str = "YAML file", largest: int = LARGEST_FILE) -> str:
+def read_text(path: Path, *, kind: str = "YAML file", largest: int = YAML_FILE) -> str:
     """The text of a file.
 
     Args:
@@ -296,10 +295,10 @@ class _Composer:
             return 0
 
     def _bound(self, place: Place, depth: int) -> None:
-        if depth > DEEPEST:
+        if depth > YAML_LEVELS:
             raise SpecError([place.problem(TOO_DEEP)])
-        if self._count > LARGEST_TREE:
-            message = f"more than {LARGEST_TREE} values, aliases expanded"
+        if self._count > YAML_VALUES:
+            message = f"more than {YAML_VALUES} values, aliases expanded"
             raise SpecError([place.problem(message)])
 
     def _place(self, event: Any) -> Place:

@@ -7,11 +7,10 @@ import re
 import yaml
 
 from harness.core.errors import Problem
+from harness.core.limits import YAML_LEVELS
 from harness.language.files.source import Place, Source
 
-DEEPEST = 50  # most levels of lists and mappings in each other
-
-TOO_DEEP = f"nested more than {DEEPEST} levels deep"
+TOO_DEEP = f"nested more than {YAML_LEVELS} levels deep"
 
 PLAINER = (
     ("mapping values are not allowed", "a second `:` here; quote text that contains `: `"),

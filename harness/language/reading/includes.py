@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from harness.core.errors import Problem, SpecError
+from harness.core.limits import YAML_VALUES
 from harness.core.suggestion import did_you_mean
 from harness.language.files.source import Entry, Located, Place, Source, walk
-from harness.language.files.yaml_file import LARGEST_TREE, parse_yaml, read_text
+from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.language import PLACEHOLDER_VERB
 from harness.language.reading.params import PARAMS, escaped, filled, mapped
 from harness.language.reading.paths import paths_from
@@ -156,8 +157,8 @@ class _Expander:
 
     def _bound(self, steps: Located, file: Located) -> None:
         self.count += sum(1 for _ in walk(steps))
-        if self.count > LARGEST_TREE:
-            message = f"the included files hold more than {LARGEST_TREE} values"
+        if self.count > YAML_VALUES:
+            message = f"the included files hold more than {YAML_VALUES} values"
             raise SpecError([file.place.problem(message)])
 
 

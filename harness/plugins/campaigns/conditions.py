@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, BinaryIO
 
 from harness.core.files import is_dir, path_exists, replaced, writing
+from harness.core.limits import RESULTS_LINE
 from harness.core.untrusted_json import parse_json
 from harness.reporting.json_text import compact_json
 from harness.reporting.suite.columns import Columns
@@ -117,7 +118,7 @@ class Conditions:
         hasher = hashlib.sha256()
         self._file = path.open("rb")
         weakref.finalize(self, self._file.close)
-        first = parse_json(self._file.readline())
+        first = parse_json(self._file.readline(RESULTS_LINE))
         if not isinstance(first, dict) or first.get("format") != FORMAT:
             raise UsageError(f"'{path}' is not of the format {FORMAT}")
         for place, line in lines_of(self._file):

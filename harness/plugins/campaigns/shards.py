@@ -10,7 +10,8 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from harness.core.files import replaced, writing
+from harness.core.files import read_at_most, replaced, writing
+from harness.core.limits import RESULTS_DOCUMENT
 from harness.core.untrusted_json import parse_json
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
@@ -197,7 +198,7 @@ def read_shard_records(folders: Sequence[Path]) -> list[ShardRecord]:
 def _read(folder: Path) -> ShardRecord:
     path = folder / FILE
     try:
-        entry = parse_json(path.read_bytes())
+        entry = parse_json(read_at_most(path, RESULTS_DOCUMENT))
         if entry.pop("format") != FORMAT:
             raise UsageError(f"'{path}' is not of the format {FORMAT}")
         return from_plain(entry, ShardRecord)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, cast
 
+from harness.core.files import read_at_most
+from harness.core.limits import RESULTS_DOCUMENT
 from harness.core.untrusted_json import parse_json
 from harness.suite.discovery import UsageError
 
@@ -19,7 +21,7 @@ def read_document(file: Path, format_name: str, advice: str) -> dict[str, Any]:
         UsageError: The file cannot be read, or has another format.
     """
     try:
-        document = parse_json(file.read_bytes())
+        document = parse_json(read_at_most(file, RESULTS_DOCUMENT))
     except OSError as error:
         raise UsageError(f"'{file}' cannot be read: {error.strerror}; {advice}") from error
     except ValueError as error:

@@ -13,10 +13,8 @@ from typing import Any
 
 from harness.core.errors import HarnessError
 from harness.core.files import replaced
+from harness.core.limits import MCP_TEXT
 from harness.suite.discovery import bundled_scenarios
-
-MOST_TEXT = 200_000  # characters of an answer or a written file: what a model reads at once
-
 
 YAML = (".yaml", ".yml")
 
@@ -75,7 +73,7 @@ class Workspace:
             raise RefusedError(f"'{name}': only .yaml files are read")
         try:
             with path.open(encoding="utf-8") as stream:
-                return shortened(stream.read(MOST_TEXT + 1))
+                return shortened(stream.read(MCP_TEXT + 1))
         except (OSError, UnicodeDecodeError) as error:
             raise RefusedError(f"cannot read '{name}': {error}") from error
 
@@ -88,8 +86,8 @@ class Workspace:
         path = self.inside(name)
         if path.suffix not in YAML:
             raise RefusedError(f"'{name}': only .yaml files are written")
-        if len(text) > MOST_TEXT:
-            raise RefusedError(f"the text has {len(text)} characters; at most {MOST_TEXT}")
+        if len(text) > MCP_TEXT:
+            raise RefusedError(f"the text has {len(text)} characters; at most {MCP_TEXT}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with replaced(path) as stream:
@@ -131,4 +129,4 @@ class Workspace:
 
 def shortened(text: str) -> str:
     """The text, cut where it is longer than an answer may be."""
-    return text if len(text) <= MOST_TEXT else text[:MOST_TEXT] + "\n..."
+    return text if len(text) <= MCP_TEXT else text[:MCP_TEXT] + "\n..."

@@ -10,7 +10,9 @@ import cv2
 import numpy as np
 
 from harness.core.camera import Camera
+from harness.core.limits import PICTURE_PIXELS
 from harness.recording.film import decoded_film
+from harness.recording.npz_file import NpzFile
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.reporting.rosbag.frames import optical_frames
@@ -86,8 +88,8 @@ def _raw(content: bytes, camera: Camera, header: Any) -> Any:
 
 
 def _depth(run: Run, capture: CaptureRecord, header: Any) -> Any:
-    with np.load(io.BytesIO(run.files[capture.files["depth"]]), allow_pickle=False) as archive:
-        return image(archive["depth"].astype("<f4"), header)
+    with NpzFile(io.BytesIO(run.files[capture.files["depth"]]), 4 * PICTURE_PIXELS) as archive:
+        return image(archive.read("depth").astype("<f4"), header)
 
 
 def image(picture: np.ndarray[Any, Any], header: Any) -> Any:

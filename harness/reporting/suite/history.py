@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
 
+from harness.core.files import read_at_most
+from harness.core.limits import RESULTS_DOCUMENT
 from harness.core.untrusted_json import parse_json
 from harness.reporting.suite.record import FORMAT
 
 MOST_RUNS = 30
-MOST_BYTES = 100_000_000
 
 Key = tuple[str, str]  # file and name of a case
 
@@ -34,9 +35,7 @@ def _runs(folder: Path) -> Iterator[dict[Key, float | None]]:
     files = {*folder.glob("*.json"), *folder.glob("**/results.json")}
     for file in sorted(files):
         try:
-            if file.stat().st_size > MOST_BYTES:
-                continue
-            document = cast("dict[str, Any]", parse_json(file.read_bytes()))
+            document = cast("dict[str, Any]", parse_json(read_at_most(file, RESULTS_DOCUMENT)))
             if document["format"] != FORMAT:
                 continue
             yield {(case["file"], case["case"]): _share(case) for case in document["cases"]}

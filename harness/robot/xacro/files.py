@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.files import is_file
+from harness.core.limits import XACRO_FILES
 from harness.language.files.source import Located, Source
 from harness.language.files.xml_file import XmlElement, parse_xml, read_bounded
 from harness.language.files.yaml_file import parse_ros_yaml, read_text
@@ -16,7 +17,6 @@ from harness.robot.packages import PackagePath
 from harness.robot.xacro.values import Budget, ExpressionError, YamlDict
 
 DEEPEST_INCLUDE = 40
-MOST_BYTES_READ = 64_000_000
 STEPS_OF_VALUE = 5
 """Steps that a value of a YAML file counts as; reading it takes as long as so many."""
 
@@ -94,8 +94,8 @@ class Files:
             raise ExpressionError(f"files include each other more than {DEEPEST_INCLUDE} deep")
         content = read_bounded(path)
         self._bytes += len(content)
-        if self._bytes > MOST_BYTES_READ:
-            raise ExpressionError(f"more than {MOST_BYTES_READ / 1e6:.0f} MB are included")
+        if self._bytes > XACRO_FILES:
+            raise ExpressionError(f"more than {XACRO_FILES / 1e6:.0f} MB are included")
         root = parse_xml(content, str(path), is_mixed=True)
         self.open.append(path)
         return root
@@ -110,8 +110,8 @@ class Files:
         path = self.named(name)
         text = read_text(path)
         self._bytes += len(text)
-        if self._bytes > MOST_BYTES_READ:
-            raise ExpressionError(f"more than {MOST_BYTES_READ / 1e6:.0f} MB are included")
+        if self._bytes > XACRO_FILES:
+            raise ExpressionError(f"more than {XACRO_FILES / 1e6:.0f} MB are included")
         return self._plain(parse_ros_yaml(text, Source.of_text(str(path), text), number))
 
     def _plain(self, item: Located) -> Any:

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-MOST_STEPS = 1_000_000
-"""Steps of one rendering: parts of expressions, elements, items of lists. A PR2 needs 90,000."""
+from harness.core.limits import XACRO_STEPS
 
 LONGEST_TEXT = 100_000  # characters that an expression may make
 MOST_ITEMS = 10_000  # of a list that an expression makes
@@ -56,7 +55,7 @@ class Budget:
     """The steps that are left of a rendering."""
 
     def __init__(self) -> None:
-        self.left = MOST_STEPS
+        self.left = XACRO_STEPS
 
     def spend(self, steps: int) -> None:
         """Count steps.

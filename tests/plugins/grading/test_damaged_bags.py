@@ -202,7 +202,7 @@ def test_a_recording_larger_than_what_is_kept_is_refused_while_it_is_read(whole,
             read.append(message.topic)
             yield message
 
-    monkeypatch.setattr(reader, "MOST_NUMBERS", 5_000)
+    monkeypatch.setattr(reader, "BAG_NUMBERS", 5_000)
     monkeypatch.setattr(reader, "messages", counted)
     with pytest.raises(SpecError, match="holds more than 5000 numbers of joints and frames"):
         reader.read_bag(whole, GAZEBO)

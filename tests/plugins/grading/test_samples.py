@@ -202,7 +202,7 @@ def test_a_distance_is_known_where_the_joints_are(tmp_path):
 
 
 def test_a_recording_with_too_many_times_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(recorded_run, "MOST_NUMBERS", 5000)
+    monkeypatch.setattr(recorded_run, "BAG_SIGNALS", 5000)
     with pytest.raises(SpecError, match="has messages at 301 different times"):
         grade(recorded(joints=10, box=100), tmp_path, STANDS)
 

@@ -14,7 +14,7 @@ from harness.core.quantity import split_quantity
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.suite.cause import cause_of
 from harness.suite.discovery import UsageError
-from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of
+from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of, lines_of
 
 DATABASE = "results.sqlite"
 VERSION = 4
@@ -92,10 +92,8 @@ def _update(connection: sqlite3.Connection, journal: Path) -> None:
             start = count = 0
         file.seek(start)
         batch: list[StreamEntry] = []
-        for line in file:
-            if not line.endswith(b"\n"):
-                break  # it is being written
-            start += len(line)
+        for place, line in lines_of(file):
+            start = place.offset + place.length
             entry = entry_of(line)
             if entry is not None:
                 batch.append(entry)

@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from harness.core.errors import SpecError
+from harness.core.limits import MESH_FILE, MJCF_COPIES, MJCF_FILES
 from harness.language.files.xml_file import XmlElement, read_xml
-from harness.robot.mesh_file import LARGEST_FILE
 from harness.robot.packages import NotFoundError, PackagePath
 
 DEEPEST_INCLUDE = 20
-MOST_FILES = 200
 ASSETS = ("mesh", "hfield")
 
 USER_DATA = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
@@ -32,8 +31,6 @@ The height of a cube's texture covers six sides.
 
 NAMES = ("name", "class", "childclass", "model", "body", "mesh", "joint", "material")
 """Attributes that are names, so that `nan` is one."""
-
-MOST_COPIES = 1000  # Most copies by all `<replicate>` together
 
 UNUSED = {
     "composite": "deformable bodies are not read",
@@ -102,8 +99,8 @@ def _include(
             item.refuse(f"files include each other in a circle: {circle}", at="file")
         if len(files) > DEEPEST_INCLUDE:
             item.refuse(f"files include each other more than {DEEPEST_INCLUDE} deep", at="file")
-        if len(roots) >= MOST_FILES:
-            item.refuse(f"more than {MOST_FILES} files are included", at="file")
+        if len(roots) >= MJCF_FILES:
+            item.refuse(f"more than {MJCF_FILES} files are included", at="file")
         _include(inside, packages, files, roots)
 
 
@@ -113,8 +110,8 @@ def _check(item: XmlElement, key: str, folder: Path, packages: PackagePath) -> N
     except NotFoundError as error:
         item.refuse(f"{item.tag} {error}", at=key)
     size = path.stat().st_size
-    if size > LARGEST_FILE:
-        most = LARGEST_FILE / 1e6
+    if size > MESH_FILE:
+        most = MESH_FILE / 1e6
         item.refuse(f"{path.name} has {size / 1e6:.0f} MB; at most {most:.0f} MB are read", at=key)
 
 
@@ -139,8 +136,8 @@ def _refuse_unbounded(roots: Sequence[XmlElement]) -> None:
                 item.refuse(f"<{item.tag}> has a {name} above {most}", at=name)
         if item.tag == "replicate":
             copies *= max(_numbers(item.get("count")), default=1.0)
-            if copies > MOST_COPIES:
-                item.refuse(f"more than {MOST_COPIES} copies are made", at="count")
+            if copies > MJCF_COPIES:
+                item.refuse(f"more than {MJCF_COPIES} copies are made", at="count")
 
 
 def _numbers(text: str) -> list[float]:

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from harness.core.errors import Problem, SpecError
 from harness.core.geometry import Rgba
+from harness.core.limits import SCENE_CORNERS, SCENE_FILE, SCENE_SHAPES
 from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.core.world import MOST_OBJECTS
 from harness.language.files.source import Place, Source
@@ -30,9 +31,6 @@ from harness.world.imported import ImportedWorld
 from harness.world.notes import Notes
 
 SHAPES = ("box", "sphere", "cylinder", "mesh", "plane")
-LARGEST_FILE = 8_000_000  # [bytes]
-MOST_SHAPES = 10_000
-MOST_CORNERS = 200_000  # most vertices of one mesh, and most triangles: the limit of the physics
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +57,7 @@ def load_scene(path: Path) -> Scene:
 
 class _Reader:
     def __init__(self, path: Path) -> None:
-        text = read_text(path, kind="MoveIt scene", largest=LARGEST_FILE)
+        text = read_text(path, kind="MoveIt scene", largest=SCENE_FILE)
         self._path = path
         self._words = TokenReader(text, Source.of_text(str(path), text))
         self._notes = Notes()
@@ -112,9 +110,9 @@ class _Reader:
 
     def _object(self, name: str, place: Place, has_pose: bool) -> ObjectSpec | None:
         pose = self._pose() if has_pose else SE3.identity()
-        shapes = [self._shape(name) for _ in range(self._count("shapes", MOST_SHAPES))]
+        shapes = [self._shape(name) for _ in range(self._count("shapes", SCENE_SHAPES))]
         if has_pose:
-            for _ in range(self._count("subframes", MOST_SHAPES)):
+            for _ in range(self._count("subframes", SCENE_SHAPES)):
                 _, at = self._words.next()
                 self._pose()
                 self._notes.add(at, "a subframe of an object is left out")
@@ -168,8 +166,8 @@ class _Reader:
         return plane_pose(coefficients)
 
     def _mesh(self, name: str) -> MeshSpec:
-        vertices = self._count("vertices", MOST_CORNERS)
-        triangles = self._count("triangles", MOST_CORNERS)
+        vertices = self._count("vertices", SCENE_CORNERS)
+        triangles = self._count("triangles", SCENE_CORNERS)
         corners = np.array([self._numbers(3) for _ in range(vertices)]).reshape(-1, 3)
         faces: list[list[int]] = []
         for _ in range(triangles):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from harness.core.errors import SpecError, collected
 from harness.core.files import is_dir
+from harness.core.limits import SDF_MODELS
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath, model_file
@@ -17,7 +18,6 @@ from harness.world.notes import Notes
 OLDEST, NEWEST = (1, 4), (1, 11)
 NO_COLONS = (1, 8)  # the version from which `::` is in no name
 
-MOST_MODELS = 2000
 MOST_INCLUDES_DEEP = 30
 MERGED = "_merged__"
 
@@ -169,8 +169,8 @@ class SdfTree:
 
     def _add(self, parent: SdfScope, scope: SdfScope, files: tuple[Path, ...]) -> None:
         self._count += 1
-        if self._count > MOST_MODELS:
-            scope.element.refuse(f"more than {MOST_MODELS} models")
+        if self._count > SDF_MODELS:
+            scope.element.refuse(f"more than {SDF_MODELS} models")
         note_unread_elements(scope.element, "model", self.notes)
         parent.nested[scope.name] = scope
         self._fill(scope, files)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
+from harness.core.limits import BAG_NUMBERS, CSV_FILE, READING_MEMORY
+from harness.core.memory import limited_memory
 from harness.language.files.yaml_file import read_text
 from harness.plugins.grading.bag.content import BagContent, BagTopics, RecordedTrack
 from harness.plugins.grading.bag.message_files import bag_error
 
 TIMES = ("time", "t", "timestamp", "time_s", "seconds")
-LARGEST = 200 * 10**6  # [bytes]; an hour of ten joints at 100 Hz has 40 MB
 LATEST = 9e9
 """Latest time [s], so that nanoseconds fit into 64 bits."""
 
@@ -33,18 +35,40 @@ def read_joint_csv(
     Raises:
         SpecError: It is no such table; the first line that is not is named.
     """
-    text = read_text(path, kind="CSV of joint values", largest=LARGEST)
+    text = read_text(path, kind="CSV of joint values", largest=CSV_FILE)
+    try:
+        with limited_memory(READING_MEMORY):
+            return _read(text, path, topics, arm_joints, joints)
+    except MemoryError:
+        most = f"{READING_MEMORY / 1e9:g} GB"
+        raise bag_error(path, f"takes more than {most} to read") from None
+
+
+def _rows(text: str, path: Path) -> Iterator[tuple[int, list[str]]]:
+    """The rows that have something, with the numbers of their lines."""
     separator = next((each for each in ",;\t" if each in text), ",")
     reader = csv.reader(text.splitlines(), delimiter=separator)
-    rows = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
-    if not rows:
+    try:
+        for row in reader:
+            if any(cell.strip() for cell in row):
+                yield reader.line_num, row
+    except csv.Error as error:
+        raise SpecError([Problem(str(path), reader.line_num, 1, f"is no CSV: {error}")]) from error
+
+
+def _read(
+    text: str, path: Path, topics: BagTopics, arm_joints: Sequence[str], joints: Sequence[str]
+) -> BagContent:
+    rows = _rows(text, path)
+    first = next(rows, None)
+    if first is None:
         raise bag_error(path, "the file is empty")
-    names = [cell.strip() for cell in rows[0][1]]
+    names = [cell.strip() for cell in first[1]]
     has_names = any(_number(cell) is None for cell in names if cell)
     if has_names:
         names = [_joint(name, topics) for name in names]
-        rows = rows[1:]
     else:
+        rows = chain([first], rows)
         names = _names_of(len(names), path, arm_joints)
     time = next((i for i, name in enumerate(names) if name.lower() in TIMES), None)
     places = [i for i, name in enumerate(names) if name in joints]
@@ -64,8 +88,10 @@ def read_joint_csv(
         track.stamps.append(round(second * 1e9))
         unknown = [math.nan] * (2 * len(places))
         track.numbers.extend([*(value for value in values if value is not None), *unknown])
+        if len(track.numbers) > BAG_NUMBERS:
+            raise bag_error(path, f"holds more than {BAG_NUMBERS} numbers of joints")
     content.joints[tuple(names[i] for i in places)] = track
-    content.topics[topics.joint_states] = ("sensor_msgs/msg/JointState", len(rows))
+    content.topics[topics.joint_states] = ("sensor_msgs/msg/JointState", len(track.logged))
     if not has_names:
         content.notes.append(f"the columns have no names; they are read as {', '.join(names)}")
     return content

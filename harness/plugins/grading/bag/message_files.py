@@ -16,8 +16,7 @@ from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
 from harness.core.errors import HarnessError, Problem, SpecError
-
-LARGEST_RECORD = 256 * 2**20  # largest unpacked message or chunk of messages [bytes]
+from harness.core.limits import BAG_RECORD, BAG_TOPICS
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def mcap_messages(file: Path, named: Path) -> Iterator[RawMessage]:
 
 def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:
     """All records; chunks are unpacked within bounds."""
-    reader = StreamReader(stream, emit_chunks=True, record_size_limit=LARGEST_RECORD)
+    reader = StreamReader(stream, emit_chunks=True, record_size_limit=BAG_RECORD)
     for record in reader.records:
         if isinstance(record, Chunk):
             yield from breakup_chunk(_unpacked_chunk(record, named), validate_crc=True)
@@ -107,10 +106,8 @@ def _mcap_records(stream: Any, named: Path) -> Iterator[Any]:
 
 def _unpacked_chunk(chunk: Chunk, named: Path) -> Chunk:
     size = chunk.uncompressed_size
-    if size > LARGEST_RECORD:
-        raise bag_error(
-            named, f"has a chunk of {size} bytes; at most {LARGEST_RECORD} bytes are read"
-        )
+    if size > BAG_RECORD:
+        raise bag_error(named, f"has a chunk of {size} bytes; at most {BAG_RECORD} bytes are read")
     match chunk.compression:
         case "":
             data = chunk.data
@@ -121,9 +118,6 @@ def _unpacked_chunk(chunk: Chunk, named: Path) -> Chunk:
         case other:
             raise bag_error(named, f"has chunks compressed by '{other}'; known: zstd, lz4")
     return replace(chunk, compression="", data=data)
-
-
-MOST_TOPICS = 10_000
 
 
 def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
@@ -139,7 +133,7 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         with closing(sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)) as database:
             database.text_factory = _text
             database.execute("PRAGMA trusted_schema = OFF")
-            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
+            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, BAG_RECORD)
             kinds = dict(database.execute("SELECT name, type FROM sqlite_master"))
             if any(kinds.get(name) != "table" for name in ("topics", "messages")):
                 raise bag_error(
@@ -148,7 +142,7 @@ def sqlite_messages(file: Path, named: Path) -> Iterator[RawMessage]:
             topics = {
                 number: (str(name), str(msgtype))
                 for number, name, msgtype in database.execute(
-                    "SELECT id, name, type FROM topics LIMIT ?", (MOST_TOPICS,)
+                    "SELECT id, name, type FROM topics LIMIT ?", (BAG_TOPICS,)
                 )
             }
             rows = database.execute("SELECT topic_id, timestamp, data FROM messages ORDER BY id")

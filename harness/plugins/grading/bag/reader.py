@@ -9,12 +9,12 @@ from typing import Any
 
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from harness.core.limits import BAG_NUMBERS
 from harness.core.untrusted_json import parse_json
 from harness.plugins.grading.bag.content import BagContent, BagTopics, RecordedTrack, Tracks
 from harness.plugins.grading.bag.message_files import RawMessage, bag_error
 from harness.plugins.grading.bag.storage import bag_files, messages
 
-MOST_NUMBERS = 20_000_000  # of a recording (160 MB); an hour of ten joints at 100 Hz is half
 LATEST = 2**63 - 1  # latest time of a message [ns]
 NEW_KEY = 200  # numbers that a new frame or set of joints counts for, besides its characters
 
@@ -81,10 +81,10 @@ class _Reader:
         except Exception as error:  # noqa: BLE001 - a damaged message may raise anything
             reason = str(error) if isinstance(error, _Unusable) else "it is damaged"
             self._malformed.setdefault(message.topic, []).append(reason)
-        if self._kept > MOST_NUMBERS:
+        if self._kept > BAG_NUMBERS:
             raise bag_error(
                 self._path,
-                f"holds more than {MOST_NUMBERS} numbers of joints and frames",
+                f"holds more than {BAG_NUMBERS} numbers of joints and frames",
                 "cut out what is to be graded, with `ros2 bag convert` for example",
             )
 

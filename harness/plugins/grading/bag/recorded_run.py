@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from harness.core.limits import BAG_SIGNALS
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.plugins.grading.bag.clocks import SAME_CLOCK, Timeline
@@ -51,9 +52,6 @@ JOINT_SIGNALS = (
     "joint_commands",
     "joint_command_velocities",
 )
-MOST_NUMBERS = 60_000_000
-"""Most numbers of all signals of a run (480 MB); ten minutes of twelve joints at 500 Hz and of five
-objects at 100 Hz need 40 million."""
 FINDING, DOUBT = "recording", "doubt"
 
 
@@ -137,7 +135,7 @@ class _Recording:
     def _refuse_too_many(self) -> None:
         known = self._known
         bodies = len(self._shapes) + len(known.frames) + 1
-        if len(self._times) * (5 * len(known.description.joint_names) + 7 * bodies) > MOST_NUMBERS:
+        if len(self._times) * (5 * len(known.description.joint_names) + 7 * bodies) > BAG_SIGNALS:
             hint = "cut out what is to be graded, with `ros2 bag convert` for example"
             message = f"has messages at {len(self._times)} different times"
             raise bag_error(self._path, message, hint)

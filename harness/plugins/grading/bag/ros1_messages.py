@@ -12,9 +12,8 @@ from typing import BinaryIO
 from lz4.frame import LZ4FrameDecompressor
 
 from harness.core.errors import HarnessError
+from harness.core.limits import BAG_HEADER, BAG_RECORD, BAG_TOPICS
 from harness.plugins.grading.bag.message_files import (
-    LARGEST_RECORD,
-    MOST_TOPICS,
     RawMessage,
     bag_error,
 )
@@ -24,7 +23,6 @@ MESSAGE, CHUNK, CONNECTION = 2, 5, 7
 """Operation codes of the records that count; the others are the index."""
 
 RENAMED = {"tf/msg/tfMessage": "tf2_msgs/msg/TFMessage"}  # types that had another name
-LARGEST_HEADER = 2**20  # largest header of a record [bytes]; it has a handful of names and numbers
 
 Fields = Mapping[str, bytes]
 
@@ -53,7 +51,7 @@ def ros1_messages(file: Path, named: Path) -> Iterator[RawMessage]:
         try:
             for fields, data in _all_records(stream, named):
                 operation, number = fields["op"][0], fields.get("conn", b"")
-                if operation == CONNECTION and len(topics) < MOST_TOPICS:
+                if operation == CONNECTION and len(topics) < BAG_TOPICS:
                     kind = _fields(data)["type"].decode().replace("/", "/msg/")
                     topics[number] = (fields["topic"].decode(), RENAMED.get(kind, kind))
                 elif operation == MESSAGE:
@@ -81,11 +79,11 @@ def _all_records(stream: BinaryIO, named: Path) -> Iterator[tuple[Fields, bytes]
 
 def _records(stream: BinaryIO, named: Path) -> Iterator[tuple[Fields, bytes]]:
     while size := stream.read(4):
-        header = _read(stream, size, named, LARGEST_HEADER)
+        header = _read(stream, size, named, BAG_HEADER)
         yield _fields(header), _read(stream, stream.read(4), named)
 
 
-def _read(stream: BinaryIO, size: bytes, named: Path, largest: int = LARGEST_RECORD) -> bytes:
+def _read(stream: BinaryIO, size: bytes, named: Path, largest: int = BAG_RECORD) -> bytes:
     """As many bytes as the four before them say."""
     if len(size) < 4:
         raise _CutOffError
@@ -112,10 +110,8 @@ def _fields(header: bytes) -> Fields:
 
 def _unpacked(fields: Fields, data: bytes, named: Path) -> bytes:
     (size,) = struct.unpack("<I", fields["size"])
-    if size > LARGEST_RECORD:
-        raise bag_error(
-            named, f"has a chunk of {size} bytes; at most {LARGEST_RECORD} bytes are read"
-        )
+    if size > BAG_RECORD:
+        raise bag_error(named, f"has a chunk of {size} bytes; at most {BAG_RECORD} bytes are read")
     match fields["compression"]:
         case b"none":
             return data

@@ -12,8 +12,8 @@ import yaml
 import zstandard
 
 from harness.core.errors import Problem, SpecError
+from harness.core.limits import BAG_FILE, BAG_METADATA, BAG_RECORD
 from harness.plugins.grading.bag.message_files import (
-    LARGEST_RECORD,
     RawMessage,
     bag_error,
     mcap_messages,
@@ -25,8 +25,6 @@ from harness.plugins.grading.bag.ros1_messages import ros1_messages
 METADATA = "metadata.yaml"
 SUFFIXES = (".mcap", ".db3")
 ROS1 = ".bag"
-LARGEST_FILE = 16 * 2**30  # largest unpacked size of a file that is compressed as a whole [bytes]
-LARGEST_METADATA = 4 * 2**20  # [bytes]
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ def messages(files: BagFiles) -> Iterator[RawMessage]:
                 raise bag_error(path, "is empty")
             for message in READERS[_suffix(path)](file, path):
                 if files.has_packed_messages:
-                    data = unzstd(message.data, LARGEST_RECORD, path)
+                    data = unzstd(message.data, BAG_RECORD, path)
                     yield replace(message, data=data)
                 else:
                     yield message
@@ -91,8 +89,8 @@ READERS = {".mcap": mcap_messages, ".db3": sqlite_messages, ROS1: ros1_messages}
 
 def _of_metadata(folder: Path) -> BagFiles:
     file = folder / METADATA
-    if file.stat().st_size > LARGEST_METADATA:
-        raise bag_error(file, f"is larger than {LARGEST_METADATA // 2**20} MB")
+    if file.stat().st_size > BAG_METADATA:
+        raise bag_error(file, f"is larger than {BAG_METADATA // 2**20} MB")
     content = _plain_yaml(file)
     about: Any = content.get("rosbag2_bagfile_information") if isinstance(content, dict) else None
     names: Any = about.get("relative_file_paths") if isinstance(about, dict) else None
@@ -128,14 +126,14 @@ def _suffix(path: Path) -> str:
 
 def _unpacked(path: Path, place: Path) -> Path:
     """The unpacked copy of a file that is compressed as a whole."""
-    target, left = place / path.stem, LARGEST_FILE
+    target, left = place / path.stem, BAG_FILE
     try:
         with path.open("rb") as packed, target.open("wb") as plain:
             stream = zstandard.ZstdDecompressor().stream_reader(packed)
             while block := stream.read(2**20):
                 left -= len(block)
                 if left < 0:
-                    raise bag_error(path, f"unpacks to more than {LARGEST_FILE} bytes")
+                    raise bag_error(path, f"unpacks to more than {BAG_FILE} bytes")
                 plain.write(block)
     except zstandard.ZstdError as error:
         raise bag_error(path, f"cannot be unpacked: {error}") from error

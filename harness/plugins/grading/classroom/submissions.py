@@ -17,11 +17,9 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from harness.core.errors import HarnessError
+from harness.core.limits import SUBMISSION_FILES
 from harness.plugins.grading.assignment import Assignment
 from harness.suite.discovery import UsageError
-
-MOST_FILES = 5000
-"""Files of one submission; a ROS workspace with its build folder has a few thousand."""
 
 BLOCK = 2**20  # [bytes]
 ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.xz", ".tar.bz2")
@@ -155,8 +153,9 @@ def _entries(source: Path, stack: ExitStack) -> Iterator[Entry]:
 
 
 def _of_zip(archive: zipfile.ZipFile) -> Iterator[Entry]:
-    if len(archive.filelist) > 2 * MOST_FILES:  # folders count, too
-        raise SubmissionError(f"it has {len(archive.filelist)} files; at most {MOST_FILES} may be")
+    if len(archive.filelist) > 2 * SUBMISSION_FILES:  # folders count, too
+        count = len(archive.filelist)
+        raise SubmissionError(f"it has {count} files; at most {SUBMISSION_FILES} may be")
     for each in archive.filelist:
         kind = stat.S_IFMT(each.external_attr >> 16)
         if kind not in (0, stat.S_IFREG, stat.S_IFDIR):
@@ -195,8 +194,8 @@ def _write_all(entries: Iterator[Entry], target: Path, most: int) -> None:
         if any(map(_is_left_out, parts)):
             continue
         count += 1
-        if count > MOST_FILES:
-            raise SubmissionError(f"it has more than {MOST_FILES} files")
+        if count > SUBMISSION_FILES:
+            raise SubmissionError(f"it has more than {SUBMISSION_FILES} files")
         file = target.joinpath(*parts)
         file.parent.mkdir(parents=True, exist_ok=True)
         with file.open("wb") as copy:

@@ -6,14 +6,13 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from harness.core.limits import RTPS_SAMPLE, RTPS_WAITING
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.wire import Address, Sample
 from harness.plugins.ros.rtps.writer import Send
 
 FAST_DDS = b"\x01\x0f"  # vendor at the start of a GUID
-MOST_WAITING = 4096  # samples of one writer that wait for an earlier one
-LARGEST_SAMPLE = 2**26  # samples that claim to be larger are ignored [bytes]
 
 
 @dataclass
@@ -63,7 +62,7 @@ class Reader:
             proxy.expected = sample.number
         elif not proxy.expected:  # whether there is one before it, a heartbeat says
             self._request_heartbeat(sample.writer, proxy)
-        if len(proxy.waiting) < MOST_WAITING:
+        if len(proxy.waiting) < RTPS_WAITING:
             proxy.waiting[sample.number] = whole
             self._drain(proxy)
 
@@ -113,7 +112,7 @@ class Reader:
 def _assembled(proxy: _Writer, sample: Sample) -> Sample | None:
     """The whole sample when this fragment was its last; None before."""
     size, step = sample.size, sample.fragment_size
-    if size > LARGEST_SAMPLE or step == 0:
+    if size > RTPS_SAMPLE or step == 0:
         return None
     count = -(-size // step)
     parts = proxy.partial.setdefault(sample.number, {})
