@@ -121,6 +121,27 @@ objects:
 steps:
   - wait: 0.5 s
 """,
+    "chest": """
+objects:
+  - name: chest
+    static: true
+    box: {size: [0.2, 0.2, 0.1]}
+    pose: {xyz: [0.3, 0, 0.05]}
+    joints:
+      - name: lid
+        hinge: {axis: [0, 1, 0], at: [0.1, 0, 0.05], range: [0, 110 deg], start: 70 deg}
+        shapes: [{box: {size: [0.2, 0.2, 0.008]}, pose: {xyz: [0, 0, 0.054]}, color: red}]
+steps:
+  - wait: 1.5 s
+""",
+    "barrier": """
+objects:
+  - {name: ball, sphere: {radius: 0.03}, pose: {xyz: [0.3, 0, 0.03]}, color: red}
+  - {name: post, static: true, box: {size: [0.02, 0.02, 0.12]}, pose: {xyz: [0.3, 0.14, 0.06]}}
+  - {name: mirror, static: true, box: {size: [0.02, 0.02, 0.12]}, pose: {xyz: [0.3, -0.14, 0.06]}}
+steps:
+  - wait: 0.2 s
+""",
     "camera": EYE % "0.12",
     "camera behind a wall": EYE % "-0.1",
 }

@@ -302,7 +302,7 @@ class Cell:
         if name not in self.scene.attached():
             raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is not attached")
         if self.presence[name].obj.in_simulation:
-            self.simulator.unweld(name)
+            self.simulator.unweld(name, self.scene.object_pose(name, self.planning_start()))
         for record in self.attachments:
             if record.object == name and record.welded and record.end_time == float("inf"):
                 begin, end = record.welded

@@ -145,7 +145,7 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
     side[2] = 0.0
     side /= np.linalg.norm(side)
     height = size[vertical]
-    fits = [_fits(size[axis], cell) for axis in level]
+    fits = [can_hold(size[axis], cell) for axis in level]
     widths = [size[axis] for axis, does_fit in zip(level, fits, strict=True) if does_fit]
     depth = grasp_depth(cell, height, min(widths))
     point = at.translation + np.array([0.0, 0.0, height / 2 - depth])
@@ -191,7 +191,7 @@ def _from_above(
 ) -> list[SE3]:
     """The gripper pointing down, its pads along a level direction, then turned [rad]."""
     approach, closing = gripper_axes(cell)
-    rotation = _align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
+    rotation = align(approach, closing, np.array([0.0, 0.0, -1.0]), side)
     return [SE3(rotations_about(UP, turn) @ rotation, point) for turn in turns]
 
 
@@ -212,7 +212,7 @@ def grasps_at_pitches(
             heading = math.atan2(tcp[1] - axis[1], tcp[0] - axis[0])
             ahead = np.array([math.cos(heading), math.sin(heading), 0.0])
             along = math.cos(pitch) * ahead - math.sin(pitch) * UP
-            rotation = _align(approach, closing, along, roll * np.cross(UP, ahead))
+            rotation = align(approach, closing, along, roll * np.cross(UP, ahead))
             tcp = point - rotation @ shift
         grasps.append(SE3(rotation, tcp))
     return grasps
@@ -248,8 +248,8 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
         _, _, size, vertical, level = _standing(obj, object_pose, cell)
     except StepFailed:
         return
-    width, opening, least = size[level[0]], _opening(cell), least_gap(cell)
-    if any(_fits(size[axis], cell) for axis in level):
+    width, opening, least = size[level[0]], widest(cell), least_gap(cell)
+    if any(can_hold(size[axis], cell) for axis in level):
         return
     too, limit, does = ("thin", least, "closes") if width < least else ("wide", opening, "opens")
     stated, most = distinct(width, limit, lambda value, more: f"{value * 1e3:.{1 + more}f} mm")
@@ -258,7 +258,7 @@ def check_opening(obj: WorldObject, object_pose: SE3, cell: Cell) -> None:
     if too == "wide":
         other = "a narrower object, or a gripper that opens wider"
     advice = f"take {other}: no side of it fits"
-    if _fits(size[vertical], cell):
+    if can_hold(size[vertical], cell):
         advice = f"its height of {height} fits: give a `grasp_pose` that takes it from the side"
     elif not has_simple_shape(obj):
         advice = "give a `grasp_pose` that takes it by a part that fits"
@@ -279,10 +279,10 @@ def level_sides(obj: WorldObject, object_pose: SE3, cell: Cell) -> tuple[tuple[f
         StepFailed: INVALID_OBJECT_NAME, when it leans, or has no shape that can be held.
     """
     _, _, size, _, level = _standing(obj, object_pose, cell)
-    return tuple((size[axis], _fits(size[axis], cell)) for axis in level)
+    return tuple((size[axis], can_hold(size[axis], cell)) for axis in level)
 
 
-def _opening(cell: Cell) -> float:
+def widest(cell: Cell) -> float:
     """Largest gap between the pads [m]."""
     return float(cell.gripper.widths[:, 1].max())
 
@@ -299,9 +299,9 @@ def least_gap(cell: Cell) -> float:
     return float(hand.gap_at(hand.closed_position))
 
 
-def _fits(width: float, cell: Cell) -> bool:
+def can_hold(width: float, cell: Cell) -> bool:
     """Whether the gripper can hold a side of this width [m]."""
-    return least_gap(cell) - GAP_SLACK <= width <= _opening(cell)
+    return least_gap(cell) - GAP_SLACK <= width <= widest(cell)
 
 
 def _standing(
@@ -388,7 +388,7 @@ def _box_around(obj: WorldObject, cell: Cell) -> Shape:
     return Shape(Box((width, depth, height)), axes @ SE3(np.eye(3), (low + high) / 2))
 
 
-def _align(
+def align(
     approach: FloatArray, closing: FloatArray, target_approach: FloatArray, side: FloatArray
 ) -> FloatArray:
     """Rotation that takes the TCP's approach and closing axes to directions in the world."""

@@ -264,6 +264,19 @@ class Scope:
                 loc, f"'{name}' is not in the scene at this step", "add it first", needs=("world",)
             )
 
+    def check_no_fixture(self, name: str, loc: Loc) -> None:
+        """Report an object with joints, or a part of one, that a step would take away."""
+        fixtures = {obj.joint.fixture for obj in self.objects.values() if obj.joint is not None}
+        joint = self.objects[name].joint if name in self.objects else None
+        if name in fixtures:
+            message, hint = f"'{name}' is a fixture: its parts hang on it", "it stays where it is"
+        elif joint is not None:
+            message = f"'{name}' hangs on '{joint.fixture}'"
+            hint = "`open` brings it to a position of its joint"
+        else:
+            return
+        self.problems.add(loc, message, hint, needs=("world",))
+
     def check_camera(self, name: str, loc: Loc) -> None:
         """Report a name that is no camera of the robot, the world or the scenario."""
         if name not in self.cameras:

@@ -3,13 +3,98 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
 
 from harness.core.geometry import Friction, Shape
+from harness.core.pose_arrays import IDENTITY, compose, relative, rotate, rotation_angle
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.types import FloatArray
 
+STRAY = (0.005, 0.02)  # [m], [rad], of a part's pose from where its joint can take it
 MOST_OBJECTS = 1000  # of all kinds; 300 that move take 2 s of wall time per simulated second
+
+
+@dataclass(frozen=True)
+class ObjectJoint:
+    """The hinge or slide by which a part of a fixture moves, as a door of a cabinet.
+
+    Attributes:
+        fixture: The name of the object that carries the part.
+        name: The name of the joint in the file.
+        fixture_pose: T_world_fixture (xyz, quat wxyz); a fixture never moves.
+        axis: Unit direction of the axis, in the fixture's frame.
+        point: A point on the axis of a hinge, in the fixture's frame [m].
+        lower: The lower limit [rad or m].
+        upper: The upper limit [rad or m].
+        start: The position at the start [rad or m].
+        friction: Friction torque or force [N m or N].
+        damping: Resistance per velocity [N m s/rad or N s/m].
+        stiffness: The spring's [N m/rad or N/m].
+        rest: The position at which the spring is relaxed [rad or m].
+    """
+
+    fixture: str
+    name: str
+    kind: Literal["hinge", "slide"]
+    fixture_pose: tuple[float, ...]
+    axis: tuple[float, float, float]
+    point: tuple[float, float, float]
+    lower: float
+    upper: float
+    start: float = 0.0
+    friction: float = 0.0
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+
+    @property
+    def unit(self) -> str:
+        """Unit of its positions: `rad`, or `m`."""
+        return "rad" if self.kind == "hinge" else "m"
+
+    def pose(self, position: float) -> SE3:
+        """T_world_part at a position of the joint [rad or m]."""
+        return SE3.from_vector(self.poses(np.array([position]))[0])
+
+    def poses(self, positions: FloatArray) -> FloatArray:
+        """T_world_part (xyz, quat wxyz) at positions (N,) of the joint [rad or m], shape (N, 7)."""
+        return compose(np.array(self.fixture_pose), self._moved(positions))
+
+    def _moved(self, positions: FloatArray) -> FloatArray:
+        """T_fixture_part at positions (N,) of the joint, shape (N, 7)."""
+        axis, point = np.array(self.axis), np.array(self.point)
+        moved = np.tile(IDENTITY, (len(positions), 1))
+        if self.kind == "slide":
+            moved[:, :3] = positions[:, None] * axis
+        else:
+            moved[:, 3] = np.cos(positions / 2)
+            moved[:, 4:] = np.sin(positions / 2)[:, None] * axis
+            moved[:, :3] = point - rotate(moved[:, 3:], point)
+        return moved
+
+    def position(self, pose: SE3) -> float:
+        """The joint's position at T_world_part, of a hinge within half a turn of 0 [rad or m]."""
+        return float(self.positions(np.array(self.fixture_pose), pose.as_vector()[None])[0])
+
+    def positions(self, fixture: FloatArray, part: FloatArray) -> FloatArray:
+        """Positions of the joint at poses of fixture and part, shape (N,); NaN where it has none.
+
+        Args:
+            fixture: T_world_fixture (xyz, quat wxyz), shape (N, 7) or (7,).
+            part: T_world_part, shape (N, 7).
+        """
+        moved = relative(fixture, part)
+        axis = np.array(self.axis)
+        positions = moved[:, :3] @ axis
+        if self.kind == "hinge":
+            angles = 2.0 * np.arctan2(moved[:, 4:] @ axis, moved[:, 3])
+            positions = (angles + np.pi) % (2.0 * np.pi) - np.pi
+        stray = relative(self._moved(positions), moved)
+        off = np.linalg.norm(stray[:, :3], axis=1) > STRAY[0]
+        return np.where(off | (rotation_angle(stray[:, 3:]) > STRAY[1]), np.nan, positions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +115,7 @@ class WorldObject:
         visuals: Shapes that pictures show, where they differ from `shapes`.
         surface_motion: How the surface of a belt or a turntable moves at the start; None: it never
             moves.
+        joint: The hinge or slide by which a part of a fixture moves; None of any other object.
     """
 
     name: str
@@ -44,6 +130,7 @@ class WorldObject:
     in_simulation: bool = True
     visuals: tuple[Shape, ...] = ()
     surface_motion: SurfaceMotion | None = None
+    joint: ObjectJoint | None = None
 
     def friction_of(self, shape: Shape) -> Friction:
         """Friction of one of the object's shapes."""

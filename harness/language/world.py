@@ -25,6 +25,7 @@ from harness.language.base import (
     kind_of,
 )
 from harness.language.cameras import CameraSpec
+from harness.language.fixtures import HingeSpec, SlideSpec
 from harness.language.markers import MarkerSpec
 from harness.language.poses import Pose
 
@@ -159,6 +160,29 @@ class InertiaSpec(SpecModel):
     iyz: Number = 0.0
 
 
+class JointSpec(SpecModel):
+    """A part of a static object that turns or slides: an object of its own, `cabinet/door`."""
+
+    one_of = ("hinge", "slide")
+
+    name: Name = Field(description="The name of the joint; the part is called `OBJECT/NAME`.")
+    hinge: HingeSpec | None = Field(default=None, description="The part turns about this axis.")
+    slide: SlideSpec | None = Field(default=None, description="The part moves along this axis.")
+    shapes: Annotated[tuple[ShapeSpec, ...], Field(min_length=1)] = Field(
+        description="The geometries of the part, in the object's frame with the joint at 0. The"
+        " one whose name is `handle` is where the step `open` grasps it."
+    )
+    mass: Mass | None = Field(
+        default=None,
+        description="The mass of the part [kg]; the default follows from its volume at 1000"
+        " kg/m^3.",
+    )
+    color: Color | None = Field(default=None, description=COLOR)
+    friction: SurfaceFriction | None = Field(
+        default=None, description="The friction of the part's surface."
+    )
+
+
 class ObjectSpec(SpecModel):
     """An object: one geometry next to its keys, or several under `shapes`.
 
@@ -170,10 +194,6 @@ class ObjectSpec(SpecModel):
             ("suction", "vacuum", "magnet"),
             "a gripper holds objects between two finger sides; `grasp: {object: NAME, mode: weld}`"
             " also fixes the object to the hand",
-        ),
-        **dict.fromkeys(
-            ("joint", "joints", "hinge"),
-            "objects are rigid: there are no doors and drawers that open",
         ),
     }
 
@@ -215,6 +235,10 @@ class ObjectSpec(SpecModel):
         default=None, description="The friction: the sliding coefficient alone, or all three."
     )
     color: Color | None = Field(default=None, description=COLOR)
+    joints: tuple[JointSpec, ...] = Field(
+        default=(),
+        description="The parts of a `static` object that turn or slide: doors, drawers, lids.",
+    )
     in_: Literal["planning", "simulation", "both"] = Field(
         default="both",
         alias="in",
@@ -251,6 +275,10 @@ class ObjectSpec(SpecModel):
                 "a belt is `static: true` with `surface_velocity: 0.1`, a turntable one with"
                 " `surface_rotation`; the step `conveyor` starts and stops either"
             )
+        if key in ("hinge", "slide", "door", "drawer"):
+            return (
+                "doors and drawers are `joints`: [{name: door, hinge: {axis: [0, 0, 1], ...}, ...}]"
+            )
         return _shape_words(content) if key in ("type", "dimensions") else ""
 
     @model_validator(mode="after")
@@ -266,6 +294,11 @@ class ObjectSpec(SpecModel):
                 "only the surface of a static object moves: add `static: true`, or leave out"
                 " `surface_velocity` and `surface_rotation`"
             )
+        if self.joints and not self.static:
+            raise ValueError("an object with `joints` is fixed in the world: say `static: true`")
+        names = [joint.name for joint in self.joints]
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise ValueError(f"two joints are called '{twice[0]}'")
         return self
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
@@ -187,11 +187,12 @@ class Simulator(Protocol):
         """Fix an object to a link where it stands (grasp mode `weld`)."""
         ...
 
-    def unweld(self, name: str) -> None:
-        """Undo `weld`."""
+    def unweld(self, name: str, believed: SE3 | None = None) -> None:
+        """Undo `weld`, and let go; what has no physics leaves the object where it is believed."""
         ...
 
 
+@runtime_checkable
 class RecordingSimulator(Simulator, Protocol):
     """A simulator, or a robot, that a whole case runs on and that records it."""
 

@@ -12,7 +12,7 @@ from harness.core.camera import Camera
 from harness.core.geometry import Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
-from harness.core.world import WorldObject
+from harness.core.world import ObjectJoint, WorldObject
 from harness.recording.commands import CommandRecord
 from harness.recording.mesh_record import MeshRecord
 from harness.recording.signals import CaptureRecord, ContactRecord, Signals, VideoRecord
@@ -35,6 +35,7 @@ class ObjectRecord:
         mass: The mass [kg]; NaN when unknown.
         visuals: Shapes that pictures show, where they differ from `shapes`.
         center_of_mass: The centre of mass in the object's frame [m]; empty when unknown.
+        joint: The hinge or slide by which a part of a fixture moves; None of any other object.
     """
 
     name: str
@@ -47,6 +48,7 @@ class ObjectRecord:
     mass: float = float("nan")
     visuals: tuple[Shape, ...] = ()
     center_of_mass: tuple[float, ...] = ()
+    joint: ObjectJoint | None = None
 
     @classmethod
     def of(
@@ -64,6 +66,7 @@ class ObjectRecord:
             mass=obj.mass,
             visuals=obj.visuals,
             center_of_mass=() if obj.is_static else tuple(map(float, obj.center_of_mass)),
+            joint=obj.joint,
         )
 
     def put_samples(self, times: FloatArray) -> IntArray:

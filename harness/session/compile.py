@@ -29,7 +29,7 @@ from harness.robot.description import RobotDescription
 from harness.session.cameras import all_cameras, check_cameras, check_videos
 from harness.session.options import CheckPlanner, check_planning, merged_options
 from harness.world.imported import ImportedWorld
-from harness.world.objects import ObjectUnusableError, resolve_object, resolve_world
+from harness.world.objects import ObjectUnusableError, resolve_object, resolve_parts, resolve_world
 
 MOST_STEPS = 10_000  # a file of more is a mistake, and would fill the memory
 RESERVED = {
@@ -174,9 +174,10 @@ class _Compiler:
             here.add(spec.name)
             self.object_specs.setdefault(spec.name, _without_pose(spec))
             with self._gaps_allowed(spec.name):
-                obj = self._resolve(spec, loc, self._start_pose(spec, loc, resolved))
-                if obj is not None:
-                    resolved[spec.name] = obj
+                objects = self._resolve(spec, loc, self._start_pose(spec, loc, resolved))
+                if objects and spec.replace:
+                    _remove_parts(resolved, spec.name)
+                resolved |= {obj.name: obj for obj in objects}
         return tuple(resolved.values())
 
     def _world_objects(self) -> dict[str, WorldObject]:
@@ -200,7 +201,8 @@ class _Compiler:
                 )
             pose = base @ spec.pose.se3()
             try:
-                resolved[spec.name] = self._object(spec, pose, self.sources.world.path.parent)
+                objects = self._objects(spec, pose, self.sources.world.path.parent)
+                resolved |= {obj.name: obj for obj in objects}
             except ObjectUnusableError as unusable:
                 if spec.name in replaced:
                     resolved[spec.name] = _unusable(spec.name, pose)
@@ -233,18 +235,19 @@ class _Compiler:
         )
         return spec.pose.se3()
 
-    def _resolve(self, spec: ObjectSpec, loc: Loc, pose: SE3) -> WorldObject | None:
+    def _resolve(self, spec: ObjectSpec, loc: Loc, pose: SE3) -> tuple[WorldObject, ...]:
+        """The object and its moving parts; none where it cannot be used, which is reported."""
         self.object_locs[spec.name] = loc
         if taken := self._other_meaning(spec.name):
             self.problems.add(
                 (*loc, "name"), f"'{spec.name}' is {taken}", "choose another", needs=("robot",)
             )
         try:
-            return self._object(spec, pose, self.sources.loaded.path.parent)
+            return self._objects(spec, pose, self.sources.loaded.path.parent)
         except ObjectUnusableError as unusable:
             self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
             self.problems.add_unusable(spec.name)
-            return None
+            return ()
 
     def _other_meaning(self, name: str) -> str:
         """What else a name of an object stands for; empty where it is free."""
@@ -255,24 +258,35 @@ class _Compiler:
             return "a robot link's name"
         return "a robot joint's name" if name in description.joint_names else ""
 
-    def _object(self, spec: ObjectSpec, pose: SE3, folder: Path) -> WorldObject:
-        """The object, its mesh files looked into; raises ObjectUnusableError."""
-        obj = resolve_object(spec, pose, folder, self.sources.loaded.scenario.collision)
-        for shape in obj.shapes:
+    def _objects(self, spec: ObjectSpec, pose: SE3, folder: Path) -> tuple[WorldObject, ...]:
+        """The object and its moving parts, mesh files looked into; raises ObjectUnusableError."""
+        collision = self.sources.loaded.scenario.collision
+        obj = resolve_object(spec, pose, folder, collision)
+        objects = obj, *resolve_parts(spec, obj, folder, collision)
+        for shape in (shape for each in objects for shape in each.shapes):
             if isinstance(shape.geometry, Mesh):
                 try:
                     self.sources.check_mesh(shape.geometry)
                 except RobotError as error:
                     raise ObjectUnusableError(str(error)) from error
-        return obj
+        return objects
 
     def _later_object(self, spec: ObjectSpec, loc: Loc) -> None:
         """Prepare an object that a step adds; the same object may come and go, another may not."""
         if spec.replace:
             self.problems.add(loc, "`replace` is for the scenario's `objects`", needs=())
-        obj = self._resolve(spec, loc, spec.pose.se3())
-        if obj is None:
+        if spec.joints:
+            self.problems.add(
+                (*loc, "joints"),
+                "an object with `joints` stands in the scene from the start",
+                "list it in the scenario's `objects`, or in the world's",
+                needs=(),
+            )
             return
+        resolved = self._resolve(spec, loc, spec.pose.se3())
+        if not resolved:
+            return
+        (obj,) = resolved
         if spec.name not in self.scope.objects:
             self.later[spec.name] = obj
             self.scope.add_object(obj)
@@ -374,6 +388,14 @@ class _Compiler:
         self.pending.append((spec, loc))
         line, _ = self.sources.loaded.lines.line_of(loc)
         self.expectations.append(ProgramExpectation(spec, step, line))
+
+
+def _remove_parts(objects: dict[str, WorldObject], fixture: str) -> None:
+    """Remove the moving parts of an object that another one replaces."""
+    for name in [
+        name for name, obj in objects.items() if obj.joint and obj.joint.fixture == fixture
+    ]:
+        del objects[name]
 
 
 def _unusable(name: str, pose: SE3) -> WorldObject:

@@ -161,8 +161,9 @@ class DrySimulator:
     def weld(self, name: str, link: str) -> None:
         del name, link
 
-    def unweld(self, name: str) -> None:
-        del name
+    def unweld(self, name: str, believed: SE3 | None = None) -> None:
+        if believed is not None:
+            self._poses[name] = believed
 
 
 class DryPlanner:

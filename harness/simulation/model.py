@@ -49,8 +49,8 @@ class ObjectPlace:
         obj: The object to be added.
         body: The id of its body.
         geoms: The slice of its geoms.
-        qpos: The first of its seven position numbers; -1 when static.
-        dof: The first of its six velocity numbers; -1 when static.
+        qpos: The first of its seven position numbers, or the one of a part; -1 when static.
+        dof: The first of its six velocity numbers, or the one of a part; -1 when static.
         parking: Its pose while absent, as xyz and quat wxyz, shape (7,).
     """
 
@@ -180,7 +180,7 @@ def set_presence(model: mujoco.MjModel, place: ObjectPlace, *, present: bool) ->
     """Give an object contacts and weight, or neither."""
     model.geom_contype[place.geoms] = int(present)
     model.geom_conaffinity[place.geoms] = int(present)
-    if not place.obj.is_static:
+    if not place.obj.is_static and place.obj.joint is None:
         model.body_gravcomp[place.body] = 0.0 if present else 1.0
 
 

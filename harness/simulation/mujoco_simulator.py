@@ -94,6 +94,9 @@ class MujocoSimulator:
         self._model = self.physics.model
         self._data = mujoco.MjData(self._model)
         self._data.qpos[self.physics.qpos] = description.start_positions()
+        for place in self.physics.objects.values():
+            if place.obj.joint is not None:
+                self._data.qpos[place.qpos] = place.obj.joint.start
         self._coupling = coupling(description)
         self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
         self._drive = JointDrive(self.physics, self._data, gravity, timestep)
@@ -264,8 +267,9 @@ class MujocoSimulator:
         """Fix an object to a link at its current pose."""
         self._objects.weld(name, link)
 
-    def unweld(self, name: str) -> None:
+    def unweld(self, name: str, believed: SE3 | None = None) -> None:
         """Release a welded object."""
+        del believed  # the physics knows better
         self._objects.unweld(name)
 
     def motion(self) -> Motion:

@@ -95,12 +95,12 @@ class Objects:
         poses: dict[str, FloatArray] = {}
         for name, place in self._physics.objects.items():
             log = self._log[name]
-            free = place.qpos >= 0
-            rows = self._recording.free_poses(place.qpos) if free else np.empty((count, 7))
+            moves = place.qpos >= 0
+            rows = self._recording.poses(place) if moves else np.empty((count, 7))
             for (begin, pose), (end, _) in zip(log, [*log[1:], (count, None)], strict=True):
                 if pose is None:
                     rows[begin:end] = np.nan
-                elif not free:
+                elif not moves:
                     rows[begin:end] = pose
             poses[name] = rows
         return poses
@@ -114,6 +114,8 @@ class Objects:
         }
 
     def _pose(self, place: ObjectPlace) -> FloatArray:
+        if place.obj.joint is not None:
+            return place.obj.joint.pose(float(self._data.qpos[place.qpos])).as_vector()
         if place.qpos >= 0:
             return self._data.qpos[place.qpos : place.qpos + 7].copy()
         model = self._physics.model
@@ -121,7 +123,10 @@ class Objects:
 
     def _place(self, name: str, pose: FloatArray) -> None:
         place = self._physics.objects[name]
-        if place.qpos >= 0:
+        if place.obj.joint is not None:
+            self._data.qpos[place.qpos] = place.obj.joint.position(SE3.from_vector(pose))
+            self._data.qvel[place.dof] = self._data.qacc_warmstart[place.dof] = 0.0
+        elif place.qpos >= 0:
             self._data.qpos[place.qpos : place.qpos + 7] = pose
             self._data.qvel[place.dof : place.dof + 6] = 0.0
             self._data.qacc_warmstart[place.dof : place.dof + 6] = 0.0

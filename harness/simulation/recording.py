@@ -15,7 +15,7 @@ from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.signals import Signals
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
-from harness.simulation.model import PhysicsModel
+from harness.simulation.model import ObjectPlace, PhysicsModel
 from harness.simulation.step_state import refresh
 
 MOST_BYTES = 2**30
@@ -179,7 +179,7 @@ class Recording:
         return self._qvel[first : self.count, self._physics.dof]
 
     def fastest(self, first: int) -> tuple[str, float]:
-        """Find the joint or free object with the largest velocity component from a sample on.
+        """Find the joint or object with the largest velocity component from a sample on.
 
         Returns:
             Its name, empty when nothing can move, and the component's size [m/s or rad/s].
@@ -188,8 +188,9 @@ class Recording:
         names = [joint.name for joint in self._physics.description.movable_joints]
         for name, place in self._physics.objects.items():
             if place.dof >= 0:
-                dofs += range(place.dof, place.dof + 6)
-                names += [name] * 6
+                count = 6 if place.obj.joint is None else 1
+                dofs += range(place.dof, place.dof + count)
+                names += [name] * count
         speeds = np.abs(self._qvel[first : self.count, dofs]).max(axis=0)
         if not len(dofs):
             return "", 0.0
@@ -263,6 +264,8 @@ class Recording:
             found |= added
         return found
 
-    def free_poses(self, qpos: int) -> FloatArray:
-        """Recorded poses of a free body, shape (N, 7)."""
-        return self._qpos[: self.count, qpos : qpos + 7].copy()
+    def poses(self, place: ObjectPlace) -> FloatArray:
+        """Recorded T_world_object of an object that can move, shape (N, 7)."""
+        if place.obj.joint is None:
+            return self._qpos[: self.count, place.qpos : place.qpos + 7].copy()
+        return place.obj.joint.poses(self._qpos[: self.count, place.qpos])

@@ -7,7 +7,7 @@ from __future__ import annotations
 import mujoco
 
 from harness.core.spatial import SE3
-from harness.core.world import WorldObject
+from harness.core.world import ObjectJoint, WorldObject
 from harness.robot.description import Inertial
 from harness.simulation.geoms import add_collision_geom
 from harness.simulation.robot_mjcf import set_inertia
@@ -15,7 +15,7 @@ from harness.simulation.robot_mjcf import set_inertia
 COMPILED_SURFACE = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """A surface that moves: MuJoCo ignores those that do not when the model is compiled."""
 
-WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)  # Impedance of a weld: nearly rigid
+WELD_SOLIMP = (0.999, 0.9999, 0.001, 0.5, 2.0)  # Impedance of what is nearly rigid
 
 
 def parking_pose(index: int) -> SE3:
@@ -31,11 +31,14 @@ def weld_name(name: str) -> str:
 def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3) -> None:
     """Add an object as a body of its name, fixed if static, else free.
 
-    Free bodies have a gravity compensation that acts while they are parked, and a weld constraint
-    that acts while they are welded to a link. All geoms collide when compiled, because MuJoCo
+    A part of a fixture has its hinge or slide, and does not touch the fixture. Free bodies have a
+    gravity compensation that acts while they are parked; what moves has a weld constraint that acts
+    while it is welded to a link. All geoms collide when compiled, because MuJoCo
     prepares contacts only for those; the caller disables them.
     """
     body = spec.worldbody.add_body(name=obj.name)
+    if obj.joint is not None:
+        pose = obj.joint.pose(0.0)
     body.pos = pose.translation
     body.quat = pose.quat_wxyz
     for shape in obj.shapes:
@@ -45,8 +48,11 @@ def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3) -> None:
             geom.surfacevel = COMPILED_SURFACE
     if obj.is_static:
         return
-    body.add_freejoint(name=obj.name)
-    body.gravcomp = 1.0
+    if obj.joint is None:
+        body.add_freejoint(name=obj.name)
+        body.gravcomp = 1.0
+    else:
+        _add_joint(spec, body, obj.joint)
     set_inertia(body, Inertial(obj.mass, obj.center_of_mass, obj.inertia))
     weld = spec.add_equality(
         name=weld_name(obj.name),
@@ -58,3 +64,22 @@ def add_object(spec: mujoco.MjSpec, obj: WorldObject, pose: SE3) -> None:
     )
     weld.solref = (0.004, 1.0)
     weld.solimp = WELD_SOLIMP
+
+
+def _add_joint(spec: mujoco.MjSpec, body: mujoco.MjsBody, joint: ObjectJoint) -> None:
+    kinds = {"hinge": mujoco.mjtJoint.mjJNT_HINGE, "slide": mujoco.mjtJoint.mjJNT_SLIDE}
+    body.add_joint(
+        name=body.name,
+        type=kinds[joint.kind],
+        axis=joint.axis,
+        pos=joint.point,
+        limited=True,
+        range=(joint.lower, joint.upper),
+        frictionloss=joint.friction,
+        damping=joint.damping,
+        stiffness=joint.stiffness,
+        springref=joint.rest,
+        solref_friction=(2 * spec.option.timestep, 1.0),
+        solimp_friction=WELD_SOLIMP,  # what friction holds creeps with the softness of this
+    )
+    spec.add_exclude(bodyname1=joint.fixture, bodyname2=body.name)

@@ -10,7 +10,7 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.scope import At
 from harness.core.errors import StepFailed
-from harness.judging.placed import as_expectation, check_expectation
+from harness.judging.ends import check_end
 from harness.language.base import Name, PositiveDuration
 from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.step import Step
@@ -55,18 +55,8 @@ class External(Step):
 
     def check(self, at: At) -> None:
         at.scope.take_time(self.timeout or DEFAULT_TIMEOUT, at.key("timeout"))
-        if self.until is None:
-            return
-        until = as_expectation(self.until)
-        check_expectation(until, at.key("until"), at.scope)
-        seen = until.observations()
-        if seen.reads_distances or seen.planned_clearances or seen.pictures:
-            at.scope.problems.add(
-                at.key("until"),
-                "distances and pictures are measured after the run, so they cannot end a step",
-                "expect it under `expect`, and end the step by joints, poses, contacts or objects",
-                needs=(),
-            )
+        if self.until is not None:
+            check_end(self.until, at)
 
     def execute(self, cell: Cell) -> None:
         """Hand the arm over.

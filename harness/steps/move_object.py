@@ -27,6 +27,7 @@ class MoveObject(Step):
 
     def check(self, at: At) -> None:
         at.scope.check_present(self.object, at.key("object"))
+        at.scope.check_no_fixture(self.object, at.key("object"))
         at.check_pose(self.pose, "pose")
 
     def execute(self, cell: Cell) -> None:

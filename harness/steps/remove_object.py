@@ -31,6 +31,7 @@ class RemoveObject(Step):
     def check(self, at: At) -> None:
         for index, name in enumerate(self.objects):
             at.scope.check_present(name, at.key("objects", index))
+            at.scope.check_no_fixture(name, at.key("objects", index))
             at.scope.present.pop(name, None)
             at.scope.added.pop(name, None)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +27,15 @@ from harness.core.slow_work import reported
 from harness.core.solids import is_inertia_of_a_body, point_inertia
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.core.world import Light, World, WorldObject
-from harness.language.world import GEOMETRIES, FrictionSpec, ObjectSpec, ShapeSpec, WorldSpec
+from harness.core.world import Light, ObjectJoint, World, WorldObject
+from harness.language.world import (
+    GEOMETRIES,
+    FrictionSpec,
+    JointSpec,
+    ObjectSpec,
+    ShapeSpec,
+    WorldSpec,
+)
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.mesh_file import shape_solid, with_hull
 from harness.world.markers import plate, printed
@@ -79,6 +87,58 @@ def resolve_object(
         in_simulation=spec.in_ in ("simulation", "both"),
         visuals=_looks(spec, parts, base_dir) or (given if len(shapes) > len(given) else ()),
         surface_motion=spec.surface_motion,
+    )
+
+
+def resolve_parts(
+    spec: ObjectSpec, fixture: WorldObject, base_dir: Path, collision: CollisionMode | None = None
+) -> tuple[WorldObject, ...]:
+    """The parts of a fixture that turn or slide, each an object of its own.
+
+    Args:
+        spec: What the file says of the fixture.
+        fixture: The fixture itself, resolved.
+        base_dir: Folder that mesh files are relative to.
+        collision: How meshes collide that do not state it.
+
+    Raises:
+        ObjectUnusableError: As of `resolve_object`.
+    """
+    parts: list[WorldObject] = []
+    for each in spec.joints:
+        joint = _joint(each, fixture)
+        body = ObjectSpec(
+            name=f"{spec.name}/{each.name}",
+            shapes=each.shapes,
+            mass=each.mass,
+            color=each.color or spec.color,
+            friction=spec.friction if each.friction is None else each.friction,
+        )
+        part = resolve_object(body, joint.pose(joint.start), base_dir, collision)
+        scenes = {"in_planning": fixture.in_planning, "in_simulation": fixture.in_simulation}
+        parts.append(replace(part, joint=joint, **scenes))
+    return tuple(parts)
+
+
+def _joint(spec: JointSpec, fixture: WorldObject) -> ObjectJoint:
+    motion = spec.hinge or spec.slide
+    assert motion is not None  # the model has one of them
+    axis = np.array(motion.axis, dtype=float)
+    x, y, z = (float(value) for value in axis / np.linalg.norm(axis))
+    return ObjectJoint(
+        fixture=fixture.name,
+        name=spec.name,
+        kind="slide" if spec.hinge is None else "hinge",
+        fixture_pose=tuple(map(float, fixture.pose.as_vector())),
+        axis=(x, y, z),
+        point=(0.0, 0.0, 0.0) if spec.hinge is None else spec.hinge.at,
+        lower=motion.range[0],
+        upper=motion.range[1],
+        start=motion.start,
+        friction=motion.friction,
+        damping=motion.damping,
+        stiffness=motion.stiffness,
+        rest=motion.rest,
     )
 
 

@@ -13,7 +13,7 @@ from harness.core.pose_arrays import compose
 from harness.core.spatial import SE3
 from harness.judging.expectations.placed import Placed
 from harness.language.annotations import units_of
-from harness.language.poses import Pose
+from harness.language.poses import Pose, Position
 from harness.recording.run import ObjectRecord
 from tests.judging.synthetic_run import at
 
@@ -70,6 +70,9 @@ def _in_world(spec, whole, is_free=False):
         if is_free and not spec.has_rotation:
             return Pose(xyz=tuple(pose.translation))
         return Pose(xyz=tuple(pose.translation), quat_wxyz=tuple(pose.quat_wxyz))
+    if isinstance(spec, Position):
+        x, y, z = whole.apply(np.array(spec.xyz)) if spec.frame == KEPT_FRAME else spec.xyz
+        return Position(xyz=(float(x), float(y), float(z)), frame=spec.frame)
     is_free = is_free or isinstance(spec, Placed)
     return _each(spec, lambda value, _: _in_world(value, whole, is_free))
 

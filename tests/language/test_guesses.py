@@ -16,8 +16,6 @@ def messages(text):
     ("key", "word"),
     [
         ("suction: true", "`grasp: {object: NAME, mode: weld}`"),
-        ("joint: {type: hinge}", "rigid"),
-        ("joints: [{type: slide}]", "rigid"),
     ],
 )
 def test_what_objects_do_not_have_yet_is_said_alone(key, word):
@@ -25,6 +23,12 @@ def test_what_objects_do_not_have_yet_is_said_alone(key, word):
     assert message == f"there is no `{key.partition(':')[0]}` yet"
     assert word in hint
     assert "did you mean" not in hint
+
+
+@pytest.mark.parametrize("key", ["hinge: {axis: [0, 0, 1]}", "drawer: true"])
+def test_doors_and_drawers_are_joints(key):
+    found = messages(f"objects: [{BOX % key}]\n{HEAD}  - settle\n")
+    assert "`joints`" in found[0][1]
 
 
 def test_several_robots_are_not_taken_for_one():

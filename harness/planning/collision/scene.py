@@ -61,15 +61,18 @@ class CoalScene:
         """Put an object into the scene, at T_world_object."""
         if obj.name in self._objects:
             raise StepFailed("INVALID_OBJECT_NAME", f"object '{obj.name}' is in the scene already")
+        carried = obj.joint is None  # a part of a fixture is no load: its joint carries it
         self._objects[obj.name] = SceneObject(
             obj.name,
             obj.shapes,
             pose,
-            mass=obj.mass,
+            mass=obj.mass if carried else 0.0,
             center_of_mass=obj.center_of_mass,
-            inertia=obj.inertia,
+            inertia=obj.inertia if carried else np.zeros((3, 3)),
         )
         self._model = None
+        if obj.joint is not None:
+            self.set_allowed([(obj.name, obj.joint.fixture)], allowed=True)
 
     def remove_object(self, name: str) -> None:
         """Take an object out of the scene."""

@@ -12,16 +12,13 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.core.errors import HarnessError
-from harness.judging.judge import judge
-from harness.judging.placed import PlacedExpectation
+from harness.judging.ends import holds_now
 from harness.language.expectation import ExpectationFields
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.moveit.client_scene import ClientScene
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.read_run import read_run
-from harness.recording.run import ObjectRecord, Run
-from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import RESOLVED
 from harness.reporting.result import CaseResult
 from harness.session.prepare import Prepared
@@ -99,26 +96,10 @@ class HandOver(ABC):
 
     def _holds(self, request: ExternalRequest, begin: float, first: int) -> bool:
         """Whether the expectation passes now that ends the step, which began at a sample."""
-        until, simulator, name = request.until, self.simulator, request.step
-        if not isinstance(until, ExpectationFields):
+        until, cell = request.until, request.cell
+        if not isinstance(until, ExpectationFields) or not isinstance(cell, Cell):
             return False
-        times = begin, simulator.time, first, simulator.sample_count
-        step = StepRecord(name, name, "", "", request.line, "passed", *times)
-        objects = self.prepared.program.world.objects
-        run = Run(
-            scenario="",
-            file="",
-            case="",
-            seed=0,
-            robot=self.robot,
-            objects=tuple(ObjectRecord.of(obj, ((0.0, np.inf),), obj.pose) for obj in objects),
-            attachments=(),
-            steps=(step,),
-            signals=simulator.finish(),
-            unrecorded=("clearances", "planned_clearances"),
-        )
-        placed = PlacedExpectation.of(until, name, request.line)
-        return judge(run, [placed])[0].status == "passed"
+        return holds_now(until, cell, self.simulator, since=(begin, first))
 
 
 def _end_text(end: CommandRecord) -> str:

@@ -201,8 +201,8 @@ class RemoteArm:
         belts = (each for each in self._program.all_objects() if each.name == name)
         return next(belt.surface_motion for belt in belts if belt.surface_motion is not None)
 
-    def unweld(self, name: str) -> None:
-        del name
+    def unweld(self, name: str, believed: SE3 | None = None) -> None:
+        del name, believed
 
     def finish(self) -> Signals:
         """What `/joint_states` brought, on an even grid; poses follow from the joints."""
