@@ -32,7 +32,7 @@ def holds_now(
     """Whether an expectation passes that ends the current step.
 
     Args:
-        until: The expectation.
+        until: The expectation that may end the step.
         cell: The cell in which the step runs.
         simulator: The simulator of the cell, whose record is read.
         since: Time [s] and sample at which the step began.
