@@ -181,6 +181,7 @@ def test_dragging_in_a_plot_zooms_all_of_them_and_a_click_seeks(opened):
     assert all(old != new for old, new in zip(before, after, strict=True))
     page.mouse.click(box["x"] + 120, y)
     assert opened.time() > 0
+    assert page.locator("#unzoom").is_visible(), "the timeline shows the same stretch"
     page.click("#unzoom")
     assert page.locator("#plots.zoomed").count() == 0
 
@@ -193,9 +194,8 @@ def test_every_signal_can_be_plotted_with_its_value_at_the_cursor(opened):
     page.keyboard.press("End")
     for name in names:
         choice.select_option(name)
-        shown = page.locator(".plot").first.locator(".legend output").all_inner_texts()
-        assert shown, name
-        assert any(re.match(r"^-?\d", text) for text in shown), (name, shown)
+        shown = page.locator(".plot output").first.inner_text()
+        assert re.match(r"^-?\d", shown), (name, shown)
 
 
 def test_keys_zoom_the_plots(opened):
@@ -211,8 +211,11 @@ def test_keys_zoom_the_plots(opened):
 def test_a_legend_hides_a_line_everywhere(opened):
     page = opened.page
     chips = page.locator(".legend button[title='elbow_joint']")
-    assert chips.count() >= 2
+    assert chips.count() == 1, "one legend for all plots"
+    before = [each.screenshot() for each in page.locator(".plot canvas").all()]
     chips.first.click()
+    after = [each.screenshot() for each in page.locator(".plot canvas").all()]
+    assert sum(old != new for old, new in zip(before, after, strict=True)) >= 2
     pressed = chips.evaluate_all("all => all.map(chip => chip.ariaPressed)")
     assert set(pressed) == {"false"}
     chips.first.click()

@@ -95,6 +95,7 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
     for camera in page.locator(".camera").all():
         box = camera.bounding_box()
         assert box["y"] >= view["y"] + view["height"], "no picture hides the replay"
+    page.click("#tools summary")
     page.click("#tool-cameras")
     assert not page.locator(".camera").first.is_visible()
     assert page.locator("#view").bounding_box()["height"] > view["height"]
@@ -110,7 +111,7 @@ def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):
     for share in (0.2, 0.5, 0.9):
         page.mouse.click(box["x"] + share * box["width"], box["y"] + 5)
         assert opened.time() == pytest.approx(600 * share, abs=3)
-    shown = float(page.locator(".legend output").first.inner_text())
+    shown = float(page.locator(".plot output").first.inner_text())
     expected = np.rad2deg(np.sin(300 * opened.time() / 600))
     assert shown == pytest.approx(expected, abs=0.2)
 
@@ -125,6 +126,7 @@ def test_contacts_are_reported_and_drawn_where_they_were(visit, tmp_path):
     assert reported in opened.text("#readout")
     wait_for_frame(page)
     with_arrow = page.locator("#view canvas").screenshot()
+    page.click("#tools summary")
     page.click("#tool-contacts")
     wait_for_frame(page)
     assert reported not in opened.text("#readout")
@@ -168,6 +170,7 @@ def test_only_bodies_that_collide_change_their_colour(other, is_collision, visit
     contact = ContactRecord((other, "box"), 0.0, 2.0, 20.0, is_collision)
     run = replace(changed(run, contact_forces=forces), contacts=(contact,))
     page = visit(write(tmp_path, run), "#t=1").page
+    page.click("#tools summary")
     for tool in ("path", "plan", "frame", "goal"):
         page.click(f"#tool-{tool}")
     wait_for_frame(page)
@@ -213,6 +216,7 @@ def test_a_failure_shows_its_stages_and_the_nearest_state(visit, tmp_path):
     assert page.locator(".stages .bad b").first.inner_text() == "reach"
     assert "What to do" in page.inner_text("#panel-planner")
     with_state = page.locator("#view canvas").screenshot()
+    page.click("#tools summary")
     page.click("#tool-goal")
     wait_for_frame(page)
     assert page.locator("#view canvas").screenshot() != with_state, "the orange robot has gone"

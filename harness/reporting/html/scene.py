@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,9 +30,10 @@ MOST_FRAMES = 6000
 FARTHEST = 20.0  # [m]; what fell off the world is drawn there
 STILL = 1e-5
 FULL = 32700
-NEARBY = 1.3  # [m] from the base: what the first view holds
 LARGE = 0.6  # [m]: a table does not widen the first view
-THICKNESS = 0.1  # [m] by which a link reaches beyond its origin and the next one's
+NEARBY = 4.0  # of the arm's size from its base: what falls off the table widens no view
+DIRECTIONS = 64  # in each of which the first view holds what is farthest
+THINNEST_ARM = 0.1  # [m]: a hand alone is no smaller than its frames
 
 MeshKey = tuple[Path, tuple[float, float, float]]
 
@@ -46,8 +48,14 @@ def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
     return step, np.minimum(samples, len(times) - 1)
 
 
-def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
-    """Bodies, meshes, frames and what the first view holds."""
+def pack_scene(run: Run, packer: Packer, named: Collection[str] = ()) -> dict[str, Any]:
+    """Bodies, meshes, frames and what the first view holds.
+
+    Args:
+        run: The run that is shown.
+        packer: Takes poses and meshes.
+        named: Objects that the first view holds even if the robot did not touch them.
+    """
     step, samples = frame_samples(run.signals.times)
     poses = replayed_link_poses(run.robot, run.signals.joint_positions[samples])
     meshes = _mesh_parts(run)
@@ -64,10 +72,23 @@ def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
         bodies.append(body)
 
     always = [[0.0, float(run.signals.times[-1])]]
+    links = {link.name: link for link in run.robot.links}
     for name in dict.fromkeys([*run.robot.link_visuals, run.robot.tcp_link]):
         if name in poses:
-            looks = run.robot.link_visuals.get(name, ())
-            add(name, looks, poses[name], shown=always, ghost=False, isLink=True)
+            looks, link = run.robot.link_visuals.get(name, ()), links[name]
+            hidden = [_shape(shape, meshes) for shape in link.collisions]
+            mass = None if link.inertial is None else link.inertial.mass
+            add(
+                name,
+                looks,
+                poses[name],
+                shown=always,
+                ghost=False,
+                isLink=True,
+                mass=mass,
+                line=0,
+                collisions=[shape for shape in hidden if shape.get("parts") != []],
+            )
     for obj in run.objects:
         recorded = run.signals.object_poses.get(obj.name)
         known = _filled(recorded[samples]) if recorded is not None else None
@@ -76,9 +97,25 @@ def pack_scene(run: Run, packer: Packer) -> dict[str, Any]:
             continue
         shown = always if recorded is None else _shown(run.signals.times, recorded)
         ghost = not obj.in_simulation
-        add(obj.name, obj.looks, rows, shown=shown, ghost=ghost, isLink=False)
+        hidden = [_shape(shape, meshes) for shape in obj.shapes if obj.visuals]
+        add(
+            obj.name,
+            obj.looks,
+            rows,
+            shown=shown,
+            ghost=ghost,
+            isLink=False,
+            mass=obj.mass if np.isfinite(obj.mass) and not obj.is_static else None,
+            line=line_of(run.source, obj.name),
+            collisions=hidden,
+        )
     unit = _pack_poses(columns, len(samples), packer)
-    focus, bounds = _views(run, poses)
+    commanded = replayed_link_poses(run.robot, _commanded(run)[samples])
+    moving = [body["name"] for body in bodies if body["isLink"] and body["fixed"] is None]
+    _pack_apart(
+        [poses[name] for name in moving], [commanded[name] for name in moving], unit, packer
+    )
+    focus, bounds = _views(run, poses, named)
     return {
         "bodies": bodies,
         "meshes": [pack_mesh(mesh, number, packer) for number, mesh in enumerate(run.meshes)],
@@ -118,6 +155,24 @@ def _shape(shape: Shape, meshes: Mapping[MeshKey, list[list[Any]]]) -> dict[str,
             return plain | {"kind": "mesh", "parts": meshes.get((path, scale), [])}
 
 
+def _commanded(run: Run) -> FloatArray:
+    """Commanded joint positions; measured ones where nothing commands."""
+    commands = run.signals.joint_commands
+    return np.where(np.isfinite(commands), commands, run.signals.joint_positions)
+
+
+def _pack_apart(
+    measured: Sequence[FloatArray], commanded: Sequence[FloatArray], unit: float, packer: Packer
+) -> None:
+    """Put in how far commanded poses are from measured ones, in the units of these."""
+    apart: list[IntArray] = []
+    for one, two in zip(measured, commanded, strict=True):
+        sign = np.where(np.sum(one[:, 3:] * two[:, 3:], axis=1) < 0, -1.0, 1.0)[:, None]
+        turn = sign * two[:, 3:] - one[:, 3:]
+        apart += list(np.rint(np.hstack([(two - one)[:, :3] / unit, turn * FULL])).astype(int).T)
+    packer.add("commanded", differences(np.array(apart or np.zeros((0, 1)))))
+
+
 def _pack_poses(columns: Sequence[FloatArray], count: int, packer: Packer) -> float:
     """Put moving poses in, as 16-bit numbers; returns the unit of positions [m]."""
     stacked = np.stack(columns, axis=1) if columns else np.zeros((count, 0, 7))
@@ -149,23 +204,60 @@ def _shown(times: FloatArray, recorded: FloatArray) -> list[list[float]]:
     return [[float(times[a]), float(times[b])] for a, b in zip(starts, ends, strict=True)]
 
 
-def _views(run: Run, poses: Mapping[str, FloatArray]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Spheres around what the first view holds, and around what the sun's shadow covers."""
+def line_of(source: str, name: str) -> int:
+    """The line of a file that defines an object, as `name: can` or as a key; 0 if none does."""
+    word = re.escape(name)
+    defines = re.compile(rf"""\bname:\s*["']?{word}["']?\s*(?:[,}}#]|$)|^[\s-]*["']?{word}["']?:""")
+    lines = source.splitlines()
+    return next((number for number, line in enumerate(lines, 1) if defines.search(line)), 0)
+
+
+def _views(
+    run: Run, poses: Mapping[str, FloatArray], named: Collection[str]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What the first view holds, and a sphere around what the sun's shadow covers.
+
+    The first view holds the arm wherever it was, and what it touched.
+    """
+    base = poses[run.robot.base_link][0, :3] if run.robot.base_link in poses else np.zeros(3)
     near = [rows[:, :3] for rows in poses.values()]
     near = [points for points in near if np.abs(points).max(initial=0.0) > 0]
     near.append(run.signals.tcp_pose[:: max(1, len(run.signals.times) // 500), :3])
-    base = poses[run.robot.base_link][0, :3] if run.robot.base_link in poses else np.zeros(3)
+    arm = max(float(np.linalg.norm(points - base, axis=1).max(initial=0.0)) for points in near)
+    touched = {*named, *_touched(run)}
     wide: list[FloatArray] = []
     for obj in run.objects:
         if any(isinstance(shape.geometry, Plane) for shape in obj.looks):
             continue
         centres, reach = _extent(run, obj)
+        if reach < LARGE and obj.name in touched:
+            seen = centres[np.linalg.norm(centres - base, axis=1) < NEARBY * arm]
+            near += [seen - reach, seen + reach]
         corners = np.concatenate([centres - reach, centres + reach])
-        if reach < LARGE and np.linalg.norm(centres - base, axis=1).min(initial=np.inf) < NEARBY:
-            near.append(corners)
         wide.append(np.clip(corners, base - 2.5, base + 2.5))
-    inner = _sphere(near, THICKNESS)
-    return inner, _sphere([*near, *wide])
+    focus = {"points": _outermost(np.concatenate(near)), "arm": round(max(THINNEST_ARM, arm), 4)}
+    return focus, _sphere([*near, *wide])
+
+
+def _touched(run: Run) -> set[str]:
+    """Objects that the robot touched or carried; where there are none, those that can move."""
+    links = set(run.robot.link_names)
+    pairs = [contact.pair for contact in run.contacts if links & set(contact.pair)]
+    touched = {name for pair in pairs for name in pair if name not in links}
+    touched |= {held.represents for held in run.attachments}
+    return touched or {obj.name for obj in run.objects if not obj.is_static}
+
+
+def _outermost(points: FloatArray) -> list[list[float]]:
+    """Of a cloud, the points that are farthest in directions all around."""
+    known = points[np.isfinite(points).all(axis=1)]
+    if not len(known):
+        return [[0.0, 0.0, 0.0]]
+    number = np.arange(DIRECTIONS)
+    height, turn = 1 - (2 * number + 1) / DIRECTIONS, number * np.pi * (3 - 5**0.5)
+    flat = np.sqrt(1 - height**2)
+    around = np.stack([flat * np.cos(turn), flat * np.sin(turn), height])
+    return [_rounded(known[row], 4) for row in np.unique(np.argmax(known @ around, axis=0))]
 
 
 def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
@@ -178,10 +270,10 @@ def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
     return np.clip(centres, -FARTHEST, FARTHEST), reach if np.isfinite(reach) else 0.3
 
 
-def _sphere(clouds: Sequence[FloatArray], room: float = 0.0) -> dict[str, Any]:
+def _sphere(clouds: Sequence[FloatArray]) -> dict[str, Any]:
     points = np.concatenate([cloud for cloud in clouds if len(cloud)] or [np.zeros((1, 3))])
     low, high = points.min(axis=0), points.max(axis=0)
-    radius = max(0.15, 0.5 * float(np.linalg.norm(high - low)) + room)
+    radius = max(0.15, 0.5 * float(np.linalg.norm(high - low)))
     return {"center": _rounded((low + high) / 2), "radius": round(radius, 4)}
 
 

@@ -14,6 +14,7 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
+from harness.reporting.html.nearest import nearest_points
 from harness.reporting.margins import allowance_used
 from harness.robot.description import Joint
 
@@ -80,7 +81,7 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
     }
 
 
-def verdict_facts(verdict: Verdict) -> dict[str, Any]:
+def verdict_facts(run: Run, verdict: Verdict) -> dict[str, Any]:
     """A verdict as plain data."""
     first = verdict.measures[0] if verdict.measures else None
     return {
@@ -97,6 +98,8 @@ def verdict_facts(verdict: Verdict) -> dict[str, Any]:
         "measures": finite(verdict.measures),
         "plot": (first.plot or None) if first else None,
         "points": _points(verdict),
+        "nearest": nearest_points(run, verdict),
+        "bodies": bodies_of(run, verdict),
     }
 
 
@@ -107,6 +110,18 @@ def _points(verdict: Verdict) -> dict[str, list[float]] | None:
             points = {"expected": list(measure.expected), "actual": list(measure.actual)}
             return points if np.isfinite([*measure.expected, *measure.actual]).all() else None
     return None
+
+
+def bodies_of(run: Run, verdict: Verdict) -> list[str]:
+    """Links and objects that the first measure is about: a pair, a body, or the link of a joint."""
+    if not verdict.measures:
+        return []
+    about = verdict.measures[0].detail
+    joint = run.robot.joint_by_name.get(about)
+    if joint is not None:
+        return [joint.child]
+    known = {*run.robot.link_names, *(obj.name for obj in run.objects)}
+    return [name for name in about.split(" and ") if name in known]
 
 
 def findings_facts(run: Run) -> list[dict[str, Any]]:

@@ -79,13 +79,18 @@ class Page:
             step_facts(run, step, stored.verdicts) | plan
             for step, plan in zip(ordered_steps(run), self._plans, strict=True)
         ]
+        verdicts = [verdict_facts(run, verdict) for verdict in stored.verdicts]
+        blamed = {
+            name for each in verdicts if each["status"] != "passed" for name in each["bodies"]
+        }
         return packer.text(
             {
                 "title": run.scenario,
+                "robot": run.robot.name,
                 "outcome": stored.outcome,
                 "duration": float(run.signals.times[-1]),
                 "steps": steps,
-                "verdicts": [verdict_facts(verdict) for verdict in stored.verdicts],
+                "verdicts": verdicts,
                 "findings": findings_facts(run),
                 "contacts": contact_facts(run),
                 "joints": joint_facts(run),
@@ -93,7 +98,7 @@ class Page:
                 "source": run.source,
                 **self._facts,
                 "cameras": pack_cameras(run, packer),
-                **pack_scene(run, packer),
+                **pack_scene(run, packer, blamed),
             }
         )
 

@@ -23,9 +23,33 @@ export function readAddress(hash) {
   return { time: numeric("t"), expect: index("expect"), step: index("step"), tab: values.get("tab") };
 }
 
-/** Have the address say where the page is, without a new entry in the history. @param {Record<string, string | number | null>} place */
-export function writeAddress(place) {
-  const given = Object.entries(place).filter(([, value]) => value !== null && value !== undefined);
-  const hash = `#${given.map(([name, value]) => `${name}=${value}`).join("&")}`;
-  if (location.hash !== hash) history.replaceState(null, "", hash);
+const REST = 250; // [ms] without another time before the address shows it: a browser allows few changes a second
+
+/** Keeps the address at the time and the selection that the page shows, without new entries in the history. */
+export class Address {
+  /** @param {import("./clock.js").Clock} clock */
+  constructor(clock) {
+    this.clock = clock;
+    /** @type {Record<string, string | number>} */
+    this.place = {};
+    let due = 0;
+    let isFirst = true;
+    clock.onTime(() => {
+      if (isFirst) return void (isFirst = false);
+      clearTimeout(due);
+      due = setTimeout(() => this.#write(), REST);
+    });
+  }
+
+  /** @param {Record<string, string | number>} place step or verdict that is shown now */
+  select(place) {
+    this.place = place;
+    this.#write();
+  }
+
+  #write() {
+    const values = Object.entries({ t: this.clock.time.toFixed(2), ...this.place });
+    const hash = `#${values.map(([name, value]) => `${name}=${value}`).join("&")}`;
+    if (location.hash !== hash) history.replaceState(null, "", hash);
+  }
 }

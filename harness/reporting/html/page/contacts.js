@@ -2,9 +2,13 @@
 
 import { rgba, themeColor } from "./dom.js";
 import { undoDifferences } from "./payload.js";
+import { cross, normalize } from "./vectors.js";
 
-const LENGTH = { least: 0.03, more: 0.09 }; // [m]; the hardest press of the run has both
+const LENGTH = { least: 26, more: 54 }; // [pixels]; the hardest press of the run has both
 const HEAD = { length: 0.28, width: 0.11 }; // shares of the length
+const GAP = [NaN, NaN, NaN];
+const BARBS = [[HEAD.width, 0], [-HEAD.width, 0], [0, HEAD.width], [0, -HEAD.width]];
+const ARROW = [0, 0, -1, 0, 0, 0, ...BARBS.flatMap(([x, y]) => [...GAP, 0, 0, 0, x, y, -HEAD.length])]; // ends at 0, along z
 const NUMBERS = 6; // of a frame: where (xyz), and the force (xyz)
 
 /**
@@ -23,7 +27,7 @@ export class Contacts {
     this.pairs = payload.run.presses.map((head) => ({
       ...head,
       columns: undoDifferences(payload.buffer(head.buffer), head.count),
-      line: viewer.addLine([], { color: rgba(themeColor("--contact")), width: 2.5, onTop: true, visible: false }),
+      line: viewer.addLine(ARROW, { color: rgba(themeColor("--contact")), width: 2.5, onTop: true, visible: false }),
     }));
     const sizes = this.pairs.flatMap((pair) => Array.from({ length: pair.count }, (_, i) => this.#pressOf(pair, i).size));
     this.hardest = sizes.reduce((most, size) => Math.max(most, size), 1e-9);
@@ -49,7 +53,7 @@ export class Contacts {
       const index = frame - pair.first;
       const press = isEnabled && index >= 0 && index < pair.count ? this.#pressOf(pair, index) : null;
       pair.line.visible = Boolean(press && press.size > 0);
-      if (pair.line.visible) this.viewer.setPoints(pair.line, this.#arrow(press));
+      if (pair.line.visible) this.#point(pair.line, press);
     }
     this.viewer.redraw();
   }
@@ -61,23 +65,12 @@ export class Contacts {
     return { link, body, place: numbers.slice(0, 3), force, size: Math.hypot(...force) };
   }
 
-  /** A shaft and four barbs, with gaps between them. @param {Press} press @returns {number[]} */
-  #arrow({ place, force, size }) {
+  /** Turn the arrow along a force, longer for a harder one. @param {any} line @param {Press} press */
+  #point(line, { place, force, size }) {
     const along = force.map((value) => value / size);
-    const length = LENGTH.least + LENGTH.more * Math.sqrt(size / this.hardest);
     const flattest = along.reduce((best, value, axis) => (Math.abs(value) < Math.abs(along[best]) ? axis : best), 0);
-    const side = perpendicular(along, [0, 1, 2].map((axis) => Number(axis === flattest)));
-    const other = perpendicular(along, side);
-    const back = (share, across, width) => place.map((value, i) => value - length * (share * along[i] + width * across[i]));
-    const gap = [NaN, NaN, NaN];
-    const barbs = [side, other].flatMap((across) => [HEAD.width, -HEAD.width].map((width) => back(HEAD.length, across, width)));
-    return [...back(1, side, 0), ...place, ...barbs.flatMap((barb) => [...gap, ...place, ...barb])];
+    const side = normalize(cross(along, [0, 1, 2].map((axis) => Number(axis === flattest))));
+    line.model = new Float32Array([...side, 0, ...cross(along, side), 0, ...along, 0, ...place, 1]);
+    line.pixels = LENGTH.least + LENGTH.more * Math.sqrt(size / this.hardest);
   }
-}
-
-/** A unit vector at right angles to two others. */
-function perpendicular([ax, ay, az], [bx, by, bz]) {
-  const cross = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
-  const length = Math.hypot(...cross) || 1;
-  return cross.map((value) => value / length);
 }

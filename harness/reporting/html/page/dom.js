@@ -12,7 +12,7 @@ export function element(tag, properties = {}, ...children) {
   if (classes.length) made.className = classes.join(" ");
   for (const [key, value] of Object.entries(properties)) {
     if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
-    else if (value !== null && value !== undefined && value !== false) made.setAttribute(key, String(value));
+    else if (value !== null && value !== undefined && (value !== false || key.startsWith("aria-"))) made.setAttribute(key, String(value));
   }
   made.append(...children.filter((child) => child !== null && child !== undefined && child !== false).map(asNode));
   return made;

@@ -1,11 +1,12 @@
 // Puts the page together: one clock, and everything that follows it.
 
-import { readAddress, writeAddress } from "./address.js";
+import { Address, readAddress } from "./address.js";
 import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
 import { byId, scrollToTop } from "./dom.js";
 import { makeFilm } from "./film.js";
 import { listenToKeys } from "./keys.js";
+import { makeLegend, makeSides } from "./legend.js";
 import { unpack, valueAt } from "./payload.js";
 import { makePictures } from "./pictures.js";
 import { plannerView } from "./planner.js";
@@ -28,9 +29,9 @@ async function start() {
     .filter((step) => step.status !== "not reached" && !step.hasChildren)
     .map((step) => ({ start: step.start, end: step.end, tone: step.band }));
 
-  const scene = makeScene(payload);
   const plots = new Plots(payload, clock, bands);
-  const showCurrentStep = makeSteps(payload, selectStep);
+  const scene = makeScene(payload, () => plots.panelData("contact"));
+  const showCurrentStep = makeSteps(payload, { step: selectStep, verdict: selectVerdict });
   const source = sourceView(payload, selectLine);
   const verdicts = verdictList(payload, selectVerdict);
   const passed = run.verdicts.filter(({ status }) => status === "passed").length;
@@ -44,15 +45,15 @@ async function start() {
   ]);
   makeTimeline(payload, clock, { step: selectStep, verdict: selectVerdict });
   const hasPictures = makePictures(payload, clock);
-  const drawFilm = scene ? makeFilm(clock, drawAt) : () => {};
-  const contacts = plots.panelData("contact");
+  const drawFilm = scene ? makeFilm(run, clock, drawAt) : () => {};
+  const address = new Address(clock);
 
   let currentStep = -2;
   let chosen = { step: -1, time: NaN }; // several steps may share a moment
   const stepNow = (time) => (time === chosen.time ? chosen.step : stepAt(run.steps, time));
   clock.onTime((time) => {
     const step = stepNow(time);
-    scene?.pose(time, step, contacts);
+    scene?.pose(time, step);
     showReadout(time, step);
     if (step === currentStep) return;
     currentStep = step;
@@ -79,9 +80,9 @@ async function start() {
   function drawAt(time, canvas) {
     const { viewer } = scene;
     const wasDirty = viewer.isDirty;
-    scene.pose(time, stepAt(run.steps, time), null);
+    scene.pose(time, stepAt(run.steps, time));
     viewer.copyTo(scene.film, canvas);
-    scene.pose(clock.time, stepNow(clock.time), contacts);
+    scene.pose(clock.time, stepNow(clock.time));
     viewer.isDirty = wasDirty; // the view's own canvas has not changed
   }
 
@@ -89,10 +90,11 @@ async function start() {
     const step = run.steps[index];
     if (step.status === "not reached") return;
     const isFailure = step.status === "failed";
+    scene?.why.show(null);
     chosen = { step: index, time: isFailure ? step.end : Math.min(step.start + 1e-3, step.end) };
     clock.seek(chosen.time);
     scrollToTop(byId("panels"), document.querySelector(`#panel-planner:not([hidden]) [data-step="${index}"]`));
-    writeAddress({ t: clock.time.toFixed(2), step: index + 1 });
+    address.select({ step: index + 1 });
   }
 
   function selectVerdict(index) {
@@ -105,11 +107,12 @@ async function start() {
       chosen = { step: owner >= 0 ? owner : stepAt(run.steps, verdict.time), time: verdict.time };
       clock.seek(verdict.time);
     }
-    scene?.marks.compare(verdict.points && { ...verdict.points, good: verdict.status === "passed" });
+    scene?.why.show(verdict);
+    scene?.pose(clock.time, stepNow(clock.time));
     if (verdict.plot) plots.reveal(verdict.plot);
     showTab("expect");
     verdicts.querySelector(`[data-verdict="${index}"]`)?.scrollIntoView({ block: "nearest" });
-    writeAddress({ t: clock.time.toFixed(2), expect: index + 1 });
+    address.select({ expect: index + 1 });
   }
 
   function selectLine(line) {
@@ -157,7 +160,18 @@ async function start() {
     if (place.time !== null) clock.seek(place.time);
   }
 
-  makeControls({ clock, scene, plots, drawFilm, hasPictures });
+  const again = () => clock.timeListeners.forEach((listener) => listener(clock.time));
+  makeControls({ clock, scene, plots, drawFilm });
+  if (scene) {
+    makeLegend(run, scene, hasPictures, again);
+    makeSides(scene, () => clock.time, run.title);
+    scene.inspector.onChange = again;
+    scene.inspector.onLine = (line) => {
+      showTab("source");
+      selectLine(line);
+      source.children[line - 1]?.scrollIntoView({ block: "center" });
+    };
+  }
   listenToKeys(clock, { nextStep, nextFailure });
   addEventListener("hashchange", () => goTo(location.hash));
   if (location.hash) goTo(location.hash);

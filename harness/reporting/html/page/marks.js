@@ -1,12 +1,13 @@
-// What is drawn into the 3D view besides bodies: TCP paths, frames of goals, points of a verdict.
+// What is drawn into the 3D view besides bodies: TCP paths, frames of goals, and why a verdict is as it is.
 
 import { rgba, themeColor } from "./dom.js";
 import { indexAt } from "./payload.js";
 import { poseMatrix } from "./vectors.js";
 
-const AXIS = 0.09; // [m]
+const FRAME = 46; // length of the axes of a frame [pixels]
+const CROSS = 9; // half the size of a cross [pixels]
+const DASH = { plan: 0.03, raw: 0.016, missed: 0.016 }; // shares of the arm's size
 const AXES = [[1, 0, 0, "#dc2626"], [0, 1, 0, "#16a34a"], [0, 0, 1, "#2563eb"]];
-const CROSS = 0.02; // half the size of a cross [m]
 
 export class Marks {
   /**
@@ -17,33 +18,20 @@ export class Marks {
     this.run = payload.run;
     this.viewer = viewer;
     const path = new Float32Array(payload.buffer("tcp"));
+    const dash = (kind) => DASH[kind] * this.run.focus.arm;
     this.tcp = { times: new Float32Array(payload.buffer("tcp.times")), path };
     this.walked = viewer.addLine(path, { color: rgba(themeColor("--accent")), width: 3.5 });
     this.whole = viewer.addLine(path, { color: rgba(themeColor("--accent"), 0.25), width: 1.8 });
-    this.planned = this.run.steps.map((step) =>
-      step.plan === null
-        ? null
-        : viewer.addLine(new Float32Array(payload.buffer(step.plan)), {
-            color: rgba(themeColor("--plan")), width: 2.5, dash: 0.022,
-          }),
-    );
-    this.raw = this.run.steps.map((step) =>
-      step.rawPlan === null
-        ? null
-        : viewer.addLine(new Float32Array(payload.buffer(step.rawPlan)), {
-            color: rgba(themeColor("--raw")), width: 2, dash: 0.012, visible: false,
-          }),
-    );
-    this.tool = this.#frame(AXIS, 3);
-    this.goal = this.#frame(AXIS * 1.35, 2);
-    this.nearest = this.#cross("--warn");
-    this.missed = viewer.addLine([], { color: rgba(themeColor("--warn")), width: 2.5, dash: 0.012, onTop: true });
-    this.expected = this.#cross("--good");
-    this.actual = this.#cross("--bad");
-    this.between = viewer.addLine([], { color: rgba(themeColor("--bad")), width: 3, onTop: true });
+    const planned = (buffer, color, more) =>
+      buffer === null ? null : viewer.addLine(new Float32Array(payload.buffer(buffer)), { color: rgba(themeColor(color)), ...more });
+    this.planned = this.run.steps.map(({ plan }) => planned(plan, "--plan", { width: 2.5, dash: dash("plan") }));
+    this.raw = this.run.steps.map(({ rawPlan }) => planned(rawPlan, "--raw", { width: 2, dash: dash("raw"), visible: false }));
+    this.tool = this.#frame(FRAME, 3);
+    this.goal = this.#frame(1.3 * FRAME, 2);
+    this.nearest = crossLines(viewer, "--warn");
+    this.missed = viewer.addLine([], { color: rgba(themeColor("--warn")), width: 2.5, dash: dash("missed"), onTop: true });
     /** @type {Record<string, boolean>} what the viewer has switched on */
     this.enabled = { path: true, plan: true, frame: true, goal: true };
-    this.verdict = null;
   }
 
   /** Draw what belongs to a time. @param {number} time @param {number} step index, -1 if none @param {number[]} toolPose */
@@ -56,10 +44,10 @@ export class Marks {
     this.walked.visible = this.whole.visible = enabled.path && this.tcp.times.length > 1;
     for (const [index, line] of this.planned.entries()) if (line) line.visible = enabled.plan && index === step;
     for (const [index, line] of this.raw.entries()) if (line) line.visible = enabled.raw && index === step;
-    this.#place(this.tool, enabled.frame ? toolPose : null);
+    place(this.tool, enabled.frame ? toolPose : null);
     const { goal, nearest } = this.run.steps[step] ?? {};
-    this.#place(this.goal, enabled.goal ? goal : null);
-    this.#place(this.nearest, enabled.goal ? nearest?.place : null);
+    place(this.goal, enabled.goal ? goal : null);
+    place(this.nearest, enabled.goal ? nearest?.place : null);
     const isMissed = enabled.goal && nearest?.place && nearest.target;
     this.missed.visible = Boolean(isMissed);
     if (isMissed && this.missedBy !== step) {
@@ -69,35 +57,28 @@ export class Marks {
     this.viewer.redraw();
   }
 
-  /** Draw expected against actual of a verdict. @param {{expected?: number[], actual?: number[], good?: boolean} | null} points */
-  compare(points) {
-    const { expected, actual } = points ?? {};
-    this.#place(this.expected, expected ? [...expected.slice(0, 3), 1, 0, 0, 0] : null);
-    this.#place(this.actual, actual ? [...actual.slice(0, 3), 1, 0, 0, 0] : null);
-    this.viewer.setPoints(this.between, expected && actual ? [...expected.slice(0, 3), ...actual.slice(0, 3)] : []);
-  }
-
-  #frame(size, width) {
+  #frame(pixels, width) {
     return AXES.map(([x, y, z, color]) =>
-      this.viewer.addLine([0, 0, 0, size * x, size * y, size * z], { color: rgba(color), width, onTop: width < 3 }),
+      this.viewer.addLine([0, 0, 0, x, y, z], { color: rgba(color), width, pixels, onTop: true }),
     );
   }
+}
 
-  #cross(color) {
-    return [0, 1, 2].map((axis) => {
-      const end = [0, 0, 0];
-      end[axis] = CROSS;
-      return this.viewer.addLine([...end.map((value) => -value), ...end], {
-        color: rgba(themeColor(color)), width: 3, onTop: true, visible: false,
-      });
+/** Three short lines through a point. @param {import("./viewer.js").Viewer} viewer @param {string} color of the theme @param {number} [pixels] half their length */
+export function crossLines(viewer, color, pixels = CROSS) {
+  return [0, 1, 2].map((axis) => {
+    const end = [0, 0, 0];
+    end[axis] = 1;
+    return viewer.addLine([...end.map((value) => -value), ...end], {
+      color: rgba(themeColor(color)), width: 3, pixels, onTop: true, visible: false,
     });
-  }
+  });
+}
 
-  /** @param {any[]} lines @param {number[] | null | undefined} pose */
-  #place(lines, pose) {
-    for (const line of lines) {
-      line.visible = Boolean(pose);
-      if (pose) line.model = poseMatrix(pose);
-    }
+/** Put lines at a pose, or hide them. @param {any[]} lines @param {number[] | null | undefined} pose */
+export function place(lines, pose) {
+  for (const line of lines) {
+    line.visible = Boolean(pose);
+    if (pose) line.model = poseMatrix(pose);
   }
 }

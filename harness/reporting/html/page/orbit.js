@@ -1,54 +1,117 @@
-// A camera that circles a point: mouse, touch and keyboard.
+// A camera that circles a point: it frames what is of interest from any side; mouse, touch and keyboard.
 
-import { addScaled, lookAt, multiply, perspective } from "./vectors.js";
+import { addScaled, cross, dot, lookAt, multiply, normalize, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
-const CLOSENESS = 0.84; // the corners of what is seen may touch the edge
-const LIFT = 0.07; // of the radius: room for what is written over the picture's top
+const FRAMED = { left: 0.95, right: 0.95, top: 0.84, bottom: 0.93 }; // shares of half the picture; its top has the readout
+const THICKNESS = 0.09; // of the arm's size, by which links reach beyond their origins
+const FOLLOWED = 0.8; // of the arm's size: how much of it is seen around a TCP that is followed
 const TURN_PER_PIXEL = 0.008; // [rad]
 const STEEPEST = 1.55; // [rad]
 
+/** Where the eye is, seen from the target: angles in [rad]. */
+export const SIDES = {
+  iso: { azimuth: -0.72, elevation: 0.42 },
+  front: { azimuth: 0, elevation: 0.02 },
+  side: { azimuth: -Math.PI / 2, elevation: 0.02 },
+  top: { azimuth: -Math.PI / 2, elevation: STEEPEST },
+};
+
 export class Orbit {
   /**
-   * @param {{center: number[], radius: number}} focus what is to fill the picture [m]
+   * @param {{points: number[][], arm: number}} focus what the picture holds, and the arm's size [m]
    * @param {() => void} changed called when the view is another one
    */
   constructor(focus, changed) {
-    this.home = {
-      azimuth: -0.72,
-      elevation: 0.42,
-      distance: (CLOSENESS * focus.radius) / Math.sin(FIELD_OF_VIEW / 2),
-      target: /** @type {number[]} */ ([focus.center[0], focus.center[1], focus.center[2] + LIFT * focus.radius]),
-    };
+    this.focus = focus;
     this.changed = changed;
-    this.reset();
+    this.isHeld = false;
+    this.target = [0, 0, 0];
+    this.distance = 1;
+    this.tangent = Math.tan(FIELD_OF_VIEW / 2);
+    this.look("iso");
   }
 
-  /** Look as at the beginning. */
-  reset() {
-    Object.assign(this, structuredClone(this.home));
+  /** Frame what is of interest from a side. @param {keyof SIDES} side */
+  look(side) {
+    Object.assign(this, SIDES[side]);
+    this.side = side;
+    this.framedFor = 0;
     this.changed();
+  }
+
+  /** Keep a point in the middle. @param {number[]} point [m] */
+  follow(point) {
+    this.target = [...point];
+    this.changed();
+  }
+
+  /** Look at a point from nearby. @param {number[]} point [m] */
+  approach(point) {
+    this.#leave();
+    this.target = [...point];
+    this.distance = (FOLLOWED * this.focus.arm) / Math.tan(FIELD_OF_VIEW / 2);
+    this.changed();
+  }
+
+  /** Direction from the target to the eye. @returns {import("./vectors.js").Vector} */
+  get back() {
+    const flat = Math.cos(this.elevation);
+    return [flat * Math.cos(this.azimuth), flat * Math.sin(this.azimuth), Math.sin(this.elevation)];
   }
 
   /** Where the eye is. @returns {import("./vectors.js").Vector} */
   get eye() {
-    const flat = Math.cos(this.elevation);
-    return addScaled(
-      this.target,
-      [flat * Math.cos(this.azimuth), flat * Math.sin(this.azimuth), Math.sin(this.elevation)],
-      this.distance,
-    );
+    return addScaled(this.target, this.back, this.distance);
   }
 
-  /** Projection times view. @param {number} aspect width over height; a narrow picture steps back */
+  /** Projection times view. @param {number} aspect width over height; a narrow picture has a wider angle */
   matrix(aspect) {
     const angle = aspect >= 1 ? FIELD_OF_VIEW : 2 * Math.atan(Math.tan(FIELD_OF_VIEW / 2) / Math.sqrt(aspect));
+    this.tangent = Math.tan(angle / 2);
+    if (this.framedFor !== null && Math.abs(this.framedFor - aspect) > 1e-3) this.#frame(aspect);
     const lens = perspective(angle, aspect, Math.max(0.005, this.distance * 0.02), this.distance + 40);
     return multiply(lens, lookAt(this.eye, this.target, [0, 0, 1]));
   }
 
+  /** Right and up of the picture, in the world. */
+  #axes() {
+    const right = normalize(cross([0, 0, 1], this.back));
+    return { right, up: cross(this.back, right) };
+  }
+
+  /**
+   * Put the eye as near as all points allow, in their middle. With t the slope of an edge of the picture,
+   * a point at (x, depth z towards the eye) is inside it if x - eye.x <= t (eye.z - z): linear in the eye.
+   */
+  #frame(aspect) {
+    const { right, up } = this.#axes();
+    const room = THICKNESS * this.focus.arm;
+    const placed = this.focus.points.map((point) => [dot(point, right), dot(point, up), dot(point, this.back)]);
+    const farthest = (axis, sign, slope) => Math.max(...placed.map((at) => sign * at[axis] + room + slope * at[2]));
+    const slopes = [
+      [this.tangent * aspect * FRAMED.right, this.tangent * aspect * FRAMED.left],
+      [this.tangent * FRAMED.top, this.tangent * FRAMED.bottom],
+    ];
+    const edges = slopes.map(([more, less], axis) => [farthest(axis, 1, more), farthest(axis, -1, less)]);
+    const near = Math.max(...placed.map((at) => at[2])) + 2 * room;
+    const depth = Math.max(near, ...slopes.map(([more, less], axis) => (edges[axis][0] + edges[axis][1]) / (more + less)));
+    const [x, y] = slopes.map(([more, less], axis) => (edges[axis][0] - edges[axis][1] + (less - more) * depth) / 2);
+    const middle = placed.reduce((sum, at) => sum + at[2], 0) / placed.length;
+    this.distance = depth - middle;
+    this.target = [0, 1, 2].map((i) => x * right[i] + y * up[i] + middle * this.back[i]);
+    this.framedFor = aspect;
+  }
+
+  /** The view is the reader's own from now on: another size of the picture does not frame it anew. */
+  #leave() {
+    this.framedFor = null;
+    this.side = null;
+  }
+
   /** @param {number} right pixels @param {number} down pixels */
   turn(right, down) {
+    this.#leave();
     this.azimuth -= right * TURN_PER_PIXEL;
     this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, this.elevation + down * TURN_PER_PIXEL));
     this.changed();
@@ -56,73 +119,30 @@ export class Orbit {
 
   /** Move the target with the pointer. @param {number} right pixels @param {number} down @param {number} height of the picture */
   pan(right, down, height) {
-    const scale = (this.distance * 2 * Math.tan(FIELD_OF_VIEW / 2)) / height;
-    const [sin, cos] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
-    const [rise, flat] = [Math.sin(this.elevation), Math.cos(this.elevation)];
-    this.target[0] += scale * (sin * right - cos * rise * down);
-    this.target[1] += scale * (-cos * right - sin * rise * down);
-    this.target[2] += scale * flat * down;
+    this.#leave();
+    const scale = (this.distance * 2 * this.tangent) / height;
+    const axes = this.#axes();
+    this.target = addScaled(addScaled(this.target, axes.right, -scale * right), axes.up, scale * down);
     this.changed();
   }
 
-  /** @param {number} factor above 1 goes away */
-  zoom(factor) {
-    this.distance = Math.max(0.05, Math.min(30, this.distance * factor));
+  /**
+   * Go nearer or away, towards what is under the pointer.
+   * @param {number} factor above 1 goes away @param {number[]} [at] from the middle of the picture, in half heights: right and up
+   */
+  zoom(factor, at = [0, 0]) {
+    this.#leave();
+    const distance = Math.max(0.02, Math.min(30, this.distance * factor));
+    const moved = (this.distance - distance) * this.tangent;
+    const axes = this.#axes();
+    this.target = addScaled(addScaled(this.target, axes.right, moved * at[0]), axes.up, moved * at[1]);
+    this.distance = distance;
     this.changed();
   }
+}
 
-  /** Take a canvas's pointer and keys. @param {HTMLCanvasElement} canvas */
-  control(canvas) {
-    const pointers = new Map();
-    Object.defineProperty(this, "isHeld", { get: () => pointers.size > 0 });
-    let spread = 0;
-    canvas.style.touchAction = "none";
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("dblclick", () => this.reset());
-    canvas.addEventListener("pointerdown", (event) => {
-      pointers.set(event.pointerId, [event.clientX, event.clientY]);
-      canvas.setPointerCapture(event.pointerId);
-    });
-    const release = (event) => {
-      pointers.delete(event.pointerId);
-      spread = 0;
-      this.changed();
-    };
-    canvas.addEventListener("pointerup", release);
-    canvas.addEventListener("pointercancel", release);
-    canvas.addEventListener("pointermove", (event) => {
-      const last = pointers.get(event.pointerId);
-      if (!last) return;
-      const [right, down] = [event.clientX - last[0], event.clientY - last[1]];
-      pointers.set(event.pointerId, [event.clientX, event.clientY]);
-      if (pointers.size === 2) {
-        const [a, b] = [...pointers.values()];
-        const distance = Math.hypot(a[0] - b[0], a[1] - b[1]);
-        if (spread > 0) this.zoom(spread / distance);
-        spread = distance;
-        this.pan(right / 2, down / 2, canvas.clientHeight);
-      } else if (event.buttons === 2 || event.shiftKey) {
-        this.pan(right, down, canvas.clientHeight);
-      } else {
-        this.turn(right, down);
-      }
-    });
-    canvas.addEventListener(
-      "wheel",
-      (event) => {
-        event.preventDefault();
-        this.zoom(Math.exp(event.deltaY * 0.001));
-      },
-      { passive: false },
-    );
-    canvas.addEventListener("keydown", (event) => {
-      const turns = { ArrowLeft: [-20, 0], ArrowRight: [20, 0], ArrowUp: [0, 20], ArrowDown: [0, -20] };
-      if (turns[event.key]) this.turn(...turns[event.key]);
-      else if (event.key === "+") this.zoom(0.9);
-      else if (event.key === "-") this.zoom(1.1);
-      else return;
-      event.preventDefault();
-      event.stopPropagation();
-    });
-  }
+/** Where an event is, from the middle of a canvas in half heights: right and up. */
+export function placeOf(canvas, { offsetX, offsetY }) {
+  const half = canvas.clientHeight / 2;
+  return [(offsetX - canvas.clientWidth / 2) / half, 1 - offsetY / half];
 }

@@ -22,7 +22,7 @@ export function putPlotsOnPaper(plots, repaint) {
       const names = data.series.flatMap(({ name }, index) => {
         if (plot.hidden.has(index)) return [];
         const swatch = element("i");
-        swatch.style.background = Plot.color(index);
+        swatch.style.background = Plot.color(plot.colors[index]);
         return [element("span", {}, swatch, short(name)), " "];
       });
       return element(

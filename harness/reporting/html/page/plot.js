@@ -2,9 +2,11 @@
 
 import { element, themeColor } from "./dom.js";
 import { indexAt, valueAt } from "./payload.js";
-import { number } from "./units.js";
+import { number, short } from "./units.js";
 
-const MARGIN = { left: 46, right: 8, top: 6, bottom: 18 };
+const MARGIN = { left: 46, right: 10, top: 6, bottom: 18 };
+const FONT = "11px system-ui, sans-serif";
+const LINE = 15; // height of a line of values [pixels]
 const TICK_GAP = { x: 64, y: 30 }; // [pixels]
 const DRAG = 6; // pixels that make a click a zoom
 const ROOM = 0.07; // of the values' range, above and below
@@ -28,6 +30,8 @@ export class Plot {
     this.canvas = element("canvas", { role: "img", tabindex: 0 });
     /** @type {Set<number>} */
     this.hidden = new Set();
+    /** Number of the colour of each series. @type {number[]} */
+    this.colors = [];
     /** @type {PlotData | null} */
     this.data = null;
     this.cursor = 0;
@@ -37,10 +41,11 @@ export class Plot {
     new ResizeObserver(() => this.#layOut()).observe(this.canvas);
   }
 
-  /** @param {PlotData} data @param {Set<number>} [hidden] series that are not drawn */
-  show(data, hidden = new Set()) {
+  /** @param {PlotData} data @param {Set<number>} [hidden] series that are not drawn @param {number[]} [colors] number of each one's colour */
+  show(data, hidden = new Set(), colors = data.series.map((_, index) => index)) {
     this.data = data;
     this.hidden = hidden;
+    this.colors = colors;
     const ranges = data.series.map(({ name, low, high }) => `${name} from ${number(low)} to ${number(high)}`);
     this.canvas.setAttribute("aria-label", `Plot over time of ${data.title} in ${data.unit}: ${ranges.join(", ")}`);
     this.draw();
@@ -64,7 +69,11 @@ export class Plot {
     }
   }
 
-  /** Colour of a series. @param {number} index */
+  #color(index) {
+    return Plot.color(this.colors[index] ?? index);
+  }
+
+  /** Colour of a number. @param {number} index */
   static color(index) {
     return themeColor(`--s${index % 10}`);
   }
@@ -78,6 +87,12 @@ export class Plot {
     this.picture.height = height;
     const pen = this.picture.getContext("2d");
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    this.paint(pen, width / this.ratio, height / this.ratio);
+    this.point(this.cursor);
+  }
+
+  /** Draw everything but the cursor. @param {any} pen of a canvas, or one that writes @param {number} width @param {number} height in CSS pixels */
+  paint(pen, width, height) {
     pen.fillStyle = themeColor("--panel");
     pen.fillRect(0, 0, width, height);
     this.#setRange();
@@ -90,7 +105,6 @@ export class Plot {
     this.#drawLimits(pen);
     this.data.series.forEach((series, index) => this.hidden.has(index) || this.#drawSeries(pen, series, index));
     pen.restore();
-    this.point(this.cursor);
   }
 
   /** The plot in another size, without its cursor. @param {number} width @param {number} height in CSS pixels @param {number} ratio pixels in one of them */
@@ -170,7 +184,7 @@ export class Plot {
   }
 
   #drawAxes(pen) {
-    pen.font = "11px system-ui, sans-serif";
+    pen.font = FONT;
     pen.fillStyle = themeColor("--muted");
     pen.strokeStyle = themeColor("--grid");
     pen.lineWidth = 1;
@@ -184,8 +198,11 @@ export class Plot {
     pen.textBaseline = "top";
     for (const time of ticks(this.from, this.to, this.width / TICK_GAP.x)) {
       line(pen, this.#x(time), MARGIN.top, this.#x(time), MARGIN.top + this.height);
-      pen.fillText(String(time), this.#x(time), MARGIN.top + this.height + 4);
+      const isNearUnit = this.#x(time) > MARGIN.left + this.width - 30;
+      if (!isNearUnit) pen.fillText(String(time), this.#x(time), MARGIN.top + this.height + 4);
     }
+    pen.textAlign = "right";
+    pen.fillText("t [s]", MARGIN.left + this.width + MARGIN.right - 2, MARGIN.top + this.height + 4);
   }
 
   #drawLimits(pen) {
@@ -193,19 +210,21 @@ export class Plot {
     pen.lineWidth = 1.2;
     for (const limit of this.data.limits) {
       if (!this.#isShown(limit)) continue;
-      pen.strokeStyle = limit.series === null ? themeColor("--bad") : Plot.color(limit.series);
+      pen.strokeStyle = limit.series === null ? themeColor("--bad") : this.#color(limit.series);
       line(pen, MARGIN.left, this.#y(limit.value), MARGIN.left + this.width, this.#y(limit.value));
     }
     pen.setLineDash([]);
   }
 
   /** A line through the samples in sight; of many in one column of pixels, the lowest and highest. */
-  #drawSeries(pen, { times, values }, index) {
+  #drawSeries(pen, series, index) {
+    const { times, values } = series;
     const first = Math.max(0, indexAt(times, this.from) - 1);
     const last = indexAt(times, this.to);
     const perPixel = (last - first) / (this.width * this.ratio);
-    pen.strokeStyle = Plot.color(index);
+    pen.strokeStyle = this.#color(index);
     pen.lineWidth = 1.5;
+    pen.setLineDash(series.dash ?? []);
     pen.lineJoin = "round";
     pen.beginPath();
     let isDown = false;
@@ -232,6 +251,7 @@ export class Plot {
       }
     }
     pen.stroke();
+    pen.setLineDash([]);
   }
 
   #drawCursor(pen) {
@@ -244,7 +264,7 @@ export class Plot {
     this.data.series.forEach((series, index) => {
       const value = valueAt(series, this.cursor);
       if (this.hidden.has(index) || Number.isNaN(value)) return;
-      pen.fillStyle = Plot.color(index);
+      pen.fillStyle = this.#color(index);
       pen.beginPath();
       pen.arc(x, this.#y(value), 2.7, 0, 7);
       pen.fill();
@@ -296,11 +316,33 @@ export class Plot {
     pen.strokeStyle = themeColor("--muted");
     pen.lineWidth = 1;
     line(pen, pixel, MARGIN.top, pixel, MARGIN.top + this.height);
-    pen.font = "11px system-ui, sans-serif";
-    pen.fillStyle = themeColor("--text");
+    this.#drawValues(pen, time, pixel);
+  }
+
+  /** The values at a time in a box next to the pointer, the largest first. */
+  #drawValues(pen, time, pixel) {
+    const texts = readings(this.data, time);
+    const rows = this.data.series
+      .map(({ name }, index) => ({ index, text: `${texts[index]}  ${short(name)}`, value: parseFloat(texts[index]) }))
+      .filter(({ index, value }) => !this.hidden.has(index) && Number.isFinite(value))
+      .sort((a, b) => b.value - a.value)
+      .slice(0, Math.max(1, Math.floor(this.height / LINE) - 1));
+    pen.font = FONT;
     pen.textBaseline = "top";
-    pen.textAlign = pixel > MARGIN.left + this.width / 2 ? "right" : "left";
-    pen.fillText(` ${time.toFixed(3)} s `, pixel, MARGIN.top + 2);
+    pen.textAlign = "left";
+    const width = Math.max(60, ...rows.map(({ text }) => pen.measureText(text).width)) + 12;
+    const isLeft = pixel > MARGIN.left + this.width / 2;
+    const [x, y] = [isLeft ? pixel - width - 6 : pixel + 6, MARGIN.top + 2];
+    pen.fillStyle = themeColor("--panel");
+    pen.globalAlpha = 0.9;
+    pen.fillRect(x, y, width, (rows.length + 1) * LINE + 4);
+    pen.globalAlpha = 1;
+    pen.fillStyle = themeColor("--text");
+    pen.fillText(`${time.toFixed(3)} s`, x + 6, y + 3);
+    rows.forEach(({ index, text }, row) => {
+      pen.fillStyle = this.#color(index);
+      pen.fillText(text, x + 6, y + 3 + (row + 1) * LINE);
+    });
   }
 }
 

@@ -1,8 +1,9 @@
-// The row of plots: what each shows, its legend, and one zoom for all of them.
+// The row of plots: what each shows, one legend and one stretch of time for all of them.
 
 import { byId, element } from "./dom.js";
 import { decodeGroup } from "./payload.js";
 import { Plot, readings } from "./plot.js";
+import { savePng, saveSvg } from "./plot_file.js";
 import { short } from "./units.js";
 
 const PREFERRED = ["position", "velocity", "effort", "tracking"];
@@ -19,6 +20,8 @@ export class Plots {
     this.decoded = new Map();
     /** Names of series that are hidden, in every plot. @type {Set<string>} */
     this.hidden = new Set();
+    this.legend = element("div.legend", { role: "toolbar", "aria-label": "Lines of all plots" });
+    byId("plot-head").prepend(this.legend);
     const groups = payload.run.groups;
     if (clock.duration <= 0) {
       byId("app").classList.add("at-rest");
@@ -28,49 +31,52 @@ export class Plots {
     const shown = clock.duration > 0 ? [...new Set(first)].slice(0, PREFERRED.length) : [];
     this.panels = shown.map((group) => this.#panel(group.id, bands));
     byId("plots").append(...this.panels.map((panel) => panel.element));
-    this.zoom(0, clock.duration);
-    clock.onTime((time) => this.point(time));
-  }
-
-  /** @param {number} from @param {number} to times shown [s] */
-  zoom(from, to) {
-    const end = Math.max(this.clock.duration, 1e-3);
-    const [start, stop] = [Math.max(0, from), Math.min(end, Math.max(to, from + 1e-3))];
-    for (const panel of this.panels) panel.plot.zoom(start, stop);
-    byId("plots").classList.toggle("zoomed", stop - start < end - 1e-9);
-  }
-
-  /** @param {number} time */
-  point(time) {
-    for (const { plot, values, data } of this.panels) {
-      plot.point(time);
-      const texts = readings(data, time);
-      values.forEach((cell, index) => (cell.textContent = texts[index]));
-    }
+    this.#showLegend();
+    clock.onSpan(({ from, to }) => {
+      for (const { plot } of this.panels) plot.zoom(from, to);
+      byId("plots").classList.toggle("zoomed", !clock.isWhole);
+    });
+    clock.onTime((time) => this.panels.forEach((panel) => this.#point(panel, time)));
   }
 
   /** A group with its series, whether a panel shows it or not; null where the run has none. @param {string} id */
   panelData(id) {
-    return this.payload.run.groups.some((group) => group.id === id) ? this.#data(id) : null;
+    return this.payload.run.groups.some((group) => group.id === id) ? this.data(id) : null;
   }
 
   /** Draw in another theme. */
   redraw() {
-    for (const panel of this.panels) this.#fill(panel, panel.data.id);
+    this.#showLegend();
   }
 
   /** Show a group, in the panel that shows it already or else in the last one. @param {string} id */
   reveal(id) {
     const panel = this.panels.find(({ data }) => data.id === id) ?? this.panels.at(-1);
-    if (panel && panel.data.id !== id && this.payload.run.groups.some((group) => group.id === id)) this.#fill(panel, id);
-    panel?.element.scrollIntoView({ block: "nearest" });
+    if (panel && panel.data.id !== id && this.payload.run.groups.some((group) => group.id === id)) {
+      this.#fill(panel, id);
+      this.#showLegend();
+    }
+  }
+
+  /** @param {string} id of a group */
+  data(id) {
+    if (!this.decoded.has(id)) {
+      const group = this.payload.run.groups.find((each) => each.id === id);
+      this.decoded.set(id, { ...group, series: this.series(group) });
+    }
+    return this.decoded.get(id);
+  }
+
+  /** The lines of a group. */
+  series(group) {
+    return decodeGroup(this.payload, group);
   }
 
   #panel(id, bands) {
     const plot = new Plot(bands, {
       onSeek: (time) => this.clock.seek(time),
-      onZoom: (from, to) => this.zoom(from, to),
-      onReset: () => this.zoom(0, this.clock.duration),
+      onZoom: (from, to) => this.clock.show(from, to),
+      onReset: () => this.clock.show(),
     });
     const choice = element(
       "select", { "aria-label": "What this plot shows" },
@@ -78,44 +84,52 @@ export class Plots {
         element("option", { value: group.id }, group.unit ? `${group.title} [${group.unit}]` : group.title),
       ),
     );
-    const legend = element("div.legend");
-    const panel = { plot, choice, legend, values: [], data: null, element: null };
-    choice.addEventListener("change", () => this.#fill(panel, choice.value));
-    panel.element = element("figure.plot", {}, element("figcaption", {}, choice, legend), plot.canvas);
+    const reading = element("output", { "aria-live": "off" });
+    const panel = { plot, choice, reading, data: null, element: null };
+    choice.addEventListener("change", () => {
+      this.#fill(panel, choice.value);
+      this.#showLegend();
+    });
+    const save = (text, write) => element("button.link", { type: "button", title: `Save this plot as ${text}`, onclick: () => write(panel) }, text);
+    panel.element = element("figure.plot", {}, element("figcaption", {}, choice, reading, save("SVG", saveSvg), save("PNG", savePng)), plot.canvas);
     this.#fill(panel, id);
     return panel;
   }
 
   #fill(panel, id) {
     panel.choice.value = id;
-    panel.data = this.#data(id);
-    panel.values = panel.data.series.map(() => element("output", { "aria-live": "off" }));
-    panel.legend.replaceChildren(
-      ...panel.data.series.map((series, index) => {
-        const swatch = element("i");
-        swatch.style.background = Plot.color(index);
-        return element(
-          "button",
-          {
-            type: "button", title: series.name, "aria-pressed": !this.hidden.has(series.name),
-            onclick: () => this.#toggle(series.name),
-            ondblclick: () => this.#only(panel, series.name),
-          },
-          swatch, element("span", {}, short(series.name)), panel.values[index],
-        );
-      }),
-    );
-    this.#redraw(panel);
-    const texts = readings(panel.data, this.clock.time);
-    panel.values.forEach((cell, index) => (cell.textContent = texts[index]));
+    panel.data = this.data(id);
   }
 
-  #data(id) {
-    if (!this.decoded.has(id)) {
-      const group = this.payload.run.groups.find((each) => each.id === id);
-      this.decoded.set(id, { ...group, series: decodeGroup(this.payload, group) });
-    }
-    return this.decoded.get(id);
+  /** Of the lines of a plot: the largest value at the cursor, and whose it is. */
+  #point(panel, time) {
+    panel.plot.point(time);
+    const texts = readings(panel.data, time);
+    const size = (index) => Math.abs(parseFloat(texts[index])) || 0;
+    const shown = panel.data.series.map((_, index) => index).filter((index) => !panel.plot.hidden.has(index) && texts[index] !== "–");
+    const largest = shown.reduce((best, index) => (best < 0 || size(index) > size(best) ? index : best), -1);
+    panel.reading.textContent = largest < 0 ? "–" : texts[largest];
+    panel.reading.title = largest < 0 ? "" : `${panel.data.series[largest].name} at the cursor, the largest`;
+  }
+
+  /** One entry for each line of any plot; its colour is the same in all of them. */
+  #showLegend() {
+    const names = [...new Set(this.panels.flatMap(({ data }) => data.series.map(({ name }) => name)))];
+    this.colors = new Map(names.map((name, index) => [name, index]));
+    const chips = names.map((name, index) => {
+      const swatch = element("i");
+      swatch.style.background = Plot.color(index);
+      return element(
+        "button",
+        {
+          type: "button", title: name, "aria-pressed": !this.hidden.has(name),
+          onclick: () => this.#toggle(name), ondblclick: () => this.#only(names, name),
+        },
+        swatch, element("span", {}, short(name)),
+      );
+    });
+    this.legend.replaceChildren(...chips);
+    for (const panel of this.panels) this.#draw(panel);
   }
 
   #toggle(name) {
@@ -123,8 +137,8 @@ export class Plots {
     this.#showHidden();
   }
 
-  #only(panel, name) {
-    const others = panel.data.series.map((series) => series.name).filter((each) => each !== name);
+  #only(names, name) {
+    const others = names.filter((each) => each !== name);
     const isAlone = others.every((each) => this.hidden.has(each));
     for (const each of others) isAlone ? this.hidden.delete(each) : this.hidden.add(each);
     this.hidden.delete(name);
@@ -132,16 +146,14 @@ export class Plots {
   }
 
   #showHidden() {
-    for (const panel of this.panels) {
-      [...panel.legend.children].forEach((chip, index) =>
-        chip.setAttribute("aria-pressed", String(!this.hidden.has(panel.data.series[index].name))),
-      );
-      this.#redraw(panel);
-    }
+    for (const chip of this.legend.children) chip.setAttribute("aria-pressed", String(!this.hidden.has(chip.title)));
+    for (const panel of this.panels) this.#draw(panel);
   }
 
-  #redraw(panel) {
-    const hidden = panel.data.series.flatMap((series, index) => (this.hidden.has(series.name) ? [index] : []));
-    panel.plot.show(panel.data, new Set(hidden));
+  #draw(panel) {
+    const { series } = panel.data;
+    const hidden = series.flatMap(({ name }, index) => (this.hidden.has(name) ? [index] : []));
+    panel.plot.show(panel.data, new Set(hidden), series.map(({ name }) => this.colors.get(name)));
+    this.#point(panel, this.clock.time);
   }
 }

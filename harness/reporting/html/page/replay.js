@@ -13,6 +13,7 @@ export class Replay {
   /** @param {import("./payload.js").Payload} payload @param {import("./viewer.js").Viewer} viewer */
   constructor(payload, viewer) {
     this.viewer = viewer;
+    this.payload = payload;
     this.run = payload.run;
     this.frames = payload.run.frames;
     this.columns = undoDifferences(payload.buffer("poses"), this.frames.count);
@@ -29,14 +30,44 @@ export class Replay {
     for (const body of this.bodies) {
       body.pose = this.poseOf(body, time);
       const matrix = poseMatrix(body.pose);
-      const isThere = body.shown.some(([from, to]) => time >= from && time <= to);
-      for (const piece of body.pieces) {
-        piece.surface.model = multiply(matrix, piece.local);
-        piece.surface.visible = isThere && this.isShown(body);
+      body.isThere = body.shown.some(([from, to]) => time >= from && time <= to);
+      const isShown = body.isThere && this.isShown(body);
+      for (const { surface, local } of body.pieces) {
+        surface.model = multiply(matrix, local);
+        surface.visible = isShown;
       }
-      body.isThere = isThere;
+      for (const { surface, local } of this.hulls?.get(body) ?? []) {
+        surface.model = multiply(matrix, local);
+        surface.visible = isShown && this.showsHulls;
+      }
     }
+    if (this.showsPlan || this.planCopies) this.#posePlan(time);
     this.viewer.moved();
+  }
+
+  /** Draw the shapes that planner and physics collide with over what bodies look like. @param {boolean} isShown @param {number[]} color rgba */
+  showHulls(isShown, color) {
+    this.showsHulls = isShown;
+    const options = { castsShadow: false, isUntouchable: true };
+    this.hulls ??= new Map(
+      this.bodies.map((body) => [body, body.collisions.flatMap((shape) => this.#surfaces({ ...shape, color }, false, options))]),
+    );
+  }
+
+  /** The robot as it was commanded, at the same time. */
+  #posePlan(time) {
+    this.planCopies ??= this.#copies([0.55, 0.36, 0.96]);
+    this.plan ??= this.#commanded();
+    for (const { body, copy, local } of this.planCopies) {
+      copy.visible = Boolean(this.showsPlan);
+      if (this.showsPlan) copy.model = multiply(poseMatrix(this.poseOf(body, time, this.plan)), local);
+    }
+  }
+
+  /** Commanded poses of the links: what is stored of them is how far they are from the recorded ones. */
+  #commanded() {
+    const apart = undoDifferences(this.payload.buffer("commanded"), this.frames.count);
+    return this.columns.map((value, i) => (i < apart.length ? value + apart[i] : value));
   }
 
   /** Which bodies are switched on. */
@@ -45,7 +76,7 @@ export class Replay {
   }
 
   /** xyz and quaternion wxyz (not normalised) of a body at a time. */
-  poseOf(body, time) {
+  poseOf(body, time, columns = this.columns) {
     if (body.fixed) return body.fixed;
     const { count, step } = this.frames;
     const place = Math.max(0, Math.min(count - 1, time / step));
@@ -54,7 +85,7 @@ export class Replay {
     const pose = new Array(POSE_SIZE);
     for (let i = 0; i < POSE_SIZE; i++) {
       const column = (body.column * POSE_SIZE + i) * count;
-      const value = (1 - part) * this.columns[column + before] + part * this.columns[column + after];
+      const value = (1 - part) * columns[column + before] + part * columns[column + after];
       pose[i] = i < 3 ? value * this.frames.unit : value;
     }
     return pose;
@@ -69,22 +100,27 @@ export class Replay {
 
   /** A translucent robot in another state, next to the recorded one. @param {Record<string, number[]> | null} poses by body; null hides it */
   showState(poses) {
-    this.state ??= this.#copies();
-    for (const { name, copy, local } of this.state) {
-      copy.visible = Boolean(poses?.[name]);
-      if (poses?.[name]) copy.model = multiply(poseMatrix(poses[name]), local);
+    this.state ??= this.#copies([0.95, 0.55, 0.1]);
+    for (const { body, copy, local } of this.state) {
+      copy.visible = Boolean(poses?.[body.name]);
+      if (copy.visible) copy.model = multiply(poseMatrix(poses[body.name]), local);
     }
     this.viewer.redraw();
   }
 
-  #copies() {
-    const tinted = (color) => [...[0.95, 0.55, 0.1].map((tint, i) => 0.6 * tint + 0.4 * color[i]), 0.6];
-    return this.bodies.flatMap(({ name, pieces, isLink }) =>
-      !isLink ? [] : pieces.map(({ surface, local }) => ({
-        name, local,
-        copy: this.viewer.addCopy(surface, { color: tinted(surface.color), castsShadow: false, glow: 0 }),
+  #copies(tint) {
+    const tinted = (color) => [...tint.map((value, i) => 0.6 * value + 0.4 * color[i]), 0.6];
+    return this.bodies.flatMap((body) =>
+      !body.isLink ? [] : body.pieces.map(({ surface, local }) => ({
+        body, local,
+        copy: this.viewer.addCopy(surface, { color: tinted(surface.color), castsShadow: false, glow: 0, isUntouchable: true }),
       })),
     );
+  }
+
+  /** The body that a surface belongs to; null for none. @param {import("./viewer.js").Surface | null} surface */
+  bodyOf(surface) {
+    return this.bodies.find(({ pieces }) => pieces.some((piece) => piece.surface === surface)) ?? null;
   }
 
   /** Colour of the floor: it goes with the theme. @param {number[]} color */
@@ -99,14 +135,14 @@ export class Replay {
     return { ...body, pieces, pose: body.fixed, isThere: true };
   }
 
-  #surfaces(shape, isGhost) {
+  #surfaces(shape, isGhost, more = {}) {
     const local = poseMatrix(shape.pose);
     const color = [...shape.color];
     if (isGhost) color[3] = Math.min(color[3], 0.34);
-    const options = { castsShadow: !isGhost && color[3] > 0.99 };
-    const add = (mesh, tint, more = {}) => ({
+    const options = { castsShadow: !isGhost && color[3] > 0.99, ...more };
+    const add = (mesh, tint, other = {}) => ({
       local,
-      surface: this.viewer.addSurface(mesh, tint, { ...options, ...more }),
+      surface: this.viewer.addSurface(mesh, tint, { ...options, ...other }),
     });
     if (shape.kind === "mesh") {
       return shape.parts.map(([mesh, tint]) =>

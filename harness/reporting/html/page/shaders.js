@@ -64,15 +64,16 @@ void main() {
 }`,
 };
 
-/** Depth as the sun sees it. */
+/** Depth as the sun sees it, or a plain colour for each body as the eye does. */
 export const SHADOW = {
   vertex: `${HEADER}
 layout(location=0) in vec3 position;
 uniform mat4 model, sun;
 void main() { gl_Position = sun * model * vec4(position, 1.0); }`,
   fragment: `${HEADER}
+uniform vec4 color;
 out vec4 result;
-void main() { result = vec4(1.0); }`,
+void main() { result = color; }`,
 };
 
 /** Lines of a width in pixels: each segment is two triangles that face the screen. */

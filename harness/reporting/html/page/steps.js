@@ -1,38 +1,87 @@
-// The list of steps: what each did, how long it took, where it is in the file, why it failed.
+// The list of steps, folded where they passed: what each did, its line in the file, its verdicts, why it failed.
 
 import { byId, element, scrollInto } from "./dom.js";
-import { STATUS } from "./units.js";
+import { STATUS, tone } from "./units.js";
 
 /**
  * @param {import("./payload.js").Payload} payload
- * @param {(index: number) => void} select
+ * @param {{step: (index: number) => void, verdict: (index: number) => void}} select
  * @returns {(index: number) => void} marks the step that runs
  */
 export function makeSteps({ run }, select) {
+  const parents = parentsOf(run.steps);
   const items = run.steps.map((step, index) => {
-    const state = STATUS[step.status]?.word ?? step.status;
-    const place = step.line ? `line ${step.line}` : "";
-    const isNamed = !/^steps?[_[]/.test(step.id);
-    const failure = step.message && step.status !== "passed";
-    return element(
-      `button.step.${step.tone}`,
-      { type: "button", onclick: () => select(index), style: `--depth: ${step.depth}` },
-      element("i.sign", { role: "img", "aria-label": state }),
-      element("b", {}, isNamed ? step.id : step.summary),
-      element("span.took", {}, step.status === "not reached" ? "–" : `${(step.end - step.start).toFixed(2)} s`),
-      element("span.what", {}, isNamed ? `${step.summary}  ` : "", element("code", {}, place)),
-      failure && element("span.why", {}, step.errorCode && element("b", {}, step.errorCode), ` ${step.message}`),
-      ...step.broken.map((text) => element("span.why", {}, text)),
-      step.status === "expected error" && element("span.what", {}, "failed as the file expects"),
-    );
+    const dots = run.verdicts.flatMap((verdict, number) => (verdict.step === step.id ? [dot(verdict, number, select.verdict)] : []));
+    return element("li", { style: `--depth: ${step.depth}` }, row(step, index, select.step), element("span.dots", {}, ...dots));
   });
-  byId("steps").append(...items.map((item) => element("li", {}, item)));
+  const folded = new Set(run.steps.flatMap((step, index) => (step.hasChildren && step.tone === "good" ? [index] : [])));
+  const show = () => items.forEach((item, index) => (item.hidden = ancestors(parents, index).some((each) => folded.has(each))));
+  run.steps.forEach((step, index) => {
+    if (!step.hasChildren) return;
+    const inside = run.steps.filter((_, other) => ancestors(parents, other).includes(index)).length;
+    const fold = element("button.fold", { type: "button", "aria-expanded": !folded.has(index), "aria-label": `${inside} steps inside` });
+    fold.addEventListener("click", () => {
+      if (!folded.delete(index)) folded.add(index);
+      fold.setAttribute("aria-expanded", String(!folded.has(index)));
+      show();
+      mark();
+    });
+    items[index].prepend(fold);
+  });
+  show();
+  byId("steps").append(...items);
   let current = -1;
+  /** A step that is folded away is marked at the one around it. */
+  const mark = () => {
+    const shown = [current, ...ancestors(parents, current)].find((each) => items[each] && !items[each].hidden);
+    items.forEach((item, index) => (index === shown ? rowOf(item).setAttribute("aria-current", "step") : rowOf(item).removeAttribute("aria-current")));
+    scrollInto(byId("steps"), items[shown]);
+  };
   return (index) => {
     if (index === current) return;
-    items[current]?.removeAttribute("aria-current");
-    items[index]?.setAttribute("aria-current", "step");
-    scrollInto(byId("steps"), items[index]);
     current = index;
+    mark();
   };
+}
+
+/** The step around each; -1 for none. @param {any[]} steps */
+function parentsOf(steps) {
+  return steps.map((step, index) => {
+    for (let before = index - 1; before >= 0; before--) if (steps[before].depth < step.depth) return before;
+    return -1;
+  });
+}
+
+function rowOf(item) {
+  return item.querySelector(".step");
+}
+
+function ancestors(parents, index) {
+  const found = [];
+  for (let each = parents[index] ?? -1; each >= 0; each = parents[each]) found.push(each);
+  return found;
+}
+
+function row(step, index, select) {
+  const state = STATUS[step.status]?.word ?? step.status;
+  const isNamed = !/^steps?[_[]/.test(step.id);
+  const failure = step.message && step.status !== "passed";
+  const title = isNamed ? `${step.id}: ${step.summary}` : step.summary;
+  return element(
+    `button.step.${step.tone}`,
+    { type: "button", onclick: () => select(index), title },
+    element("i.sign", { role: "img", "aria-label": state }),
+    element("span.title", {}, element("b", {}, isNamed ? step.id : step.summary), isNamed ? element("span.what", {}, ` ${step.summary}`) : null),
+    element("code.place", { title: "Line of the file" }, step.line ? `:${step.line}` : ""),
+    element("span.took", {}, step.status === "not reached" ? "–" : `${(step.end - step.start).toFixed(2)} s`),
+    failure && element("span.why", {}, step.errorCode && element("b", {}, step.errorCode), ` ${step.message}`),
+    ...step.broken.map((text) => element("span.why", {}, text)),
+    step.status === "expected error" && element("span.what.wide", {}, "failed as the file expects"),
+  );
+}
+
+function dot(verdict, number, select) {
+  return element(`button.dot.${tone(verdict.status)}`, {
+    type: "button", tabindex: -1, title: `${verdict.text}: ${verdict.status}`, onclick: () => select(number),
+  });
 }

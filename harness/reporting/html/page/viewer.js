@@ -7,6 +7,7 @@ import { addScaled, lookAt, multiply, normalize, orthographic, transformPoint } 
 const SHADOW_SIZE = 2048; // [pixels], as the shader divides by
 const SLOW = 25; // [ms]
 const COARSE = 0.55; // of the pixels along each side
+const LOWEST = 360; // [pixels]: in pictures that are less high, lines in pixels shrink with them
 const SUN = normalize([0.35, -0.45, 0.9]);
 const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
 
@@ -18,6 +19,7 @@ const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
  * @property {boolean} castsShadow
  * @property {number} grid 1 for a floor with lines, else 0
  * @property {number} glow 0 to 1: lit from inside
+ * @property {boolean} [isUntouchable] clicks go through it
  */
 /**
  * @typedef {object} Line
@@ -29,6 +31,7 @@ const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
  * @property {number} first segment that is drawn
  * @property {number} segments how many are drawn
  * @property {Float32Array} model T_world_line
+ * @property {number} pixels length of its unit on the screen [pixels]; 0 for one in metres
  */
 
 export class Viewer {
@@ -39,6 +42,7 @@ export class Viewer {
   constructor(host, bounds) {
     this.host = host;
     this.onChange = () => {}; // called when draw is due
+    this.onDrawn = () => {}; // called when what lies over the picture has to follow it
     this.canvas = document.createElement("canvas");
     const gl = this.canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error("WebGL2 is not available");
@@ -48,6 +52,8 @@ export class Viewer {
     this.surfaces = [];
     /** @type {(Line & {vertexArray: WebGLVertexArrayObject, buffer: WebGLBuffer})[]} */
     this.lines = [];
+    /** Buffers of small pictures by size. @type {Map<string, WebGLFramebuffer>} */
+    this.small = new Map();
     this.background = [1, 1, 1];
     this.ambient = 1;
     this.isDirty = this.hasMoved = true;
@@ -121,7 +127,7 @@ export class Viewer {
     lineAttributes(gl);
     const line = {
       vertexArray, buffer, color: [0, 0, 0, 1], width: 2, dash: 0, visible: true, onTop: false,
-      first: 0, segments: 0, model: IDENTITY, ...options,
+      first: 0, segments: 0, model: IDENTITY, pixels: 0, ...options,
     };
     this.lines.push(line);
     this.setPoints(line, points);
@@ -155,6 +161,7 @@ export class Viewer {
     }
     const begin = performance.now();
     this.#drawAt(orbit, null, width, height, ratio);
+    this.onDrawn();
     if (this.cost === 0 && this.drawn++ > 0) {
       this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits
       this.cost = performance.now() - begin;
@@ -176,6 +183,33 @@ export class Viewer {
       upright.data.set(pixels.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
     }
     target.getContext("2d").putImageData(upright, 0, 0);
+  }
+
+  /** The surface at a place of the picture; null where there is none. @param {import("./orbit.js").Orbit} orbit @param {number} x CSS pixels @param {number} y @returns {Surface | null} */
+  pick(orbit, x, y) {
+    const { gl, shadowProgram: { program, at } } = this;
+    const [width, height] = [this.host.clientWidth, this.host.clientHeight];
+    const toPixel = new Float32Array([width, 0, 0, 0, 0, height, 0, 0, 0, 0, 1, 0, width - 2 * x, 2 * y - height, 0, 1]);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.#smallBuffer(1, 1));
+    gl.viewport(0, 0, 1, 1);
+    gl.enable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.clearColor(0, 0, 0, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(at.sun, false, multiply(toPixel, orbit.matrix(width / height)));
+    this.surfaces.forEach((surface, index) => {
+      if (!surface.visible || surface.isUntouchable) return;
+      const number = index + 1;
+      gl.uniform4f(at.color, (number & 255) / 255, ((number >> 8) & 255) / 255, 0, 1);
+      gl.uniformMatrix4fv(at.model, false, surface.model);
+      gl.bindVertexArray(surface.vertexArray);
+      gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
+    });
+    const found = new Uint8Array(4);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, found);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return this.surfaces[found[0] + 256 * found[1] - 1] ?? null;
   }
 
   /** Where a point of the world is on the canvas, in CSS pixels; null for points behind the camera. @param {import("./orbit.js").Orbit} orbit @param {ArrayLike<number>} point */
@@ -200,13 +234,14 @@ export class Viewer {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const view = orbit.matrix(width / height);
     this.#drawSurfaces(shown, view, orbit.eye);
-    this.#drawLines(view, width, height, ratio);
+    this.#drawLines(view, width, height, ratio, orbit.tangent);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
   #smallBuffer(width, height) {
     const { gl } = this;
-    if (this.small?.width === width && this.small.height === height) return this.small.buffer;
+    const size = `${width} x ${height}`;
+    if (this.small.has(size)) return this.small.get(size);
     const buffer = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
     for (const [format, attachment] of [[gl.RGBA8, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
@@ -215,7 +250,7 @@ export class Viewer {
       gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);
       gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, store);
     }
-    this.small = { width, height, buffer };
+    this.small.set(size, buffer);
     return buffer;
   }
 
@@ -275,8 +310,9 @@ export class Viewer {
     gl.depthFunc(gl.LESS);
   }
 
-  #drawLines(view, width, height, ratio) {
+  #drawLines(view, width, height, ratio, tangent) {
     const { gl } = this;
+    const pixel = (2 * tangent) / Math.max(height / ratio, LOWEST); // [m] at a distance of 1 m
     const { at } = this.lineProgram;
     gl.useProgram(this.lineProgram.program);
     gl.enable(gl.BLEND);
@@ -286,7 +322,7 @@ export class Viewer {
     for (const line of this.lines) {
       if (!line.visible || line.segments < 1) continue;
       (line.onTop ? gl.disable : gl.enable).call(gl, gl.DEPTH_TEST);
-      gl.uniformMatrix4fv(at.model, false, line.model);
+      gl.uniformMatrix4fv(at.model, false, line.pixels ? scaled(line.model, line.pixels * pixel * depthOf(view, line.model)) : line.model);
       gl.uniform4fv(at.color, line.color);
       gl.uniform1f(at.width, (line.width * ratio) / 2);
       gl.uniform1f(at.dash, line.dash);
@@ -313,6 +349,16 @@ export class Viewer {
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.shadowMap, 0);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
+}
+
+/** A pose with another unit of length. @param {Float32Array} model @param {number} unit */
+function scaled(model, unit) {
+  return model.map((value, i) => (i < 12 ? value * unit : value));
+}
+
+/** How far before the eye a pose is [m]. @param {Float32Array} view @param {Float32Array} model */
+function depthOf(view, model) {
+  return Math.abs(view[3] * model[12] + view[7] * model[13] + view[11] * model[14] + view[15]);
 }
 
 /** Compile a program. @returns {{program: WebGLProgram, at: Record<string, WebGLUniformLocation>}} */
