@@ -249,7 +249,7 @@ def _touched(run: Run) -> set[str]:
 
 
 def _outermost(points: FloatArray) -> list[list[float]]:
-    """Of a cloud, the points that are farthest in directions all around."""
+    """The points of a cloud that are farthest in directions all around."""
     known = points[np.isfinite(points).all(axis=1)]
     if not len(known):
         return [[0.0, 0.0, 0.0]]
