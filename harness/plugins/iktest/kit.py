@@ -36,7 +36,7 @@ from harness.plugins.iktest.solver import InProcess, Isolated, Solver
 from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import ROWS
 from harness.plugins.iktest.text import report_lines
-from harness.plugins.iktest.trial import HANGS, Flaw, SolverTrial
+from harness.plugins.iktest.trial import COSTS, Flaw, SolverTrial
 from harness.robot_tools.robot_source import RobotSource, load_source
 
 MOSTLY = 0.5  # share of right answers from which a function counts as its contract says
@@ -181,8 +181,9 @@ class _Search:
         self._learn(targets)
         results: list[PropertyResult] = []
         for each in properties:
-            if HANGS in self._known:
-                results.append(PropertyResult(each.name, each.says, note="not tried: it hangs"))
+            if self._trial.lost in self._known:
+                note = f"not tried: it {self._trial.lost}"
+                results.append(PropertyResult(each.name, each.says, note=note))
             else:
                 results.append(self._try(each))
         return tuple(results), tuple(self._findings), speed
@@ -194,7 +195,7 @@ class _Search:
             outcome = self._trial.query(target)
             if outcome.kind in ("answered", "refused"):
                 times.append(outcome.seconds)
-            if self._trial.has_hung:
+            if self._trial.lost:
                 break
         if not times:
             return None
@@ -204,7 +205,7 @@ class _Search:
     def _learn(self, targets: Sequence[Target]) -> None:
         """How the function counts, the error that answers share, and the regions of mistakes."""
         trial = self._trial
-        if trial.has_hung:
+        if trial.lost:
             return
         plain, pairs = trial.convention, self._answers(targets)
         learned = self._learned(plain, pairs)
@@ -242,7 +243,7 @@ class _Search:
         """Targets and finite answers to them, by the convention of the trial."""
         pairs: list[tuple[Target, FloatArray]] = []
         for target in targets:
-            answers = () if self._trial.has_hung else self._trial.query(target).answers
+            answers = () if self._trial.lost else self._trial.query(target).answers
             pairs += [(target, each) for each in answers if np.all(np.isfinite(each))]
         return pairs
 
@@ -298,7 +299,7 @@ class _Search:
             for flaw in flaws:
                 if flaw.kind not in smallest or size < smallest[flaw.kind][0]:
                     smallest[flaw.kind] = size, flaw
-            return all(outcome.kind != "hung" for outcome in trial.outcomes)
+            return not (trial.lost and any(each.kind in COSTS for each in trial.outcomes))
 
         count = max(10, round(each.share * self._test.examples))
         draw(each.cases(trial), visit, count, self._test.seed)

@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.quantity import distinct
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.plugins.iktest.calls import CallOutcome
+from harness.plugins.iktest.calls import CallOutcome, OutcomeKind
 from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.contract import Value
 from harness.plugins.iktest.convention import Convention
@@ -20,8 +20,9 @@ from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import Task, miss
 
 LIMIT_SLACK = 1e-9  # [rad or m] that rounding may put an answer beyond a limit
-HANGS = "does not come back"
+HANGS, DIES = "does not come back", "ends the process"
 COSTS = {"hung": 75, "died": 6}  # cost of such a call in a search's budget; any other call costs 1
+MOST_DEATHS = 5  # first calls that end the process, after which every call is taken to do so
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,8 @@ class SolverTrial:
         offset: Error that many answers share, once it is known.
         regions: Regions of different mistakes, once they are known.
         last_cost: Cost of the calls since it was last read.
-        has_hung: Whether a call ever hung.
+        lost: `HANGS` once a call hung, `DIES` where each of the first `MOST_DEATHS` calls ended the
+            process; else empty. Nothing more is learned of such a function, and calls are slow.
         outcomes: The outcomes of the queries since the list was cleared.
     """
 
@@ -64,9 +66,11 @@ class SolverTrial:
     other_convention: str = ""
     offset: Offset | None = None
     regions: tuple[Region, ...] = ()
-    has_hung: bool = False
+    lost: str = ""
     outcomes: list[CallOutcome] = field(default_factory=list[CallOutcome])
     _cost: int = 0
+    _calls: int = 0
+    _deaths: int = 0
     _known: dict[bytes, CallOutcome] = field(default_factory=dict[bytes, CallOutcome])
 
     def __post_init__(self) -> None:
@@ -86,12 +90,21 @@ class SolverTrial:
             answers = tuple(self.convention.positions(each) for each in outcome.answers)
             outcome = replace(outcome, answers=answers)
             self._known.setdefault(key, outcome)
-            self.has_hung = self.has_hung or outcome.kind == "hung"
-            self._cost += COSTS.get(outcome.kind, 1)
+            self._count(outcome.kind)
         else:
             outcome = self._known[key]
         self.outcomes.append(outcome)
         return outcome
+
+    def _count(self, kind: OutcomeKind) -> None:
+        """Add to the cost of calls, and notice when no further call is worth its time."""
+        self._calls += 1
+        self._deaths += kind == "died"
+        if kind == "hung":
+            self.lost = HANGS
+        elif self._calls == self._deaths == MOST_DEATHS:
+            self.lost = DIES
+        self._cost += COSTS.get("hung" if kind == "died" and self.lost else kind, 1)
 
     def arguments(self, target: Target, seed: FloatArray) -> dict[str, Value]:
         """What the function is called with."""
@@ -163,7 +176,7 @@ class SolverTrial:
             case "hung":
                 return self.flaw(HANGS, outcome.text, target)
             case "died":
-                return self.flaw("ends the process", outcome.text, target)
+                return self.flaw(DIES, outcome.text, target)
             case _:
                 for answer in outcome.answers:
                     if not np.all(np.isfinite(answer)):

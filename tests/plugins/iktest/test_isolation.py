@@ -40,7 +40,7 @@ def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
     assert finding.target.pose.translation[1] > 0.1
     notes = [each.note for each in report.properties]
     assert notes[0] == ""
-    assert notes[-1] == "not tried: it hangs"
+    assert notes[-1] == "not tried: it does not come back"
     assert not report.has_passed
 
 
@@ -49,7 +49,16 @@ def test_a_function_that_always_hangs_costs_a_few_calls(tmp_path, where):
     report = report_of(tmp_path, f"    while {where}: pass\n", patience=0.1)
     assert [finding.kind for finding in report.findings] == ["does not come back"]
     assert report.properties[0].tried == 1
-    assert [each.note for each in report.properties[2:]] == ["not tried: it hangs"] * 5
+    assert [each.note for each in report.properties[2:]] == ["not tried: it does not come back"] * 5
+
+
+@pytest.mark.parametrize("end", ["os.abort()", "os._exit(0)", "os.kill(os.getpid(), 9)"])
+def test_a_function_that_always_ends_its_process_costs_a_few_calls(tmp_path, end):
+    body = f"    with open({str(tmp_path / 'calls')!r}, 'a') as file:\n        file.write('1')\n"
+    report = report_of(tmp_path, f"{body}    {end}\n")
+    assert [finding.kind for finding in report.findings] == ["ends the process"]
+    assert len((tmp_path / "calls").read_text()) <= 10
+    assert [each.note for each in report.properties[2:]] == ["not tried: it ends the process"] * 5
 
 
 DELAYS = """
