@@ -21,6 +21,7 @@ from harness.recording.verdict import Measure
 from harness.robot.description import Joint
 
 SLIDING_TOLERANCE = 0.002  # [m]
+STANDING = 0.01  # [rad or m] within which encoders' noise and the sag of a held arm stay
 ROUNDING = 1e-9  # share of a limit: an effort that saturates is at its limit, not beyond
 
 POSITION_ERROR = Quantity(
@@ -65,6 +66,19 @@ def gripper_joints(run: Run) -> frozenset[str]:
         return frozenset()
     mimics = {joint.name for joint in run.robot.movable_joints if joint.is_mimic}
     return frozenset(run.robot.group_joints(hand.group)) | {hand.joint} | mimics
+
+
+def stood_still(run: Run) -> bool:
+    """Whether no joint moved; of a run that ended early, no joint of the arm."""
+    spared = gripper_joints(run) if run.ended_early else frozenset[str]()
+    positions = run.signals.joint_positions
+    columns = [
+        positions[:, column]
+        for column, joint in enumerate(run.robot.movable_joints)
+        if joint.name not in spared
+    ]
+    known = [each[np.isfinite(each)] for each in columns]
+    return any(map(len, known)) and all(np.ptp(each) < STANDING for each in known if len(each))
 
 
 def resting_joints(run: Run) -> frozenset[str]:

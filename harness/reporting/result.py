@@ -67,6 +67,7 @@ class CaseResult:
         message: Why, when the harness or a native library broke; in a strict run the warnings.
         notes: Worth a line: no renderer, no meshes, nothing expected, an angle like 90 rad.
         overlap: Depth of the deepest pair of bodies that overlap at the start [m]; 0: none do.
+        is_idle: Whether the arm did not move before the run ended.
         redraws: How often the sample was drawn again because objects overlapped.
         values: What varies as it was drawn at last, path -> value; empty when drawn once.
         wall_times: Seconds of each part; never judged.
@@ -89,6 +90,7 @@ class CaseResult:
     message: str = ""
     notes: tuple[str, ...] = ()
     overlap: float = 0.0
+    is_idle: bool = False
     redraws: int = 0
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])

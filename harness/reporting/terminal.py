@@ -242,6 +242,8 @@ def verdict_warnings(file: str, verdicts: Iterable[Verdict]) -> tuple[str, ...]:
     """The place, expectation and text of every warning of a file's verdicts."""
     return tuple(
         f"{file}:{verdict.line}: {verdict.expectation}: warning: {warning}"
+        if verdict.line
+        else f"{file}: {verdict.expectation}: warning: {warning}"
         for verdict in verdicts
         for warning in verdict.warnings
     )

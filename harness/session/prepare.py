@@ -13,6 +13,7 @@ from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.judging.observations import Observations, merged
 from harness.judging.placed import PlacedExpectation, as_expectation
+from harness.language.files.source import Source
 from harness.language.reading.load import (
     LoadedScenario,
     Reading,
@@ -76,7 +77,7 @@ def prepare(
     path: Path,
     overrides: Mapping[str, str] | None = None,
     seed: int | None = None,
-    text: str | None = None,
+    text: str | Source | None = None,
     inspect: Callable[[LoadedScenario], None] | None = None,
 ) -> Prepared:
     """Load and compile a scenario; its text may be given instead of read.

@@ -95,7 +95,7 @@ def _recorded(
     steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
     return Run(
         scenario=program.title,
-        file=str(request.file),
+        file=request.shown_file,
         case=request.case,
         seed=program.seed,
         robot=robot,

@@ -11,6 +11,7 @@ from pathlib import Path
 from harness.core.errors import HarnessError, SpecError
 from harness.core.memory import free_memory
 from harness.judging.facts import remembered_facts
+from harness.judging.joints import stood_still
 from harness.judging.judge import judge
 from harness.ports.scene import Touch
 from harness.ports.simulation import RecordingSimulator
@@ -112,7 +113,7 @@ class _Case:
             run = builder.build()
             verdicts = judge(run, self.prepared.expectations)
             is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
-            if self.request.strict and verdict_warnings(str(self.request.file), verdicts):
+            if self.request.strict and verdict_warnings(self.request.shown_file, verdicts):
                 is_good = False
             outcome = "passed" if is_good else "error" if refusal else "failed"
             return StoredRun(run, verdicts, outcome, digest(run, verdicts), self.clock.seconds)
@@ -122,10 +123,10 @@ class _Case:
     ) -> CaseResult:
         """The outcome of a judged case of which no report is written yet."""
         request, program, run = self.request, self.prepared.program, judged.run
-        warned = verdict_warnings(str(request.file), judged.verdicts)
+        warned = verdict_warnings(request.shown_file, judged.verdicts)
         message = "\n".join(warned) if request.strict else ""
         return CaseResult(
-            file=str(request.file),
+            file=request.shown_file,
             case=request.case,
             title=program.title,
             outcome=judged.outcome,
@@ -136,6 +137,7 @@ class _Case:
             verdicts=judged.verdicts,
             message=refusal if judged.outcome == "error" else message,
             notes=(*warned, *_notes(self.prepared, overlaps), *never_held(run)),
+            is_idle=stood_still(run),
             overlap=-overlaps[0].distance if overlaps else 0.0,
             redraws=draw,
             values=request.redraw.redrawn(draw).values if request.redraw and draw else {},
@@ -182,9 +184,9 @@ def _notes(prepared: Prepared, overlaps: Sequence[Touch]) -> tuple[str, ...]:
 
 def _invalid(request: RunRequest, error: SpecError) -> CaseResult:
     return CaseResult(
-        str(request.file),
+        request.shown_file,
         request.case,
-        request.file.name,
+        Path(request.shown_file).name,
         "invalid",
         problems=tuple(error.problems),
         message="; ".join(problem.message for problem in error.problems[:1]),
@@ -195,7 +197,7 @@ def _broken(
     request: RunRequest, prepared: Prepared, clock: Clock, error: HarnessError
 ) -> CaseResult:
     return CaseResult(
-        str(request.file),
+        request.shown_file,
         request.case,
         prepared.program.title,
         "error",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from harness.core.errors import Problem, SpecError
+from harness.language.files.source import Source
 from harness.ports.simulation import LONGEST_RUN
 
 
@@ -50,6 +51,8 @@ class RunRequest:
         case: Name of the case; empty when the file has one case.
         only_failed: Whether a report is written only where the case does not pass.
         text: Content that is read in place of the file's; None reads the file.
+        source: Takes the place of both and names the file of each line; relative paths begin at
+            `file` nevertheless.
         redraw: Draws the sample again while objects overlap at the start; None draws it once.
         strict: Whether a warning of a verdict fails the case.
         nodes: Commands by name that steps may start as ROS 2 nodes.
@@ -68,11 +71,17 @@ class RunRequest:
     case: str = ""
     only_failed: bool = False
     text: str | None = None
+    source: Source | None = None
     redraw: Redraw | None = None
     strict: bool = False
     nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     live: str = ""
     longest: float = LONGEST_RUN
+
+    @property
+    def shown_file(self) -> str:
+        """The file that reports and messages name."""
+        return str(self.file) if self.source is None else self.source.path
 
 
 def named_commands(given: Iterable[str]) -> dict[str, str]:

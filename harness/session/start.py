@@ -57,9 +57,10 @@ def start_case(request: RunRequest, clock: Clock, kind: type[M]) -> Start[M]:
         SpecError: With every problem of the file; or objects overlap in every draw.
     """
     last: list[Problem] = []
+    text = request.source or request.text
     for draw in range(MOST_DRAWS):
         again = request.redraw.redrawn(draw) if request.redraw is not None and draw else request
-        prepared = prepare(request.file, again.overrides, request.seed, request.text)
+        prepared = prepare(request.file, again.overrides, request.seed, text)
         simulator = start_physics(prepared, kind, clock, prepared.observed_links)
         simulator.limit(request.longest)
         if request.redraw is None or not simulator.overlaps_at_start:

@@ -25,15 +25,27 @@ class Source:
     Attributes:
         path: The path as the user named it.
         lines: Its lines; empty for an option, whose problems have no line.
+        others: File and line of each of the last lines, where these are of other files.
     """
 
     path: str
     lines: tuple[str, ...] = ()
+    others: tuple[tuple[str, int], ...] = ()
 
     @classmethod
     def of_text(cls, path: str, text: str) -> Source:
         """The source of a file with this text."""
         return cls(path, tuple(LINE_BREAK.split(text)))
+
+    def own_lines(self) -> tuple[str, ...]:
+        """The lines that are of the file itself."""
+        return self.lines[: len(self.lines) - len(self.others)]
+
+    def origin(self, number: int) -> tuple[str, int]:
+        """The file and the line of a line by its number from 1."""
+        index = number - 1 - len(self.own_lines())
+        is_other = number > 0 and 0 <= index < len(self.others)
+        return self.others[index] if is_other else (self.path, number)
 
     def line(self, number: int) -> str:
         """A line's text by its number from 1; empty where there is none."""
@@ -58,7 +70,8 @@ class Place:
         """A mistake at this place, with its source line."""
         text = self.source.line(self.line)
         length = max(1, min(self.length, len(text) - self.column + 1))
-        return Problem(self.source.path, self.line, self.column, message, hint, text, length)
+        path, line = self.source.origin(self.line)
+        return Problem(path, line, self.column, message, hint, text, length)
 
     def part(self, text: str, start: int, length: int) -> Place:
         """The place of some characters of a text that is written here, in quotes or over lines.
@@ -187,7 +200,7 @@ class SourceMap:
     def line_of(self, loc: Loc) -> tuple[int, int]:
         """Line and column, from 1, of a field of the model; of a step: of its verb.
 
-        Of what another file says: of the step that includes it.
+        Of what another file says: of the step that includes it, or 0.
         """
         main = self.root.place.source
         place = next(
@@ -195,7 +208,8 @@ class SourceMap:
             for length in range(len(loc), -1, -1)
             if (place := self.find(loc[:length]).item.place).source is main or not length
         )
-        return place.line, place.column
+        path, line = main.origin(place.line)
+        return (line, place.column) if path == main.path else (0, 0)
 
     def problem(self, loc: Loc, message: str, hint: str = "") -> Problem:
         """A mistake at a field's value."""

@@ -97,14 +97,14 @@ def read_scenario(
     path: Path,
     overrides: Mapping[str, str] | None = None,
     seed: int | None = None,
-    text: str | None = None,
+    text: str | Source | None = None,
 ) -> Reading:
     """A scenario file with its mistakes, for callers that find more.
 
     Args:
         overrides: Dotted path -> YAML value, as given with `--set`.
         seed: Taken in place of the file's.
-        text: What would stand in the file; None: what does.
+        text: What would stand in the file, or the source of it; None: what does.
 
     Raises:
         SpecError: The file is not YAML.
@@ -113,9 +113,12 @@ def read_scenario(
     if seed is not None:
         given["seed"] = str(seed)
     text = read_text(path) if text is None else text
+    source = text if isinstance(text, Source) else Source.of_text(str(path), text)
+    text = "\n".join(source.own_lines()) if isinstance(text, Source) else text
     problems: list[Problem] = []
     notes: list[Problem] = []
-    root = parse_yaml(text, Source.of_text(str(path), text), problems)
+    whole = "\n".join(source.lines) if source.others else text
+    root = parse_yaml(whole, source, problems)
     of_file = values_of_case(root, given)
     options = {key: value for key, value in given.items() if key not in of_file}
     root = apply_overrides(root, [*of_file.values(), *from_options(options, problems)], problems)

@@ -33,6 +33,11 @@ FILE = "assignment.yaml"
 Kind = Literal["scenario", "node", "ik", "recording"]
 """What students hand in: steps of a scenario, a ROS 2 node, a function, or a recording."""
 
+PropertyName = Literal[
+    "reaches", "answers", "limits", "refuses", "anywhere", "continuity", "determinism", "branches"
+]
+"""The properties that `harness ik-test` tests."""
+
 
 class IkExercise(SpecModel):
     """A function that solves inverse kinematics, tested as `harness ik-test` does."""
@@ -56,6 +61,10 @@ class IkExercise(SpecModel):
     )
     orientation_tolerance: Annotated[Angle, Field(gt=0)] = Field(
         default=1e-3, description="The largest orientation error of an answer [rad]."
+    )
+    weights: dict[PropertyName, Annotated[Number, Field(ge=0)]] = Field(
+        default_factory=dict,
+        description="What a property is worth next to the others, by its name; 1 by default.",
     )
     call_limit: PositiveDuration = Field(
         default=5.0, description="The wall time after which one call counts as hanging [s]."

@@ -14,10 +14,12 @@ from harness.core.registry import registry
 from harness.core.resources import data_folder
 from harness.language.reading.load import read_scenario
 from harness.plugins.grading.assignment import FILE, LoadedAssignment, read_assignment
-from harness.plugins.grading.merge import merged_text, refuse_scene_verbs
+from harness.plugins.grading.credit import Credit, credit_of_function, property_verdicts
+from harness.plugins.grading.merge import merged_source, refuse_scene_verbs
 from harness.suite.discovery import SUFFIX, UsageError
 
 if TYPE_CHECKING:
+    from harness.recording.verdict import Verdict
     from harness.reporting.result import CaseResult
 
 START = "start"
@@ -118,22 +120,22 @@ def run_work(exercise: Exercise, file: Path, report: Path) -> CaseResult:
     loaded = exercise.assignment
     assert loaded.scenario is not None  # the test of a solver has no run
     if loaded.model.node is None:
-        text = merged_text(file, loaded.scenario, loaded.model.takes)
-        refuse_scene_verbs(read_scenario(file, text=text), file, loaded.scenario)
-        return run_in_process(RunRequest(file, text=text, report_dir=report))
+        source = merged_source(file, loaded.scenario, loaded.model.takes)
+        refuse_scene_verbs(read_scenario(file, text=source), str(file), loaded.scenario)
+        return run_in_process(RunRequest(file, source=source, report_dir=report))
     request = RunRequest(loaded.scenario.resolve(), report_dir=report.resolve())
     with chdir(file.parent):  # the command of the node names a file in the student's folder
         return run_in_process(replace(request, nodes={"node": loaded.model.node}))
 
 
-def test_solver(exercise: Exercise, file: Path, report: Path) -> dict[str, bool]:
+def test_solver(exercise: Exercise, file: Path, report: Path) -> tuple[tuple[Verdict, ...], Credit]:
     """Test a student's function, and print what was found.
 
     Args:
         report: The folder of the report.
 
     Returns:
-        Whether each property is kept, by name; none is where the function reaches no target.
+        The properties as verdicts with their points, and what those that hold earn.
     """
     ik = exercise.assignment.model.ik
     assert ik is not None
@@ -144,8 +146,5 @@ def test_solver(exercise: Exercise, file: Path, report: Path) -> dict[str, bool]
     command.add_options(parser)
     command.run(parser.parse_args(words))
     [result] = report.rglob("ik_test.json")
-    properties = json.loads(result.read_text(encoding="utf-8"))["properties"]
-    reaches = any(each["name"] == "reaches" and each["observed"] for each in properties)
-    return {
-        each["name"]: reaches and each["observed"] > 0 and not each["flawed"] for each in properties
-    }
+    document = json.loads(result.read_text(encoding="utf-8"))
+    return property_verdicts(document, ik.weights), credit_of_function(document)

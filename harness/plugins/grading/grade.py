@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import BoolArray, FloatArray, IntArray, Pair
+from harness.judging.joints import stood_still
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.judging.temporal import episodes
 from harness.language.reading.resolve import resolved_text
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
+from harness.plugins.grading.credit import FULL, Credit, credit_of_run
 from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
@@ -124,7 +126,7 @@ def grade_bag(
         gravity=program.world.gravity,
     )
     run = run_of_bag(bag, topics or BagTopics(), known)
-    notes = tuple(finding.message for finding in run.findings)
+    notes = [finding.message for finding in run.findings]
     doubts = [
         finding.values
         for finding in run.findings
@@ -140,15 +142,19 @@ def grade_bag(
     )
     if is_measured:
         run = _with_distances(prepared, run)
+    verdicts = judge(run, prepared.expectations)
+    is_full = all(each.status == "passed" for each in verdicts)
+    credit = credit_of_run(is_idle=stood_still(run), is_full=is_full)
+    notes += filter(None, [credit.reason])
     rows = [
         replace(row, earned=0.0, withheld=kinds, is_measured=is_measured or not needs)
         if kinds
         else row
         for row, kinds, needs in zip(
-            graded(judge(run, prepared.expectations)), withheld, needs_distances, strict=True
+            graded(verdicts, credit), withheld, needs_distances, strict=True
         )
     ]
-    grade = Grade(run, tuple(rows), notes)
+    grade = Grade(run, tuple(rows), tuple(notes))
     if report_dir is not None:
         resolved = resolved_text(prepared.loaded, folder=report_dir)
         _write_page(replace(run, resolved=resolved), grade, report_dir)
@@ -189,12 +195,12 @@ def _withheld(
     return tuple(dict.fromkeys(kinds))
 
 
-def graded(verdicts: Sequence[Verdict]) -> tuple[Graded, ...]:
+def graded(verdicts: Sequence[Verdict], credit: Credit = FULL) -> tuple[Graded, ...]:
     """The `points` of each expectation; one each where no expectation states any."""
     has_points = any(verdict.points is not None for verdict in verdicts)
     worth = [(verdict.points or 0.0) if has_points else 1.0 for verdict in verdicts]
     return tuple(
-        Graded(verdict, points, points if verdict.status == "passed" else 0.0)
+        Graded(verdict, points, points * credit.share if verdict.status == "passed" else 0.0)
         for verdict, points in zip(verdicts, worth, strict=True)
     )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 from pydantic import BaseModel
@@ -21,47 +20,41 @@ CHANGES_SCENE = frozenset(
 """Verbs that change what is judged, in addition to those that let objects appear or jump."""
 
 
-def merged_text(submission: Path, scenario: Path, takes: Collection[str]) -> str:
+def merged_source(
+    submission: Path, scenario: Path, takes: Collection[str], name: str = ""
+) -> Source:
     """The text of a scenario that has some keys of a submission, and all else of the assignment.
 
-    The lines of the submission keep their numbers, so that mistakes in it are reported where the
-    student wrote them; the lines of other keys are empty, and the assignment's follow at the end.
-    Parameters of both files are known; of those that both have, the assignment's count.
+    The lines of the submission keep their numbers, so that steps and mistakes in it are reported
+    where the student wrote them; the lines of other keys are empty. The assignment's lines follow,
+    and count as those of its file. Parameters of both files are known; of those that both have,
+    the assignment's count.
 
     Args:
         submission: The scenario file of a student.
         scenario: The scenario file of the assignment.
         takes: The keys that are the student's.
+        name: What reports call the submission; its path by default.
 
     Raises:
         SpecError: The submission is not YAML, or has no `steps`.
     """
-    (own, given), (root, graded) = _blocks(submission), _blocks(scenario)
+    name = name or str(submission)
+    (own, given), (root, graded) = _blocks(submission, name), _blocks(scenario, scenario.name)
     if "steps" in takes and "steps" not in given:
-        place = Place(Source.of_text(str(submission), read_text(submission)), 1, 1)
+        place = Place(Source.of_text(name, read_text(submission)), 1, 1)
         raise SpecError([place.problem("the scenario has no `steps`", "add `steps:`")])
-    lines: list[str] = []
-    for key, block in given.items():
-        lines += block if key in takes or not key else [""] * len(block)
+    lines = [
+        line if key in takes or not key else "" for key, block in given.items() for _, line in block
+    ]
+    further: list[tuple[int, str]] = []
     for key, block in graded.items():
         is_replaced = (key in takes and key in given) or key in ("", "params")
-        lines += [] if is_replaced else block
+        further += [] if is_replaced else block
     params = {**_params(own), **_params(root)}
-    lines += [f"params: {json.dumps(params)}"] if params else []
-    return "\n".join(lines) + "\n"
-
-
-def placed(problem: Problem, submission: Path, scenario: Path) -> Problem:
-    """A problem of the merged text, which was read in place of the assignment's scenario.
-
-    It is in the submission's file where the line is one of it.
-    """
-    count = len(Source.of_text(str(submission), read_text(submission)).lines)
-    if problem.path != str(scenario) or not problem.line:
-        return problem
-    if problem.line <= count:
-        return replace(problem, path=submission.name)
-    return replace(problem, path=scenario.name, line=0, column=0)
+    further += [(0, f"params: {json.dumps(params)}")] if params else []
+    others = tuple((scenario.name, number) for number, _ in further)
+    return Source(name, (*lines, *(line for _, line in further)), others)
 
 
 def scene_verbs(given: BaseModel, graded: BaseModel) -> list[str]:
@@ -71,12 +64,12 @@ def scene_verbs(given: BaseModel, graded: BaseModel) -> list[str]:
     return sorted({step.verb for step in changing} - known)
 
 
-def refuse_scene_verbs(reading: Reading, submission: Path, scenario: Path) -> None:
+def refuse_scene_verbs(reading: Reading, name: str, scenario: Path) -> None:
     """Refuse steps of a student that change the scene where the assignment has none of the kind.
 
     Args:
         reading: The result of reading the merged text.
-        submission: The scenario file of the student.
+        name: What reports call the submission.
         scenario: The scenario file of the assignment.
 
     Raises:
@@ -87,7 +80,7 @@ def refuse_scene_verbs(reading: Reading, submission: Path, scenario: Path) -> No
     verbs = scene_verbs(reading.loaded.scenario, load_scenario(scenario).scenario)
     if verbs:
         message = f"the step `{verbs[0]}` changes the scene, which this exercise does not do"
-        raise SpecError([Problem(submission.name, 0, 0, message, "leave the step out")])
+        raise SpecError([Problem(name, 0, 0, message, "leave the step out")])
 
 
 def steps_in(value: object) -> Iterator[Step]:
@@ -108,17 +101,17 @@ def _params(root: Located) -> dict[str, object]:
     return {**plain} if isinstance(plain, dict) else {}
 
 
-def _blocks(file: Path) -> tuple[Located, dict[str, list[str]]]:
-    """A file, and the lines of each key; those before the first key under an empty name.
+def _blocks(file: Path, name: str) -> tuple[Located, dict[str, list[tuple[int, str]]]]:
+    """A file, and the numbered lines of each key; those before the first under an empty name.
 
     Raises:
         SpecError: The file is not YAML, not a mapping, or has two keys in one line.
     """
     text = read_text(file)
-    source = Source.of_text(str(file), text)
+    source = Source.of_text(name, text)
     root = parse_yaml(text, source)
     places = {key: each.key for key, each in root.mapping().items()}
-    lines, starts = [*source.lines], [place.line - 1 for place in places.values()]
+    lines, starts = [*enumerate(source.lines, 1)], [place.line - 1 for place in places.values()]
     if not starts or len({*starts}) < len(starts):
         message = "a scenario has each of its keys in a line of its own"
         raise SpecError([root.place.problem(message)])

@@ -66,7 +66,11 @@ limits: {processor_time: 60 s}
 
 @dataclass(frozen=True)
 class Handed:
-    """A function that a student hands in, what it earns of seven points, and why."""
+    """A function that a student hands in, the most that it earns of seven points, and why.
+
+    Attributes:
+        points: All are earned where these are seven; else at most these.
+    """
 
     text: str
     points: float
@@ -98,11 +102,34 @@ print('{"properties": [], "findings": []}', flush=True)
 def ik(x, y, z, pitch):
     return None
 """
+FORGING = """\
+import json, os, signal
+from pathlib import Path
+names = "reaches answers limits refuses anywhere continuity determinism".split()
+properties = [{"name": name, "says": name, "tried": 9, "observed": 9, "flawed": 0, "findings": [],
+               "note": ""} for name in names]
+document = json.dumps({"properties": properties, "findings": []})
+parents, pid = [], os.getpid()
+for _ in range(3):  # its server, the test, what confines it
+    pid = int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+    parents.append(pid)
+for pid in parents:
+    try:
+        Path(f"/proc/{pid}/fd/1").write_text(document)
+    except OSError:
+        pass
+os.kill(parents[1], signal.SIGTERM)
+def ik(x, y, z, pitch):
+    return None
+"""
+CONSTANT = "def ik(x, y, z, pitch):\n    return [0.0, 0.0, 0.0, 0.0]\n"
 SUBMISSIONS = {
     "perfect": Handed(RIGHT, 7, ""),
-    "wrong branch": Handed(BRANCH, 5, "refuses a target within reach"),
-    "low": Handed(RIGHT.replace("= 0.0595", "= 0.0595 + 0.017"), 5, "17 mm"),
-    "hanging": Handed("def ik(x, y, z, pitch):\n    while True: pass\n", 0, "reaches no target"),
-    "crashing": Handed(CRASHING, 0, "reaches no target"),
-    "cheating": Handed(CHEATING, 0, "reaches no target"),
+    "wrong branch": Handed(BRANCH, 5, "targets within reach are answered rightly"),
+    "low": Handed(RIGHT.replace("= 0.0595", "= 0.0595 + 0.017"), 0, "17 mm"),
+    "constant": Handed(CONSTANT, 1, "misses the position"),
+    "hanging": Handed("def ik(x, y, z, pitch):\n    while True: pass\n", 0, "not come back"),
+    "crashing": Handed(CRASHING, 0, "ends the process"),
+    "cheating": Handed(CHEATING, 0, "refuses a target within reach"),
+    "forging": Handed(FORGING, 0, ""),
 }

@@ -43,12 +43,12 @@ def times(rate, first=0.0, last=3.0):
     return first + np.arange(round((last - first) * rate) + 1) / rate
 
 
-def still(_):
-    """A joint that does not move."""
-    return 0.0
+def slow(time):
+    """A joint that moves a little, as a robot that stands still earns nothing."""
+    return 0.005 * time
 
 
-def add_joints(recording, at, position=still, velocity=None):
+def add_joints(recording, at, position=slow, velocity=None):
     """Joint states at some times."""
     for time in at:
         said = state(position(time), None if velocity is None else velocity(time))
@@ -64,7 +64,7 @@ def add_box(recording, at, pose, topic=POSES, parent="world", name="box"):
     return recording
 
 
-def recorded(pose=lambda _: box_pose(), joints=50, box=50, position=still, velocity=None):
+def recorded(pose=lambda _: box_pose(), joints=50, box=50, position=slow, velocity=None):
     """Joint states and poses of three seconds at two rates [Hz]."""
     recording = add_joints(Recording(), times(joints), position, velocity)
     return add_box(recording, times(box), pose)

@@ -1,6 +1,7 @@
 """A class of submissions: each gets its points, and none costs another one anything."""
 
 import csv
+import ctypes
 import json
 import os
 import re
@@ -14,7 +15,13 @@ import pytest
 
 from harness.cli.main import main
 from harness.plugins.grading.assignment import Limits
-from harness.plugins.grading.classroom.confined import Confinement, descendants
+from harness.plugins.grading.classroom.confined import (
+    IS_SUBREAPER,
+    SUBREAPER,
+    Confinement,
+    adopted_orphans,
+    descendants,
+)
 from tests.plugins.grading.classes import IK, SUBMISSIONS, scenario_class
 
 EXERCISE = "the TCP is at the target"
@@ -91,10 +98,10 @@ def test_tables_for_other_programs_have_everybody(graded):
         assert "perfect" in (graded / name).read_text()
 
 
-@pytest.mark.nightly(but=["cheating"])
+@pytest.mark.nightly(but=["forging"])
 @pytest.mark.parametrize("name", SUBMISSIONS)
 def test_a_function_is_graded_in_a_process_of_its_own(name, tmp_path, monkeypatch):
-    """Perfect, another branch, 17 mm too low, hanging, crashing, and one that writes results."""
+    """Perfect, wrong in one branch, 17 mm low, constant, hanging, crashing, writing results."""
     monkeypatch.setenv("GRADES", str(tmp_path / "grades"))
     (tmp_path / "ik").mkdir()
     (tmp_path / "ik/assignment.yaml").write_text(IK)
@@ -104,9 +111,51 @@ def test_a_function_is_graded_in_a_process_of_its_own(name, tmp_path, monkeypatc
     code = main([*words, "--report-dir", str(tmp_path / "grades")])
     row = rows(tmp_path / "grades/grades.csv")[name]
     expected = SUBMISSIONS[name]
-    assert (code, float(row["points"])) == (int(expected.points < 7), expected.points), row
+    assert code == int(expected.points < 7)
+    assert expected.points == 7 or float(row["points"]) <= expected.points, row
+    assert expected.points < 7 or float(row["points"]) == 7, row
     assert expected.remark in row["remark"]
     assert not [pid for pid in descendants(os.getpid()) if "sleep(1000)" in command_line(pid)]
+
+
+SAFE = """\
+scenario: Reach a target safely
+robot: {model: open_manipulator_x}
+steps: [{move_to: init}]
+expect:
+  - within_limits: {}
+    points: 2
+  - {never: {collision: {between: [robot, any]}}, points: 3}
+  - duration: {at_most: 60 s}
+    points: 1
+  - {eventually: {named_target: home}, points: 4}
+"""
+SAFELY = {
+    "unreachable": ("[{move_to: {position: {xyz: [3, 0, 0]}, pitch: 0}}]", 0),
+    "gripper": ("[{gripper: open}, {move_to: {position: {xyz: [3, 0, 0]}, pitch: 0}}]", 0),
+    "waiting": ("[{wait: 1 s}]", 0),
+    "halfway": ("[{move_to: {joints: {joint1: 0.5}}}, {move_to: {joints: {joint1: 9}}}]", 5),
+    "reaching": ("[{move_to: home}]", 10),
+}
+
+
+def test_what_holds_because_the_robot_did_not_move_earns_nothing(tmp_path):
+    for folder in ("safe", "all"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "safe/safe.scenario.yaml").write_text(SAFE)
+    (tmp_path / "safe/assignment.yaml").write_text("assignment: a\nscenario: safe.scenario.yaml\n")
+    for name, (steps, _) in SAFELY.items():
+        (tmp_path / f"all/{name}.scenario.yaml").write_text(f"scenario: a\nsteps: {steps}\n")
+    words = ["grade-class", str(tmp_path / "safe"), str(tmp_path / "all"), "-j", "2"]
+    assert main([*words, "--report-dir", str(tmp_path / "grades")]) == 1
+    found = rows(tmp_path / "grades/grades.csv")
+    points = {name: float(row["points"]) for name, row in found.items()}
+    assert points == {name: points for name, (_, points) in SAFELY.items()}
+    assert "the robot did not move" in page(tmp_path / "grades", "waiting")
+    report = (tmp_path / "grades/students/halfway/run/run.json").read_text()
+    assert {each["line"] for each in json.loads(report)["steps"]} == {2}
+    assert {each["line"] for each in json.loads(report)["verdicts"]} == {0}
+    assert json.loads(report)["file"] == "halfway.scenario.yaml"
 
 
 def command_line(pid):
@@ -139,6 +188,20 @@ def test_a_program_is_ended_at_its_bounds_with_all_that_it_started(tmp_path, cod
     assert done.returncode != 0
     assert words in done.stderr
     assert set(descendants(os.getpid())) <= before
+
+
+@pytest.mark.parametrize("before", [0, 1])
+def test_orphans_are_adopted_for_the_time_of_a_class(before):
+    libc, found = ctypes.CDLL(None), ctypes.c_int(-1)
+    libc.prctl(SUBREAPER, before, 0, 0, 0)
+    try:
+        with adopted_orphans():
+            libc.prctl(IS_SUBREAPER, ctypes.byref(found), 0, 0, 0)
+            assert found.value == 1
+        libc.prctl(IS_SUBREAPER, ctypes.byref(found), 0, 0, 0)
+        assert found.value == before
+    finally:
+        libc.prctl(SUBREAPER, 0, 0, 0, 0)
 
 
 def test_a_folder_with_other_files_is_not_written_into(tmp_path, capsys):

@@ -3,8 +3,8 @@
 import pytest
 
 from harness.core.errors import SpecError
-from harness.language.reading.load import parse_scenario
-from harness.plugins.grading.merge import merged_text
+from harness.language.reading.load import read_scenario
+from harness.plugins.grading.merge import merged_source
 
 GRADED = """\
 scenario: Wait
@@ -32,34 +32,48 @@ def merge(tmp_path):
     def merged(given, takes=("steps",), graded=GRADED):
         (tmp_path / "graded.yaml").write_text(graded)
         (tmp_path / "mine.yaml").write_text(given)
-        return merged_text(tmp_path / "mine.yaml", tmp_path / "graded.yaml", takes)
+        source = merged_source(tmp_path / "mine.yaml", tmp_path / "graded.yaml", takes, "mine.yaml")
+        return read_scenario(tmp_path / "mine.yaml", text=source)
 
     return merged
 
 
-def test_steps_are_the_students_and_all_else_is_the_assignments(merge, tmp_path):
-    text = merge(GIVEN)
-    scenario = parse_scenario(text, tmp_path / "mine.yaml").scenario
+def test_steps_are_the_students_and_all_else_is_the_assignments(merge):
+    loaded = merge(GIVEN).loaded
+    scenario = loaded.scenario
     assert [step.summary() for step in scenario.steps] == ["2 s", "1 s"]
     assert (scenario.robot.model, len(scenario.objects)) == ("open_manipulator_x", 1)
     assert [each.points for each in scenario.expect] == [2]
-    assert text.splitlines()[4:7] == GIVEN.splitlines()[4:7]
+    assert loaded.text.splitlines()[4:7] == GIVEN.splitlines()[4:7]
 
 
-def test_objects_are_the_students_where_the_assignment_takes_them(merge, tmp_path):
-    text = merge(GIVEN, ("steps", "objects"))
-    assert not parse_scenario(text, tmp_path / "mine.yaml").scenario.objects
+def test_objects_are_the_students_where_the_assignment_takes_them(merge):
+    assert not merge(GIVEN, ("steps", "objects")).loaded.scenario.objects
 
 
-def test_what_a_student_leaves_out_is_the_assignments(merge, tmp_path):
-    text = merge("steps: [{wait: 2}]", ("steps", "objects"))
-    assert len(parse_scenario(text, tmp_path / "mine.yaml").scenario.objects) == 1
+def test_what_a_student_leaves_out_is_the_assignments(merge):
+    loaded = merge("steps: [{wait: 2}]", ("steps", "objects")).loaded
+    assert len(loaded.scenario.objects) == 1
 
 
-def test_a_mistake_in_the_steps_has_the_students_line(merge, tmp_path):
-    text = merge(GIVEN.replace("wait: 1 s", "wait: 1 kg"))
-    with pytest.raises(SpecError, match=r"mine\.yaml:7:"):
-        parse_scenario(text, tmp_path / "mine.yaml")
+def test_a_mistake_in_the_steps_has_the_students_line(merge):
+    [problem] = merge(GIVEN.replace("wait: 1 s", "wait: 1 kg")).problems
+    assert str(problem).startswith("mine.yaml:7:")
+
+
+@pytest.mark.parametrize("filler", ["", "# more\n" * 9])
+def test_a_mistake_of_the_assignment_has_the_line_of_its_file(merge, filler):
+    [problem] = merge(filler + GIVEN, graded=GRADED.replace("3 s", "3 kg")).problems
+    assert str(problem).startswith("graded.yaml:6:")
+
+
+@pytest.mark.parametrize("filler", ["", "# more\n" * 9])
+def test_steps_have_the_students_lines_and_the_assignments_expectations_none(merge, filler):
+    loaded = merge(filler + GIVEN).loaded
+    first = 5 + filler.count("\n")
+    assert [loaded.lines.line_of(("steps", index))[0] for index in (0, 1)] == [first, first + 2]
+    assert loaded.lines.line_of(("expect", 0)) == (0, 0)
+    assert "duration: {at_most: 3 s}" not in loaded.text
 
 
 @pytest.mark.parametrize(

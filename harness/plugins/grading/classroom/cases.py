@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,18 +19,20 @@ from harness.core.untrusted_json import parse_json
 from harness.plugins.grading.assignment import LoadedAssignment
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.classroom.confined import Confinement, adopt_orphans, end_children
-from harness.plugins.grading.merge import merged_text, placed, refuse_scene_verbs, steps_in
+from harness.plugins.grading.credit import (
+    GradedResult,
+    credit_of_function,
+    credit_of_run,
+    property_verdicts,
+)
+from harness.plugins.grading.merge import merged_source, refuse_scene_verbs, steps_in
 from harness.recording.stored_run import PAGE
-from harness.recording.verdict import Verdict
 from harness.reporting.progress_events import ProgressEvent
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_job
 
 LARGEST_OUTPUT = 20_000_000  # [bytes], of `harness ik-test --json`
-REACHES = "reaches"
-"""The property of `ik-test` without which the others say nothing: to refuse everything is easy."""
-
 TAIL = 2000
 """Characters of a program's last output that are shown."""
 
@@ -83,23 +85,27 @@ def run_graded_case(case: RunRequest, notify: Notify) -> CaseResult:
         end_children()
 
 
-def _blank(case: GradedCase, outcome: Any, message: str = "") -> CaseResult:
+def _blank(case: GradedCase, outcome: Any, message: str = "") -> GradedResult:
     title = case.assignment.model.assignment
-    return CaseResult(case.main.name, case.case, title, outcome, message=message)
+    return GradedResult(case.main.name, case.case, title, outcome, message=message)
 
 
 def _scenario(case: GradedCase, notify: Notify) -> CaseResult:
     """Run the student's steps in the exercise; places are those of the student's file."""
     from harness.language.reading.load import read_scenario
 
-    own, takes = case.main, case.assignment.model.takes
-    text = merged_text(own, case.file, takes)
-    reading = read_scenario(case.file, case.overrides, case.seed, text)
-    refuse_scene_verbs(reading, own, case.file)
-    result = run_job(replace(case, text=text), notify)
-    verdicts = (each if each.step else replace(each, line=0) for each in result.verdicts)
-    problems = tuple(placed(each, own, case.file) for each in result.problems)
-    return replace(result, file=own.name, verdicts=tuple(verdicts), problems=problems)
+    name, takes = case.main.name, case.assignment.model.takes
+    source = merged_source(case.main, case.file, takes, name)
+    reading = read_scenario(case.file, case.overrides, case.seed, source)
+    refuse_scene_verbs(reading, name, case.file)
+    return _credited(run_job(replace(case, source=source), notify))
+
+
+def _credited(result: CaseResult) -> CaseResult:
+    """The result of a run with what its verdicts earn."""
+    credit = credit_of_run(is_idle=result.is_idle, is_full=result.outcome == "passed")
+    parts = {each.name: getattr(result, each.name) for each in fields(CaseResult)}
+    return GradedResult(**parts, credit=credit)
 
 
 def _node(case: GradedCase, notify: Notify) -> CaseResult:
@@ -112,7 +118,7 @@ def _node(case: GradedCase, notify: Notify) -> CaseResult:
     scenario = load_scenario(case.file, overrides).scenario
     if all(step.verb != "external" for step in steps_in(scenario)):
         overrides["steps"] = f"[{{external: {{}}, timeout: {model.limits.simulated_time:g} s}}]"
-    return run_job(replace(case, overrides=overrides, nodes={"node": command}), notify)
+    return _credited(run_job(replace(case, overrides=overrides, nodes={"node": command}), notify))
 
 
 def _recording(case: GradedCase, _notify: Notify) -> CaseResult:
@@ -173,12 +179,15 @@ def _ik(case: GradedCase, _notify: Notify) -> CaseResult:
     if not isinstance(document, dict) or "properties" not in document:
         lines = (errors.strip() or said.strip() or f"it ended with code {code}")[-TAIL:]
         return _blank(case, "invalid" if code == 2 else "error", lines)
-    properties, findings = document["properties"], document["findings"]
-    reaches = any(each["name"] == REACHES and each["observed"] for each in properties)
-    verdicts = tuple(_property_verdict(each, findings, is_worth=reaches) for each in properties)
+    verdicts = property_verdicts(document, exercise.weights)
     _keep_pictures(report, case.report_dir)
     outcome = "passed" if all(each.status == "passed" for each in verdicts) else "failed"
-    return replace(_blank(case, outcome), verdicts=verdicts, report_dir=str(case.report_dir or ""))
+    return replace(
+        _blank(case, outcome),
+        verdicts=verdicts,
+        report_dir=str(case.report_dir or ""),
+        credit=credit_of_function(document),
+    )
 
 
 def _output(case: GradedCase, words: list[str]) -> tuple[str, str, int]:
@@ -199,23 +208,6 @@ def _output(case: GradedCase, words: list[str]) -> tuple[str, str, int]:
     if len(said) > LARGEST_OUTPUT:
         return "", f"{shlex.join(words[3:5])} has printed {len(said)} bytes", 3
     return said.decode(errors="replace"), errors.decode(errors="replace"), done.returncode
-
-
-def _property_verdict(each: Any, findings: Any, *, is_worth: bool) -> Verdict:
-    """A property of `ik_test.json` as a verdict; it holds where the function reaches targets."""
-    shown = [finding for finding in findings if finding["number"] in each["findings"]]
-    if is_worth and not shown and each["observed"]:
-        return Verdict(each["says"], "passed")
-    reason = each["note"]
-    if not is_worth:
-        reason = ": it ".join(
-            ["the function reaches no target", *(f["kind"] for f in findings[:1])]
-        )
-    if shown:
-        first = shown[0]
-        what = ": ".join(filter(None, (first["kind"], first["detail"])))
-        reason = f"{what}; in {each['flawed']} of {each['tried']} cases, as {first['call']}"
-    return Verdict(each["says"], "failed", reason=reason or "no case showed it")
 
 
 def _keep_pictures(report: Path, target: Path | None) -> None:

@@ -15,7 +15,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from harness.plugins.grading.assignment import Limits  # takes half a second
 
-SUBREAPER, DEATH_SIGNAL, NO_NEW_RIGHTS = 36, 1, 38
+SUBREAPER, IS_SUBREAPER, DEATH_SIGNAL, NO_NEW_RIGHTS = 36, 37, 1, 38
 """Options of Linux' prctl."""
 
 FIRST_USER = 61000
@@ -101,6 +101,19 @@ def may_change_user() -> bool:
 def adopt_orphans() -> None:
     """Make processes whose parents end children of this one, so that `end_children` finds them."""
     _prctl(SUBREAPER, 1)
+
+
+@contextlib.contextmanager
+def adopted_orphans() -> Iterator[None]:
+    """Adopt orphans for a time; then this process adopts what it did before."""
+    before = ctypes.c_int(0)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(IS_SUBREAPER, ctypes.byref(before), 0, 0, 0)
+    adopt_orphans()
+    try:
+        yield
+    finally:
+        _prctl(SUBREAPER, before.value)
 
 
 def _prctl(option: int, value: int) -> None:

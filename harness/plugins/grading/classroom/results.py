@@ -12,6 +12,7 @@ from harness.judging.placed import describe
 from harness.language.reading.load import load_scenario
 from harness.plugins.grading.assignment import LoadedAssignment
 from harness.plugins.grading.classroom.submissions import Submission
+from harness.plugins.grading.credit import FULL, GradedResult
 from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import causes, root_failures, verdict_line
@@ -39,18 +40,20 @@ class Mark:
     Attributes:
         verdict: None where the case has none: it did not run to its end.
         points: The points of this case.
-        reason: Why the points were not earned; empty where they were.
+        reason: Why they were not earned, or not all of them; empty where they were.
+        share: The share of the points that is earned.
     """
 
     criterion: Criterion
     verdict: Verdict | None
     points: float
     reason: str
+    share: float
 
     @property
     def earned(self) -> float:
         """The points that were earned."""
-        return 0.0 if self.reason else self.points
+        return self.points * self.share
 
     @property
     def margin(self) -> str:
@@ -177,8 +180,8 @@ def criteria_of(loaded: LoadedAssignment, results: Sequence[CaseResult]) -> tupl
             has any.
     """
     if loaded.scenario is None:
-        texts = dict.fromkeys(v.expectation for result in results for v in result.verdicts)
-        worth = dict.fromkeys(texts or {"the function can be called": None}, 1.0)
+        worth = {v.expectation: v.points or 0.0 for result in results for v in result.verdicts}
+        worth = worth or {"the function can be called": 1.0}
         return _scaled(list(worth.items()), loaded.model.points)
     read = load_scenario(loaded.scenario)
     scenario = read.scenario
@@ -220,11 +223,15 @@ def graded_run(
     """
     verdicts = [each for each in result.verdicts if not each.step]
     is_whole = len(verdicts) == len(criteria) and result.outcome in ("passed", "failed")
+    credit = result.credit if isinstance(result, GradedResult) else FULL
     marks: list[Mark] = []
     for index, each in enumerate(criteria):
         verdict = verdicts[index] if is_whole else None
-        reason = "" if verdict is not None and verdict.status == "passed" else _why(result, verdict)
-        marks.append(Mark(each, verdict, each.points / count, reason))
+        if verdict is not None and verdict.status == "passed":
+            share, reason = credit.share, credit.reason and f"it holds, and {credit.reason}"
+        else:
+            share, reason = 0.0, _why(result, verdict)
+        marks.append(Mark(each, verdict, each.points / count, reason, share))
     return GradedRun(number, result, tuple(marks))
 
 

@@ -14,7 +14,7 @@ from harness.plugins.grading.assignment import HiddenCase, LoadedAssignment
 from harness.plugins.grading.classroom.cases import GradedCase, run_graded_case
 from harness.plugins.grading.classroom.confined import (
     FIRST_USER,
-    adopt_orphans,
+    adopted_orphans,
     children,
     end_children,
     may_change_user,
@@ -166,8 +166,8 @@ def _results(
     """Run the cases; results come through pipes, so that no file of a submission is one."""
     found: dict[tuple[str, int], CaseResult] = {}
     cap = loaded.model.limits.wall_time
-    adopt_orphans()
-    with WarmServer([*RUN_MODULES, "harness.plugins.grading.classroom.cases"]) as server:
+    modules = [*RUN_MODULES, "harness.plugins.grading.classroom.cases"]
+    with adopted_orphans(), WarmServer(modules) as server:
         if loaded.scenario is not None:
             server.prepare(read_ahead, (), [RunRequest(loaded.scenario)])
             server.prepare(preload, REPORT_MODULES)

@@ -18,6 +18,8 @@ from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
     from harness.plugins.grading.course import Exercise
+    from harness.plugins.grading.credit import Credit
+    from harness.recording.verdict import Verdict
     from harness.reporting.result import CaseResult
 
 
@@ -105,20 +107,22 @@ def _check(arguments: argparse.Namespace) -> int:
     report = Path(arguments.report_dir) / "course" / exercise.folder_name
     if exercise.assignment.model.kind == "ik":
         with redirect_stdout(sys.stderr if arguments.json else sys.stdout):
-            kept = test_solver(exercise, file, report)
-        return _show_properties(kept, exercise, arguments)
+            verdicts, credit = test_solver(exercise, file, report)
+        return _show_properties(verdicts, credit, exercise, arguments)
     return _show_case(run_work(exercise, file, report), file, arguments)
 
 
 def _show_case(case: CaseResult, file: Path, arguments: argparse.Namespace) -> int:
     """Print failed steps, points with reasons and the page of a run."""
     from harness.plugins.grading.commands.grade import print_grade
+    from harness.plugins.grading.credit import credit_of_run
     from harness.plugins.grading.grade import Grade, graded
     from harness.reporting.terminal import Style, report_link
 
-    rows = graded([replace(each, line=0) for each in case.verdicts if not each.step])
+    credit = credit_of_run(is_idle=case.is_idle, is_full=case.outcome == "passed")
+    rows = graded([replace(each, line=0) for each in case.verdicts if not each.step], credit)
     notes = tuple(note for note in case.notes if ": warning: " not in note)  # the rows have them
-    grade = Grade(None, rows, notes)
+    grade = Grade(None, rows, (*notes, *filter(None, [credit.reason])))
     code = EXIT_CODES[case.outcome] or (0 if grade.is_full else EXIT_CODES["failed"])
     if arguments.json:
         points = {"points": grade.points, "earned": grade.earned, "rows": rows}
@@ -146,13 +150,18 @@ def _show_case(case: CaseResult, file: Path, arguments: argparse.Namespace) -> i
 
 
 def _show_properties(
-    kept: dict[str, bool], exercise: Exercise, arguments: argparse.Namespace
+    verdicts: tuple[Verdict, ...], credit: Credit, exercise: Exercise, arguments: argparse.Namespace
 ) -> int:
-    """Print the points of the properties that a function keeps, each worth the same."""
-    points = exercise.assignment.model.points or float(len(kept))
-    earned = points * sum(kept.values()) / len(kept)
+    """Print the points of the properties that a function keeps."""
+    from harness.plugins.grading.grade import Grade, graded
+
+    whole = sum(each.points or 0.0 for each in verdicts)
+    scale = (exercise.assignment.model.points or whole) / whole
+    scaled = [replace(each, points=scale * (each.points or 0.0)) for each in verdicts]
+    grade = Grade(None, graded(scaled, credit), ())
     if arguments.json:
-        say_json({"points": points, "earned": earned, "properties": kept})
+        say_json({"points": grade.points, "earned": grade.earned, "rows": grade.rows})
     else:
-        say("", f"{earned:.3g} of {points:g} points")
-    return 0 if all(kept.values()) else EXIT_CODES["failed"]
+        why = f": {credit.reason}" if credit.reason else ""
+        say("", f"{grade.earned:.3g} of {grade.points:g} points{why}")
+    return 0 if grade.is_full else EXIT_CODES["failed"]

@@ -154,6 +154,7 @@ def _run_node(arguments: argparse.Namespace) -> int:
 
 
 def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
+    from harness.plugins.grading.credit import credit_of_run
     from harness.plugins.grading.grade import Grade, graded
     from harness.recording.read_run import read_run
 
@@ -166,7 +167,9 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
         failed = {"outcome": case.outcome, "message": case.message, "problems": problems}
         return code, {"format": "armharness-grade/1", "exit_code": code, **failed}
     run = read_run(Path(case.report_dir)).run if case.report_dir else None
-    grade = Grade(run, graded(case.verdicts), case.notes)
+    credit = credit_of_run(is_idle=case.is_idle, is_full=case.outcome == "passed")
+    notes = (*case.notes, *filter(None, [credit.reason]))
+    grade = Grade(run, graded(case.verdicts, credit), notes)
     code = _code(grade) if case.outcome == "passed" else EXIT_CODES["failed"]
     if not arguments.json:
         for step in case.steps:
