@@ -75,6 +75,8 @@ class WithinLimits(Predicate):
         parts: list[Part] = []
         hand, resting = gripper_joints(window.run), resting_joints(window.run)
         for column, joint in enumerate(window.run.robot.movable_joints):
+            if joint.is_mimic:  # it has no motor: its limits narrow those of the joint it follows
+                continue
             if self.position:
                 parts += _position_parts(window, column, joint, joint.name in resting)
                 parts += _command_parts(window, column, joint)
@@ -82,7 +84,7 @@ class WithinLimits(Predicate):
                 parts += _rate_part(window, column, joint, VELOCITY)
             if self.effort:
                 parts += _rate_part(window, column, joint, EFFORT)
-            if self.acceleration and joint.name not in hand and not joint.is_mimic:
+            if self.acceleration and joint.name not in hand:
                 parts += _rate_part(window, column, joint, ACCELERATION)
         if not parts:
             raise NotObservable("no limits of these kinds are known")

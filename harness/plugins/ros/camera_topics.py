@@ -29,10 +29,18 @@ Poses = Callable[[], Mapping[str, FloatArray]]  # T_world_object of those that a
 
 
 class _Topics:
-    """What one camera publishes, named as the course's Gazebo does."""
+    """What one camera publishes, named as the course's Gazebo does.
+
+    Attributes:
+        due: Simulated time of the next picture [s].
+        requested: Pictures that were due while a node subscribed.
+        sent: Pictures that were published.
+        late: The largest delay between a picture's simulated time and its publication [s].
+    """
 
     def __init__(self, graph: Graph, camera: Camera, frame: str) -> None:
         base, self.camera, self._frame, self.due = f"/{topic_word(camera.name)}", camera, frame, 0.0
+        self.requested, self.sent, self.late = 0, 0, 0.0
         self._raw = graph.advertise(f"{base}/image", IMAGE, Qos(depth=1))
         self._compressed = graph.advertise(f"{base}/image/compressed", COMPRESSED, Qos(depth=1))
         names = f"{base}/camera_info", f"{base}/image/camera_info"
@@ -48,6 +56,7 @@ class _Topics:
             info.publish(content)
 
     def publish(self, time: float, picture: np.ndarray, compressed: bytes) -> None:
+        self.sent += 1
         head = header(time, self._frame)
         self._raw.publish(image(picture, head))
         self._compressed.publish(compressed_image(compressed, self.camera, head))
@@ -71,12 +80,13 @@ class CameraTopics:
             sample: Index of the physics sample, from which the noise is drawn.
             positions: Joint positions in description order, shape (n,).
         """
-        self._send_finished()
+        self._send_finished(time)
         for topics in self._topics:
             if time < topics.due - 1e-9:
                 continue
             topics.due = time + 1.0 / topics.camera.update_rate
             topics.publish_info(time)
+            topics.requested += topics.are_watched
             if topics.are_watched and self._pending is None:
                 self._pending = topics, time
                 self._painter = self._painter or self._make_painter()
@@ -90,7 +100,17 @@ class CameraTopics:
             self._painter.join(5)
             self._painter = self._pending = None
 
-    def _send_finished(self) -> None:
+    def remarks(self) -> list[str]:
+        """A sentence on each camera of which fewer pictures were sent than its rate requires."""
+        return [
+            f"{topics.sent} of {topics.requested} pictures of '{topics.camera.name}' were sent, at"
+            f" most {topics.late:.2f} s late in simulated time: this machine draws no more; lower"
+            " the camera's update_rate or its size, or --pace"
+            for topics in self._topics
+            if topics.requested - topics.sent > 1
+        ]
+
+    def _send_finished(self, now: float) -> None:
         if self._painter is None or self._pending is None or not self._painter.pictures.poll():
             return
         (topics, time), self._pending = self._pending, None
@@ -100,6 +120,7 @@ class CameraTopics:
             self._topics.clear()
             return
         if drawn is not None:
+            topics.late = max(topics.late, now - time)
             topics.publish(time, *drawn)
 
 

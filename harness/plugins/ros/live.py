@@ -12,79 +12,33 @@ import numpy as np
 
 from harness.core.printable import counted
 from harness.plugins.ros.camera_topics import CameraTopics
+from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.controller_manager import ControllerManager
+from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.handover import HandOver
+from harness.plugins.ros.interfaces import stamp
 from harness.plugins.ros.launch import Program, start_program
 from harness.plugins.ros.moveit.server import MoveGroup
 from harness.plugins.ros.names import mismatched, unserved
 from harness.plugins.ros.pacing import Pace
 from harness.plugins.ros.rtps.graph import Graph
+from harness.plugins.ros.state_topics import StateTopics
 from harness.plugins.ros.wiring import Wiring
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.frames import camera_edges
-from harness.robot.description import RobotDescription
+from harness.reporting.rosbag.messages import message
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator
-from collections.abc import Iterable
-
-from harness.core.types import FloatArray
-from harness.plugins.ros.endpoints import LATCHED, Qos
-from harness.plugins.ros.interfaces import header, stamp
-from harness.reporting.rosbag.frames import Edge, robot_edges, transform_stamped
-from harness.reporting.rosbag.messages import message
-
 Say = Callable[[str], None]
 
 FEEDBACK_EVERY = 5  # ticks between messages of feedback: 20 Hz, as controllers are set
 LOOK_EVERY = 50  # ticks between two looks at how nodes use topics
 MOST_NOTES = 50  # notes that are given of a run while it continues
-TF = "tf2_msgs/msg/TFMessage"
-TF_EVERY = 2  # ticks between two messages of frames: 50 Hz
-
-
-class StateTopics:
-    """Publishes the state of the robot after every tick."""
-
-    def __init__(self, graph: Graph, robot: RobotDescription, cameras: Iterable[Edge]) -> None:
-        """Advertise the topics, and publish what does not change, with the frames of cameras."""
-        self._moved = robot.movable_joints
-        self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", Qos(depth=1))
-        self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
-        self._state = message("sensor_msgs/msg/JointState", name=robot.joint_names)
-        self._tf = graph.advertise("/tf", TF, Qos(depth=100))
-        static = graph.advertise("/tf_static", TF, LATCHED)
-        fixed = [
-            transform_stamped(header(0.0, edge.parent), edge.child, edge.pose)
-            for edge in (*robot_edges(robot), *cameras)
-        ]
-        static.publish(message(TF, transforms=fixed))
-        description = graph.advertise("/robot_description", "std_msgs/msg/String", LATCHED)
-        description.publish(message("std_msgs/msg/String", data=robot.urdf))
-        self._ticks = 0
-
-    def publish(
-        self, time: float, positions: FloatArray, velocities: FloatArray, efforts: FloatArray
-    ) -> None:
-        """Publish the state of the joints, description order, at a simulated time [s]."""
-        moment = stamp(time)
-        self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))
-        state = self._state
-        state.header.stamp = moment
-        state.position, state.velocity, state.effort = positions, velocities, efforts
-        self._joints.publish(state)
-        self._ticks += 1
-        if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
-            transforms = [
-                transform_stamped(
-                    header(time, joint.parent), joint.child, joint.at(position).as_vector()
-                )
-                for joint, position in zip(self._moved, positions, strict=True)
-            ]
-            self._tf.publish(message(TF, transforms=transforms))
+LOG, WARN = "rcl_interfaces/msg/Log", 30  # the type of /rosout, on which notes are published too
 
 
 @dataclass(frozen=True)
@@ -114,6 +68,8 @@ class LiveControl(HandOver):
     ) -> None:
         super().__init__(prepared, simulator)
         self._names: tuple[str, ...] = ()
+        self._calls: tuple[str, ...] = ()
+        self._has_company = False
         self._graph, self._request = graph, request
         self._pace = Pace(request.factor)
         program = prepared.program
@@ -123,8 +79,9 @@ class LiveControl(HandOver):
         self._wiring = Wiring(graph, self.cell, self._note)
         self._manager = ControllerManager(graph, self.cell)
         self._move_group = MoveGroup(graph, self.cell, self._note, self._say_once)
-        finish = self.cell.on_outcome
-        self.cell.on_outcome = lambda outcome: (finish(outcome), self._move_group.finish(outcome))
+        report = self.cell.on_outcome
+        self.cell.on_outcome = lambda outcome: (report(outcome), self._end_of(outcome))
+        self._log = graph.advertise("/rosout", LOG, Qos(is_latched=True, depth=MOST_NOTES))
         self._cameras = CameraTopics(graph, prepared.program)
         self._program: Program | None = None
         self._noted: set[str] = set()
@@ -160,7 +117,17 @@ class LiveControl(HandOver):
 
     def remarks(self, *, has_passed: bool) -> tuple[str, ...]:
         """Remarks on wall time, names and the launched program; none of them is judged."""
-        remarks = [f"{counted(self.command_count, 'command')}; {self._pace.text()}", *self._names]
+        remarks = [f"{counted(self.command_count, 'command')}; {self._pace.text()}"]
+        if not self.command_count:
+            domain = f"ROS domain {self._request.domain}"
+            none = (
+                f"no other node was in {domain}"
+                if not self._has_company
+                else (f"other nodes were in {domain}, and sent none")
+            )
+            remarks.append(f"no command came: {none}")
+        remarks += [name for name in self._names if name not in self._noted]
+        remarks += self._cameras.remarks()
         codes = [each.content["code"] for each in self.cell.commands if "code" in each.content]
         code = codes[-1] if codes else 0
         output = self._program.output if self._program is not None else ""
@@ -199,14 +166,26 @@ class LiveControl(HandOver):
         self._cameras.publish(simulator.time, sample, positions, simulator.objects_now)
 
     def _look_at_names(self) -> None:
-        """Note wrong types at once, and names that are not served where a step fails.
+        """Note wrong types at once, services and actions that nothing serves at the second look.
 
-        A node that has ended uses none any more, so the last ones that were found are kept.
+        Other names that are not served are noted where a step fails. A node that has ended uses
+        none any more, so the last ones that were found are kept.
         """
         uses = self._graph.uses()
-        for note in mismatched(*uses):
+        self._has_company |= bool(uses[1])
+        calls = tuple(unserved(*uses, with_topics=False))
+        for note in (*mismatched(*uses), *(each for each in calls if each in self._calls)):
             self._say_once(note)
-        self._names = tuple(unserved(*uses)) or self._names
+        self._calls, self._names = calls, tuple(unserved(*uses)) or self._names
+
+    def _end_of(self, outcome: Outcome) -> None:
+        """Give MoveIt's clients their results; say why a trajectory from a topic was aborted."""
+        self._move_group.finish(outcome)
+        if not outcome.goal and not outcome.has_succeeded:
+            reason = outcome.result.error_string
+            self._say_once(
+                f"t={self.cell.time:.2f} s: a trajectory from a topic is aborted: {reason}"
+            )
 
     def _note(self, record: CommandRecord) -> None:
         """Count a command; note a command that was refused."""
@@ -220,3 +199,5 @@ class LiveControl(HandOver):
         if key not in self._noted and len(self._noted) < MOST_NOTES:
             self._noted.add(key)
             self._request.say(note)
+            head = {"stamp": stamp(self.cell.time), "level": WARN, "name": "bridge"}
+            self._log.publish(message(LOG, msg=note, **head))

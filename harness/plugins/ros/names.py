@@ -26,12 +26,18 @@ def actions(uses: Iterable[Use]) -> list[str]:
     return sorted({_name(use) for use in uses if use.publishes and _is_action(use)})
 
 
-def unserved(own: Sequence[Use], others: Sequence[Use]) -> list[str]:
-    """A sentence on each name of other nodes that neither they nor this one serves."""
+def unserved(own: Sequence[Use], others: Sequence[Use], *, with_topics: bool = True) -> list[str]:
+    """A sentence on each name of other nodes that neither they nor this one serves.
+
+    Args:
+        with_topics: Whether topics count; else only services and actions, whose clients wait.
+    """
     used = {(use.topic, use.publishes) for use in (*own, *others)}
     notes: set[str] = set()
     for use in others:
         name, does = _name(use), _does(use)
+        if not with_topics and _kind_of(use) == "topic":
+            continue
         is_lost = (use.topic, not use.publishes) not in used and use.topic not in IGNORED
         is_server = use.publishes is _is_action(use) and _kind_of(use) != "topic"
         if is_lost and name and not is_server:

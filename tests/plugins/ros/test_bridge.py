@@ -6,8 +6,10 @@ import pytest
 
 from harness.plugins.ros.actions import CancelCode, Status, uuid_of
 from harness.plugins.ros.control.goals import Code
+from harness.plugins.ros.endpoints import LATCHED
 from harness.plugins.ros.handover import replay
 from harness.plugins.ros.interfaces import CANCEL, TRAJECTORY
+from harness.recording.read_run import read_run
 from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
@@ -140,6 +142,33 @@ def test_the_command_topic_moves_the_arm_and_what_it_cannot_follow_is_ignored(tm
     assert "this controller has no joint 'knee'" in note
 
 
+def test_publishers_of_a_topic_hear_of_an_abort_and_its_reason(tmp_path):
+    """UR's controllers have tolerances, and the arm cannot jump by half a turn in 10 ms."""
+    said = []
+    with bridge(scenario(tmp_path, HOLD, robot="{model: ur5e}"), say=said.append) as (node, _):
+        log = node.listen("/rosout", "rcl_interfaces/msg/Log", LATCHED)
+        topic = "/joint_trajectory_controller/joint_trajectory"
+        publisher = node.graph.advertise(topic, TRAJECTORY)
+        node.wait(lambda: publisher.subscribers)
+        names = [joint.name for joint in robot(model="ur5e").movable_joints[:6]]
+        rows = [point(0.01, [1.5, -1.5, 0, 0, 0, 0]), point(2.0, [0.0] * 6)]
+        publisher.publish(trajectory(*rows, joints=names))
+        node.wait(lambda: said and log)
+    assert "a trajectory from a topic is aborted: path tolerance: '" in said[0]
+    assert log[0].msg == said[0]
+
+
+def test_the_path_of_the_tcp_is_published_as_by_the_course_s_trajectory_server(tmp_path):
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        paths = node.listen("/trajectory", "nav_msgs/msg/Path")
+        node.ready()
+        node.send(follow(point(2.0, [1.0, 0, 0, 0])))
+        node.wait(lambda: paths and len(paths[-1].poses) > 4)
+    places = np.array([(p.pose.position.x, p.pose.position.y) for p in paths[-1].poses])
+    assert (np.linalg.norm(np.diff(places, axis=0), axis=1) >= 0.02).all()
+    assert paths[-1].header.frame_id == "world"
+
+
 @pytest.mark.nightly
 def test_cameras_send_pictures_while_someone_watches(tmp_path):
     with bridge(scenario(tmp_path)) as (node, _):
@@ -194,3 +223,24 @@ def test_twenty_recorded_sessions_replay_to_their_digests(tmp_path):
         digests[number] = results[0].case.digest
         assert replay(folder / "run").digest == digests[number]
     assert len(set(digests.values())) > 10
+
+
+def test_a_step_takes_the_time_of_a_position_interface_and_is_repeated_by_a_replay(tmp_path):
+    """The course's keyboard node sends 0.05 rad with a time_from_start of 0."""
+    folder = tmp_path / "run"
+    with bridge(scenario(tmp_path, HOLD), run={"report_dir": folder}) as (node, results):
+        publisher = node.graph.advertise("/arm_controller/joint_trajectory", TRAJECTORY)
+        node.ready()
+        node.wait(lambda: publisher.subscribers)
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.wait(lambda: states)
+        publisher.publish(trajectory(point(0.0, [0.05, 0, 0, 0])))
+        node.wait(lambda: abs(states[-1].position[0] - 0.05) < 1e-3)
+    run = read_run(folder).run
+    begin = run.commands[0].time
+    times, positions = run.signals.times, run.signals.joint_positions[:, 0]
+    done = times[np.argmax(positions > 0.05 * (1 - np.exp(-1)))] - begin
+    assert 0.05 < done < 0.2
+    assert np.abs(run.signals.joint_velocities[:, 0]).max() < 0.6
+    assert positions.max() < 0.055
+    assert replay(folder).digest == results[0].case.digest

@@ -8,6 +8,7 @@ from harness.core.spatial import SE3
 from harness.plugins.ros.control.cell import UNBOUNDED
 from harness.plugins.ros.control.controller import Window
 from harness.plugins.ros.control.goals import Code, GoalRefused
+from harness.plugins.ros.control.step_response import StepResponse
 from harness.plugins.ros.control.trajectory import Spline, start_trajectory
 from harness.recording.commands import CommandRecord
 from harness.robot.description import Joint, TrackingTolerances
@@ -129,3 +130,30 @@ def test_a_goal_s_own_tolerance_replaces_the_default(bound, code):
         later = TIMES + 0.5
         ended = arm.judge(Window(later, arm.at(later), off, HERE))
         assert ended.result.error_code == Code.GOAL_TOLERANCE_VIOLATED
+
+
+@pytest.mark.parametrize("jumps", [[0.05], [3.0], [0.05, 0.05, 0.05], [1.0, -2.0]])
+def test_steps_keep_velocity_limits_and_end_at_the_commanded_positions(jumps):
+    steps = StepResponse(np.array([2.0]))
+    times, dt = np.arange(1, 8001) * 0.002, 0.002
+    target, sent, column = 0.0, [], np.array([0])
+    for place, now in enumerate(times):
+        if place % 25 == 0 and place // 25 < len(jumps):  # each 0.05 s
+            jump = jumps[place // 25]
+            target += jump
+            steps.add(now, column, np.array([jump]))
+        sent.append(steps.applied(np.array([now]), np.array([[[target]], [[0.0]], [[0.0]]])))
+    positions, velocities, accelerations = np.array(sent)[:, :, 0, 0].T
+    assert positions[-1] == pytest.approx(sum(jumps), abs=1e-6)
+    limit = 2.0 if len(jumps) == 1 else 2.0 * len(jumps)  # steps before the last are on their way
+    assert np.abs(velocities).max() <= limit + 1e-9
+    assert np.abs(np.diff(positions)).max() <= limit * dt + 1e-9
+    assert np.allclose(np.gradient(positions, dt)[2:-2], velocities[2:-2], atol=0.03 * limit)
+    assert np.isfinite(accelerations).all()
+
+
+def test_what_does_not_jump_is_sent_as_it_is_commanded():
+    steps, rows = StepResponse(np.array([2.0])), np.ones((3, 1, 1))
+    assert steps.applied(np.array([1.0]), rows) is rows
+    steps.add(1.0, np.array([0]), np.array([1e-9]))
+    assert steps.applied(np.array([1.01]), rows) is rows

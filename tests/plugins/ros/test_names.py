@@ -10,7 +10,7 @@ from harness.plugins.ros.actions import ActionClient
 from harness.plugins.ros.bridge import BridgeRequest, run_bridge
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.endpoints import BEST_EFFORT, LATCHED, SERVICE, Use
-from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
+from harness.plugins.ros.interfaces import CANCEL, FOLLOW, GRIPPER, TRAJECTORY
 from harness.plugins.ros.names import unserved
 from harness.plugins.ros.rtps.graph import dds_type
 from harness.session.run_request import RunRequest
@@ -45,20 +45,33 @@ def test_services_that_no_node_serves_are_named_and_servers_are_not():
     )
 
 
-def test_misspelt_actions_and_topics_are_named_when_nothing_arrived(tmp_path):
+def test_misspelt_actions_are_noted_while_their_clients_wait_and_topics_at_the_end(tmp_path):
     said = []
     with bridge(scenario(tmp_path, HOLD), say=said.append) as (node, results):
         node.ready()
         node.graph.advertise("/arm_controler/joint_trajectory", TRAJECTORY)
         ActionClient(node.graph, "/gripper_controller/gripper_command", GRIPPER)
-        node.graph.advertise("/arm_controller/joint_trajectory", "std_msgs/msg/String")
-        node.wait(lambda: said)  # of the wrong type, which is seen after the two before it
-    assert results[0].remarks[1:] == (
+        node.graph.client("/controller_manager/list_controler", CANCEL)
+        node.wait(lambda: len(said) == 2)
+    domain = node.graph.participant.domain
+    assert said == [
         "a node calls the action /gripper_controller/gripper_command, which is not served; did you"
         " mean /gripper_controller/gripper_cmd?",
+        "a node calls the service /controller_manager/list_controler, which is not served; did you"
+        " mean /controller_manager/list_controllers?",
+    ]
+    assert results[0].remarks[1:] == (
+        f"no command came: other nodes were in ROS domain {domain}, and sent none",
         "a node publishes /arm_controler/joint_trajectory, which has no subscriber; did you mean"
         " /arm_controller/joint_trajectory?",
     )
+
+
+def test_a_session_without_nodes_says_that_no_command_came(tmp_path):
+    with free_domain() as domain:
+        request = RunRequest(scenario(tmp_path, HOLD + "\n  timeout: 0.5 s"), page=False)
+        result = run_bridge(BridgeRequest(request, domain))
+    assert f"no command came: no other node was in ROS domain {domain}" in result.remarks
 
 
 def test_wrong_types_and_qualities_are_noted_once_with_what_to_change(tmp_path):

@@ -14,6 +14,7 @@ from harness.core.types import FloatArray
 from harness.plugins.ros.control.controller import Controller, Outcome, Rows, Window
 from harness.plugins.ros.control.goals import Code, GoalRefused
 from harness.plugins.ros.control.gripper import GripperMotion
+from harness.plugins.ros.control.step_response import StepResponse
 from harness.plugins.ros.control.trajectory import follow_result, start_trajectory
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import TrackingTolerances
@@ -84,6 +85,10 @@ class ExternalCell:
         self.end: CommandRecord | None = None
         held = self._servos.commanded_positions()[self._servos.physics.actuated][None]
         self._last: Rows = np.array([held, np.zeros_like(held), np.zeros_like(held)])
+        self._sent = self._last
+        joints = self.description.movable_joints
+        limits = [joints[place].velocity for place in self._servos.physics.actuated]
+        self._steps = StepResponse(np.array(limits))
 
     def receive(
         self, kind: CommandKind, controller: str = "", goal: str = "", **content: Any
@@ -119,6 +124,9 @@ class ExternalCell:
             motion = start_trajectory(controller.joints, controller.bounds, command, start)
         self._interrupt(controller, Code.INVALID_GOAL, PREEMPTED)
         controller.motion = motion
+        if command.kind == "trajectory":
+            jump = motion.at(np.array([self.time]))[0, 0] - start[0, 0]
+            self._steps.add(self.time, controller.columns, jump)
         if gripper is not None and "gripper" in controller.kinds:
             self._servos.limit_gripper(motion.effort or gripper.grip_effort)
 
@@ -144,8 +152,9 @@ class ExternalCell:
         first = servos.sample_count
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * servos.timestep
         rows = self._set_points(times)
-        servos.stream(np.concatenate([self._last, rows], axis=1))
-        self._last = rows[:, -1:]
+        sent = self._steps.applied(times, rows)
+        servos.stream(np.concatenate([self._sent, sent], axis=1))
+        self._last, self._sent = rows[:, -1:], sent[:, -1:]
         for controller in self._each:
             motion = controller.motion
             ended = motion.judge(self._window(controller, times, rows)) if motion else None
@@ -170,7 +179,7 @@ class ExternalCell:
         """End what is still active; the arm holds its last set point."""
         for controller in self._each:
             self._interrupt(controller, Code.INVALID_GOAL, STOPPED)
-        self._servos.command(self._last[0, -1])
+        self._servos.command(self._sent[0, -1])
 
     def _now(self, controller: Controller) -> Window:
         """Desired and measured motion of a controller's joints at this moment."""
@@ -185,9 +194,11 @@ class ExternalCell:
 
     def _hold(self, controller: Controller, positions: FloatArray) -> None:
         """Command the joints of a controller to rest at some positions."""
-        self._last = self._last.copy()
-        self._last[:, -1, controller.columns] = 0.0
-        self._last[0, -1, controller.columns] = positions
+        self._steps.stop(controller.columns)
+        self._last, self._sent = self._last.copy(), self._sent.copy()
+        for rows in (self._last, self._sent):
+            rows[:, -1, controller.columns] = 0.0
+            rows[0, -1, controller.columns] = positions
 
     def _set_points(self, times: FloatArray) -> Rows:
         """Set points of all actuated joints at some times."""

@@ -40,6 +40,7 @@ class Requests:
         """Keep requests from now on.
 
         Args:
+            control: Records commands, and lets them take effect.
             note: Takes each command that a client gave.
             say: Takes sentences for the user: requests that failed, and why.
         """

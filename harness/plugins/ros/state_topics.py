@@ -1,0 +1,83 @@
+"""The topics that show the state of the robot: joints, frames, the clock, and the TCP's path."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from harness.core.kinematics import LinkPoses
+from harness.core.types import FloatArray
+from harness.plugins.ros.endpoints import LATCHED, Qos
+from harness.plugins.ros.interfaces import header, stamp
+from harness.plugins.ros.rtps.graph import Graph
+from harness.reporting.rosbag.frames import Edge, robot_edges, transform_stamped
+from harness.reporting.rosbag.messages import message, pose_message
+from harness.robot.description import RobotDescription
+
+TF = "tf2_msgs/msg/TFMessage"
+TF_EVERY = 2  # ticks between two messages of frames: 50 Hz
+PATH = "nav_msgs/msg/Path"
+PATH_EVERY, PATH_STEP, MOST_POSES = 20, 0.02, 10_000
+"""Of the TCP's path: ticks between two messages (5 Hz), distance between two poses [m], as in the
+course's launch files, and poses that are kept."""
+
+
+class StateTopics:
+    """Publishes the state of the robot after every tick."""
+
+    def __init__(self, graph: Graph, robot: RobotDescription, cameras: Iterable[Edge]) -> None:
+        """Advertise the topics, and publish what does not change, with the frames of cameras."""
+        self._moved = robot.movable_joints
+        self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", Qos(depth=1))
+        self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
+        self._state = message("sensor_msgs/msg/JointState", name=robot.joint_names)
+        self._tf = graph.advertise("/tf", TF, Qos(depth=100))
+        static = graph.advertise("/tf_static", TF, LATCHED)
+        fixed = [
+            transform_stamped(header(0.0, edge.parent), edge.child, edge.pose)
+            for edge in (*robot_edges(robot), *cameras)
+        ]
+        static.publish(message(TF, transforms=fixed))
+        description = graph.advertise("/robot_description", "std_msgs/msg/String", LATCHED)
+        description.publish(message("std_msgs/msg/String", data=robot.urdf))
+        self._ticks, self._robot = 0, robot
+        self._path = graph.advertise("/trajectory", PATH)
+        self._poses: deque[Any] = deque(maxlen=MOST_POSES)
+        self._last = np.full(3, np.inf)
+
+    def publish(
+        self, time: float, positions: FloatArray, velocities: FloatArray, efforts: FloatArray
+    ) -> None:
+        """Publish the state of the joints, description order, at a simulated time [s]."""
+        moment = stamp(time)
+        self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))
+        state = self._state
+        state.header.stamp = moment
+        state.position, state.velocity, state.effort = positions, velocities, efforts
+        self._joints.publish(state)
+        self._ticks += 1
+        if self._ticks % PATH_EVERY == 0:
+            self._publish_path(time, positions)
+        if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
+            transforms = [
+                transform_stamped(
+                    header(time, joint.parent), joint.child, joint.at(position).as_vector()
+                )
+                for joint, position in zip(self._moved, positions, strict=True)
+            ]
+            self._tf.publish(message(TF, transforms=transforms))
+
+    def _publish_path(self, time: float, positions: FloatArray) -> None:
+        """Publish where the TCP was: a pose for each distance that it moved."""
+        link, root = self._robot.tcp_link, self._robot.joints[0].parent
+        row = LinkPoses(self._robot.joints, positions, [link]).rows(link)[0]
+        if not np.linalg.norm(row[:3] - self._last) < PATH_STEP:
+            self._last = row[:3]
+            kind, pose = "geometry_msgs/msg/PoseStamped", pose_message([*row])
+            self._poses.append(message(kind, header=header(time, root), pose=pose))
+        if self._path.subscribers:
+            head = header(time, root)
+            self._path.publish(message(PATH, header=head, poses=[*self._poses]))
