@@ -90,6 +90,8 @@ class Cell:
     step: ProgramStep | None = None
     cameras: Mapping[str, Camera] = field(default_factory=dict[str, Camera])
     external: ExternalControl | None = None
+    expected: dict[str, SE3] = field(default_factory=dict[str, SE3])
+    """T_world_object of objects that plans take to be elsewhere than they are."""
     faults: dict[str, int] = field(default_factory=dict[str, int])
     """The faults that were injected, in words, and the line of each in the file."""
 
@@ -153,8 +155,19 @@ class Cell:
         return self.description.with_mimics(start)
 
     def measured_pose(self, name: str) -> SE3:
-        """T_world_object as the physics has it now."""
-        return self.simulator.object_pose(name)
+        """T_world_object as the physics has it now, or as it is expected later."""
+        return self.expected.get(name) or self.simulator.object_pose(name)
+
+    @contextmanager
+    def expecting(self, name: str, pose: SE3) -> Generator[None]:
+        """Plan as if an object stood at T_world_object, where a belt will have brought it."""
+        self.expected[name] = pose
+        self.sync_scene()
+        try:
+            yield
+        finally:
+            del self.expected[name]
+            self.sync_scene()
 
     def frame(self, name: str) -> SE3:
         """T_world_frame of `world`, a link, or an object as the physics has it now."""

@@ -29,7 +29,7 @@ def places_on(name: str, support: str, cell: Cell) -> list[SE3]:
         raise _no_top(support, "is not in the planning scene")
     if frame.rotation[2, 2] < LEVEL:
         raise _no_top(support, "is tilted")
-    low, high = _top(cell.scene.corners(support))
+    low, high = top_of(cell.scene.corners(support))
     corners = cell.scene.corners(name)
     least, most = corners.min(axis=0), corners.max(axis=0)
     room = np.maximum(high - low - (most - least), 0.0)[:2]
@@ -43,7 +43,7 @@ def places_on(name: str, support: str, cell: Cell) -> list[SE3]:
     ]
 
 
-def _top(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
+def top_of(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Least and largest corner of the shape with the largest top, of those that are highest.
 
     Args:

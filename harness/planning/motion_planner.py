@@ -13,6 +13,7 @@ from harness.core.types import FloatArray
 from harness.planning.cartesian.cartesian_path import plan_waypoints
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.motion_sequence import plan_items
+from harness.planning.cartesian.timed_link import plan_timed_link
 from harness.planning.collision.scene import CoalScene
 from harness.planning.constrained_motion import find_constrained_motion
 from harness.planning.diagnosis.explanation import explained
@@ -33,6 +34,7 @@ from harness.ports.motions import (
     LinearMotion,
     MotionSequence,
     RelativeMotion,
+    TimedLinkMotion,
     WaypointMotion,
 )
 from harness.recording.motion_failures import DurationFailure
@@ -76,6 +78,8 @@ class VerifiedPlanner:
                 return plan_items(self._links(request), items)
             case WaypointMotion(goals, path_options):
                 return plan_waypoints(self._links(request), goals, path_options)
+            case TimedLinkMotion() as motion:
+                return plan_timed_link(self._task(request), motion)
 
     @explained
     def check_goal(self, request: MotionRequest) -> CheckedGoal:

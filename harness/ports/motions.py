@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.goals import AnyGoal, Goal, JointGoal, PathConstraints, PoseGoal, PositionGoal
 
@@ -170,6 +171,21 @@ class WaypointMotion:
     path_options: CartesianPathOptions
 
 
+@dataclass(frozen=True, eq=False)
+class TimedLinkMotion:
+    """A link that must be at a pose at each moment.
+
+    Attributes:
+        link: A link that is rigidly attached after the group's last joint.
+        pose_at: T_world_link at a time from 0 to `duration` [s]; at rest at both ends.
+        duration: The time that the motion takes [s].
+    """
+
+    link: str
+    pose_at: Callable[[float], SE3]
+    duration: float
+
+
 PlannedMotion = (
     FreeMotion
     | JointMotion
@@ -178,4 +194,5 @@ PlannedMotion = (
     | RelativeMotion
     | MotionSequence
     | WaypointMotion
+    | TimedLinkMotion
 )

@@ -123,6 +123,8 @@ class Simulator(Protocol):
     def track(self, trajectory: JointTrajectory) -> None:
         """Follow a trajectory from where the command stands, then hold its end for the goal time.
 
+        One that ends in motion is followed by another at once.
+
         Raises:
             StepFailed: CONTROL_FAILED, when a joint leaves the controller's tolerances; says which
                 joint, by how much, what it touched.

@@ -177,7 +177,11 @@ class ContactRecord:
         return {pair: found[pair] for pair in sorted(found)}
 
     def slides(
-        self, count: int, poses: Mapping[str, FloatArray], chosen: Set[str]
+        self,
+        count: int,
+        poses: Mapping[str, FloatArray],
+        chosen: Set[str],
+        surfaces: Mapping[str, FloatArray],
     ) -> dict[BodyPair, FloatArray]:
         """How far objects slide along each other since the sample before [m], shape (count,) each.
 
@@ -187,6 +191,8 @@ class ContactRecord:
             count: Number of samples, counted from the first.
             poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
             chosen: Objects; pairs without any of them are left out.
+            surfaces: The motion of the surface of each belt since the sample before, in its axes:
+                its displacement at the origin [m] and its turn about z [rad], shape (N, 4) each.
         """
         found: dict[BodyPair, FloatArray] = {}
         for numbers, rows, contacts in self._by_pair(0, count):
@@ -196,7 +202,7 @@ class ContactRecord:
             presses = (self._forces[contacts] > 0) & (rows > 0)
             rows, contacts = rows[presses], contacts[presses]
             points, normals = self._points[contacts], self._normals[contacts]
-            ways = [_way_of_points(poses[name], rows, points) for name in pair]
+            ways = [_way_of_points(poses[name], rows, points, surfaces.get(name)) for name in pair]
             way = np.nan_to_num(ways[0] - ways[1])
             way -= np.sum(way * normals, axis=1, keepdims=True) * normals
             slid = found.setdefault(pair, np.zeros(count))
@@ -268,17 +274,25 @@ class ContactRecord:
         return a, b
 
 
-def _way_of_points(poses: FloatArray, rows: Array, points: Array) -> FloatArray:
-    """How far points of a body moved since the sample before [m], shape (C, 3).
+def _way_of_points(
+    poses: FloatArray, rows: Array, points: Array, surface: FloatArray | None
+) -> FloatArray:
+    """How far points of a body's surface moved since the sample before [m], shape (C, 3).
 
     Args:
         poses: T_world_body at each sample, shape (N, 7).
         rows: The sample of each point, from 1, shape (C,).
         points: Where the points are now, in the world [m], shape (C, 3).
+        surface: The motion of a belt's surface along its body, as in `slides`.
     """
     now, before = poses[rows], poses[rows - 1]
     in_body = rotate(conjugate(now[:, 3:]), points - now[:, :3])
-    return points - before[:, :3] - rotate(before[:, 3:], in_body)
+    way = points - before[:, :3] - rotate(before[:, 3:], in_body)
+    if surface is None:
+        return way
+    shift, turn = surface[rows, :3], surface[rows, 3]
+    shift = shift + np.column_stack([-turn * in_body[:, 1], turn * in_body[:, 0], 0 * turn])
+    return way + rotate(now[:, 3:], shift)
 
 
 def _add(sums: FloatArray, rows: Array, values: Array) -> None:

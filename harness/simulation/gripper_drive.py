@@ -9,18 +9,13 @@ import numpy as np
 
 from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.ports.simulation import GripperResult
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.recording import Recording
 from harness.simulation.set_points import SetPoints, ramp
 
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator
-
-CLOSING_SPEED = 0.075
-"""Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""
-
-VELOCITY_SHARE = 0.8
-"""Share of the joint's velocity limit that is commanded at most: fingers bounce when they meet."""
 
 GOAL_TOLERANCE = 0.004
 """Largest position error at which the joint has reached its goal, as a share of its range."""
@@ -175,13 +170,3 @@ def gripper_ramp(
     joint, speed = description.joint_by_name[gripper.joint], joint_speed(description, gripper)
     turns_back = (goal - measured) * (commanded - measured) < 0
     return ramp(measured if turns_back else commanded, goal, speed, joint.acceleration, timestep)
-
-
-def joint_speed(description: RobotDescription, gripper: Gripper) -> float:
-    """Speed of the gripper's joint that changes the pad gap at CLOSING_SPEED, within its limit."""
-    limit = VELOCITY_SHARE * description.joint_by_name[gripper.joint].velocity
-    positions, gaps = gripper.widths[:, 0], gripper.widths[:, 1]
-    if len(positions) < 2:
-        return min(limit, abs(gripper.closed_position - gripper.open_position))
-    steepest = float(np.abs(np.diff(gaps) / np.diff(positions)).max())
-    return min(limit, CLOSING_SPEED / steepest)

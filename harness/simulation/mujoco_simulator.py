@@ -105,8 +105,8 @@ class MujocoSimulator:
         self._data.ctrl[:] = self._control
         self._grip: tuple[int, float] | None = None  # actuator, effort limit
         self.faults = MujocoFaults(self, self.physics, self._data)
-        self._surfaces = Surfaces(self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
+        self._surfaces = Surfaces(self.physics, self._data, self._recording)
         refresh(self._model, self._data)
         self._refuse_unusable_start()
         self.overlaps_at_start = overlaps(self.physics, self._data)
@@ -173,6 +173,8 @@ class MujocoSimulator:
     def track(self, trajectory: JointTrajectory) -> None:
         """Follow a trajectory, then hold its end until every joint is within the goal tolerance.
 
+        One that ends in motion is followed by another at once.
+
         Raises:
             StepFailed: CONTROL_FAILED; a joint left the tolerances of the controller.
         """
@@ -189,6 +191,9 @@ class MujocoSimulator:
             self._advance(whole.part(begin, end), controls[begin : end + 1])
             self._command = whole.positions[end]
             self._refuse_lag(first, whole.positions[begin + 1 : end + 1, columns], columns)
+        if trajectory.velocities[-1].any():
+            self._control = controls[-1]
+            return
         self.command(whole.positions[-1])
         self._wait_for_goal(whole.positions[-1, columns], columns)
 
@@ -252,7 +257,7 @@ class MujocoSimulator:
 
     def surface_motion(self, name: str) -> SurfaceMotion:
         """How the surface of a belt or a turntable moves now."""
-        return self._surfaces.motions[name]
+        return self._surfaces.motion(name)
 
     def drive_surface(self, name: str, motion: SurfaceMotion, duration: float) -> None:
         """Change the motion of a belt's surface evenly, a little at each sample."""
@@ -282,7 +287,7 @@ class MujocoSimulator:
 
     def finish(self) -> Signals:
         """All recorded signals, without clearances."""
-        return self._recording.signals(self._objects.recorded_poses())
+        return self._recording.signals(self._objects.recorded_poses(), self._surfaces.recorded())
 
     def snapshot(self) -> PhysicsState:
         """Everything that decides how the run continues."""
@@ -291,7 +296,7 @@ class MujocoSimulator:
             self._command.copy(), self._control.copy(), self._grip, pending, self._drive.copy()
         )
         history, faults = self._objects.history, self.faults.state()
-        surfaces = dict(self._surfaces.motions)
+        surfaces = self._surfaces.history
         return saved_state(
             self._model, self._data, command, self.sample_count, history, faults, surfaces
         )
@@ -307,7 +312,7 @@ class MujocoSimulator:
             self._gripper.pending = command.pending
         self._objects.history = state.history
         self.faults.restore(state.faults)
-        self._surfaces.motions = dict(state.surfaces)
+        self._surfaces.history = state.surfaces
         self._recording.rewind(state.samples)
 
     def command(self, positions: FloatArray) -> None:

@@ -220,11 +220,14 @@ class Recording:
         }
         return dict(sorted(peaks.items(), key=lambda item: -item[1]))
 
-    def signals(self, object_poses: Mapping[str, FloatArray]) -> Signals:
+    def signals(
+        self, object_poses: Mapping[str, FloatArray], surfaces: Mapping[str, FloatArray]
+    ) -> Signals:
         """All recorded signals.
 
         Args:
             object_poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
+            surfaces: The motion of the surface of each belt since the sample before, (N, 4) each.
         """
         physics, count = self._physics, self.count
         joints = len(physics.qpos)
@@ -250,7 +253,9 @@ class Recording:
             support_forces=self._contacts.support_forces(count),
             presses=self._contacts.presses(0, count),
             frictions=self._contacts.frictions(count),
-            slides=self._contacts.slides(count, object_poses, self._moved_by_robot(contacts)),
+            slides=self._contacts.slides(
+                count, object_poses, self._moved_by_robot(contacts), surfaces
+            ),
         )
 
     def _moved_by_robot(self, pairs: Collection[BodyPair]) -> set[str]:

@@ -39,6 +39,7 @@ CHANGED_IN_PLACE = (
 """Arrays of the model that objects, surfaces, welds, grips and faults write to during a run."""
 
 History = Mapping[str, list[tuple[int, FloatArray | None]]]
+Surfaces = Mapping[str, list[tuple[int, SurfaceMotion]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ class PhysicsState:
         samples: The number of samples recorded so far.
         history: Since when each object stands where it was put.
         faults: The state of the active faults.
-        surfaces: How surfaces of static objects move.
+        surfaces: Since which samples the surface of each belt moves how.
     """
 
     step: StepState
@@ -80,7 +81,7 @@ class PhysicsState:
     samples: int
     history: History
     faults: Mapping[str, Any]
-    surfaces: Mapping[str, SurfaceMotion]
+    surfaces: Surfaces
 
 
 def saved_state(
@@ -90,7 +91,7 @@ def saved_state(
     samples: int,
     history: History,
     faults: Mapping[str, Any],
-    surfaces: Mapping[str, SurfaceMotion],
+    surfaces: Surfaces,
 ) -> PhysicsState:
     """The snapshot of a model, its data, and what the simulator keeps besides."""
     arrays = {name: getattr(model, name).copy() for name in CHANGED_IN_PLACE}

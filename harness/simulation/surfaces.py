@@ -4,37 +4,63 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import mujoco
 import numpy as np
 
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.core.surface_motion import SurfaceMotion
+from harness.core.types import FloatArray
 from harness.simulation.model import PhysicsModel
+from harness.simulation.recording import Recording
 from harness.simulation.step_state import wake
+
+Log = list[tuple[int, SurfaceMotion]]
 
 
 class Surfaces:
-    """How the surfaces of static objects move now.
+    """The motions of belts and turntables, with the history that reconstructs every sample."""
 
-    Attributes:
-        motions: The motion of each belt and turntable, by name.
-    """
-
-    def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
-        self._physics, self._data = physics, data
-        self.motions = dict[str, SurfaceMotion]()
+    def __init__(self, physics: PhysicsModel, data: mujoco.MjData, recording: Recording) -> None:
+        self._physics, self._data, self._recording = physics, data, recording
+        self._log = dict[str, Log]()
         for name, place in physics.objects.items():
             if place.obj.surface_motion is not None:
-                self._set(name, place.obj.surface_motion)
+                self._log[name] = [(0, place.obj.surface_motion)]
+                self._write(name, place.obj.surface_motion)
+
+    @property
+    def history(self) -> dict[str, Log]:
+        """Since which samples the surface of each belt moves how."""
+        return {name: list(entries) for name, entries in self._log.items()}
+
+    @history.setter
+    def history(self, history: Mapping[str, Log]) -> None:
+        self._log = {name: list(entries) for name, entries in history.items()}
+
+    def motion(self, name: str) -> SurfaceMotion:
+        """How the surface of a belt moves now."""
+        return self._log[name][-1][1]
 
     def set(self, name: str, motion: SurfaceMotion) -> None:
         """Let the surface of a belt move from now on; what rests on it wakes."""
-        self._set(name, motion)
+        self._log[name].append((self._recording.count, motion))
+        self._write(name, motion)
         wake(self._physics.model, self._data)
 
-    def _set(self, name: str, motion: SurfaceMotion) -> None:
-        """Write the velocity of each geom's surface: at the geom's origin, in the geom's axes."""
-        self.motions[name] = motion
+    def recorded(self) -> dict[str, FloatArray]:
+        """How far each surface moved since the sample before: x, y, z [m], turn [rad], (N, 4)."""
+        count, timestep = self._recording.count, self._recording.timestep
+        moved: dict[str, FloatArray] = {}
+        for name, log in self._log.items():
+            rows = moved[name] = np.zeros((count, 4))
+            for begin, motion in log:
+                rows[begin:] = np.array([*motion.velocity, motion.rotation]) * timestep
+        return moved
+
+    def _write(self, name: str, motion: SurfaceMotion) -> None:
+        """Set the velocity of each geom's surface: at the geom's origin, in the geom's axes."""
         model, geoms = self._physics.model, self._physics.objects[name].geoms
         for geom in range(geoms.start, geoms.stop):
             turn = rotation_from_quat_wxyz(model.geom_quat[geom]).T

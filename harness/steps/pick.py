@@ -12,7 +12,13 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.closing import closing_obstacles
 from harness.cell.goals import TcpGoal, group_of, task_space_of
-from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, with_arm
+from harness.cell.grasp_choice import (
+    Approach,
+    ChosenApproach,
+    GraspSearch,
+    choose_approach,
+    with_arm,
+)
 from harness.cell.grasping import (
     check_opening,
     grasp_points,
@@ -29,11 +35,12 @@ from harness.core.details import Detail, Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.base import Angle, Name, PositiveLength, SpecModel
+from harness.language.base import Angle, Flag, Name, PositiveLength, SpecModel
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
 from harness.ports.goals import PoseGoal
 from harness.recording.explanation import ApproachFailure, Explanation, NearestState
+from harness.steps._pick_in_motion import Interception, pick_in_motion
 from harness.steps.grasp import Grasp, GripperAction, HoldingEffort, check_graspable
 from harness.steps.gripper import Gripper
 from harness.steps.lin import Lin
@@ -68,6 +75,9 @@ class Travel(SpecModel):
     )
 
 
+APPROACH_IN_MOTION = Travel(min_distance=0.03, max_distance=0.05)  # shorter: the object moves on
+
+
 @dataclass(frozen=True)
 class GraspChoice(Detail):
     """How many grasps there are, and which of them was taken, from 1."""
@@ -92,12 +102,17 @@ class Pick(Step):
     from the gripper's palm to its pads; `harness robot check` prints it.
 
     The planner's `padding` does not apply between the gripper and the object to grasp.
+
+    With `track: true` the object may move on a belt or a turntable. The step predicts where that
+    carries it, chooses the first moment at which the arm can be there, waits for it, matches its
+    velocity while it approaches, moves with it while the fingers close from a little wider than
+    the object, and comes to rest while it lifts. The grasp is verified after the lift.
     """
 
     short = "object"
 
     verb: ClassVar[str] = "pick"
-    results = (GraspChoice,)
+    results = (GraspChoice, Interception)
 
     object: Name = Field(description="The name of the object.")
     grasp_pose: Pose | None = Field(
@@ -120,6 +135,11 @@ class Pick(Step):
     )
     mode: GripperAction = "friction"
     max_effort: HoldingEffort = None
+    track: Flag = Field(
+        default=False,
+        description="The object moves on a belt or turntable: the arm meets it, moves with it while"
+        " the gripper closes, and lifts it.",
+    )
 
     @model_validator(mode="after")
     def _one_rotation(self) -> Pick:
@@ -156,9 +176,13 @@ class Pick(Step):
 
     def execute(self, cell: Cell) -> None:
         """Open, go to where the approach begins, approach straight, grasp, lift."""
-        open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
         grasp = Grasp(object=self.object, mode=self.mode, max_effort=self.max_effort)
         lift = relative_step(self.lift, Direction(xyz=(0, 0, 1)), self.group)
+        if self.track:
+            step = self.model_copy(update={"approach": self.approach or APPROACH_IN_MOTION})
+            pick_in_motion(grasp, lift, lambda: chosen_approach(step, lift, cell), cell)
+            return
+        open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
         with cell.unpadded_gripper(self.object):
             children = [
                 cell.child("open", open_hand, "gripper open"),
@@ -177,6 +201,21 @@ def check_travel(travel: Travel | None, at: At, key: str) -> None:
 
 def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
     """The free motion to where the approach begins, and the straight one to the grasp."""
+    chosen = chosen_approach(step, lift, cell)
+    reach = MoveTo(**chosen.reach_keys, group=step.group)
+    lin = Lin(**chosen.approach.at.keys, group=step.group)
+    return [
+        cell.child("reach", reach, f"move_to before {step.object}"),
+        cell.child("approach", lin, f"lin to {step.object}"),
+    ]
+
+
+def chosen_approach(step: Pick, lift: MoveRelative, cell: Cell) -> ChosenApproach:
+    """The approach to the object where it stands.
+
+    Raises:
+        PlanningFailed: There is none; explains the one that is nearest to being possible.
+    """
     goals = grasp_goals(step, cell)
     group, axis = group_of(cell, step.group), gripper_axes(cell)[0]
     approaches = [
@@ -199,12 +238,7 @@ def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
         advice = pick_advice(step, failure, len(goals), cell)
         raise with_advice(failure, advice, approach_words(failure)) from failure
     cell.report(GraspChoice(len(goals), chosen.approach.number + 1))
-    reach = MoveTo(**chosen.reach_keys, group=step.group)
-    lin = Lin(**chosen.approach.at.keys, group=step.group)
-    return [
-        cell.child("reach", reach, f"move_to before {step.object}"),
-        cell.child("approach", lin, f"lin to {step.object}"),
-    ]
+    return chosen
 
 
 def _can_lift(lift: MoveRelative, state: FloatArray, cell: Cell) -> bool:

@@ -184,7 +184,7 @@ def test_objects_slide_as_far_as_the_points_at_which_they_touch(
         mujoco.mj_integratePos(physics.model, data.qpos, data.qvel, timestep)
     floor = np.tile(FLOOR.pose.as_vector(), (samples, 1))
     every = {name: poses, "a floor": floor}
-    assert record.slides(samples, every, set()) == {}
-    (slid,) = record.slides(samples, every, {name}).values()
+    assert record.slides(samples, every, set(), {}) == {}
+    (slid,) = record.slides(samples, every, {name}, {}).values()
     assert slid[0] == 0
     assert slid[1:] == pytest.approx(np.full(samples - 1, expected * timestep), abs=2e-6)

@@ -12,12 +12,12 @@ from harness.plugins.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.plugins.ros.interfaces import GRIPPER
 from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.messages import message
+from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.gripper_drive import (
     GOAL_TOLERANCE,
     STALL_SPEED,
     STALL_TIME,
     gripper_ramp,
-    joint_speed,
 )
 
 if TYPE_CHECKING:
