@@ -19,13 +19,13 @@ imported when it is first named. A package of its own names its modules in the e
 from typing import Any
 
 from harness.cell.scope import At, Scope
+from harness.core.amounts import amount, amounts
 from harness.core.registry import built_in_class
 from harness.judging.contacts import force_between
 from harness.judging.expectation import Expectation, ObjectPredicate, Predicate, TemporalWord
 from harness.judging.margins import Evidence, Margin, MarginSignal, Part, all_of, measured
 from harness.judging.observations import Observations, PictureRequest
 from harness.judging.poses import frame_poses, object_poses, present
-from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.language.base import (
     Angle,

@@ -24,6 +24,7 @@ from itertools import permutations
 
 import numpy as np
 
+from harness.core.amounts import amount, amounts
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.contacts import (
     TOUCH_FORCE,
@@ -46,7 +47,6 @@ from harness.judging.excused_force import (
 from harness.judging.hold import gripped, held_by_fingers
 from harness.judging.support import carried_by_hand, is_below
 from harness.judging.temporal import bridged, episodes
-from harness.judging.text import amount, amounts
 from harness.language.step import Step, step_class
 from harness.recording.run import Run
 from harness.recording.step_results import AllowedCollisions

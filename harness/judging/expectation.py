@@ -10,11 +10,11 @@ import numpy as np
 from pydantic import BaseModel, Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.core.errors import HarnessError
 from harness.judging.margins import Margin, MarginSignal, Part, all_of
 from harness.judging.observations import ExpectationError, Observations, merged, restricted
 from harness.judging.poses import present
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, NotReached, Window, lasting, window_of
 from harness.judging.words import ALREADY_TRUE, Terms, decide, terms_of
 from harness.language.annotations import units_of

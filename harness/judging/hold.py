@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.antipodal import (
     combined_press,
     distance_pressed,
@@ -33,7 +34,6 @@ from harness.judging.contacts import (
 from harness.judging.facts import fact
 from harness.judging.poses import object_poses
 from harness.judging.temporal import bridged, episodes, first_within
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, object_record
 from harness.recording.faults import faults_of
 from harness.recording.run import Run

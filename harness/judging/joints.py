@@ -11,9 +11,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from harness.cell.scope import At
+from harness.core.amounts import amounts
 from harness.core.types import FloatArray
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import amounts
 from harness.judging.window import NotObservable, Window
 from harness.language.expectation import Quantity
 from harness.recording.run import Run

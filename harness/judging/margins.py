@@ -23,7 +23,7 @@ class Evidence:
     """What a sample shows.
 
     Attributes:
-        measures: The measures, the tightest first.
+        measures: The measures; where all hold the required quantity, then the tightest first.
         margin: The margin in `unit`, where it says more than the signal's value; else None.
         is_moment: Whether the text is about the sample, rather than of all the time judged.
         time: When what the text says was measured, where it was before the sample; else None [s].
@@ -205,11 +205,15 @@ def all_of(
         shares = [float(share) for share in rows[:, index]]
         order = sorted(range(len(parts)), key=shares.__getitem__)
         chosen = [parts[place] for place in order if shares[place] != math.inf][:shown]
-        measures = tuple(part.measure(index, window.time(index)) for part in chosen)
+        stated = chosen
+        if shares[order[0]] >= 0 and shares[0] != math.inf:  # what is required, where all hold
+            stated = [parts[0], *(part for part in chosen if part is not parts[0])][:shown]
+        measures = tuple(part.measure(index, window.time(index)) for part in stated)
+        tightest = chosen[0].measure(index, window.time(index))
         unit = "1" if chosen[0].comparison == "==" else chosen[0].unit
         margin = float(chosen[0].margins()[index])
-        before = None if chosen[0].time_of is None else measures[0].time
-        return Evidence(text(index, measures[0]), measures, margin, unit, is_moment, before)
+        before = None if chosen[0].time_of is None else tightest.time
+        return Evidence(text(index, tightest), measures, margin, unit, is_moment, before)
 
     unit = parts[0].unit if len(parts) == 1 else "1"
     return MarginSignal(values, unit, evidence, applies, present=present)

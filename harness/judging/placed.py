@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, cast
@@ -9,13 +10,15 @@ from typing import Any, cast
 from pydantic import BaseModel
 
 from harness.cell.scope import At, Scope
+from harness.core.amounts import amount
 from harness.judging.expectation import Expectation, Predicate
-from harness.judging.text import amount
 from harness.language.annotations import units_of
 from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc
 
 OMITTED = ("points", "name")  # keys that are no part of an expectation's text
+FIELD = re.compile(r"\{(\w+)\}")
+OPTIONAL = re.compile(r"\[([^\[\]]*)\]")
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,10 @@ def _check_step_is_named(spec: Expectation, loc: Loc, scope: Scope) -> None:
 
 
 def describe(spec: ExpectationFields) -> str:
-    """An expectation in the file's words: `never: collision between robot and Table`."""
+    """An expectation as a sentence: `never: collision between robot and Table`, `box is in bin`.
+
+    What has its default value is left out.
+    """
     text = _described(spec)
     return f"{spec.name} ({text})" if spec.name else text
 
@@ -86,28 +92,46 @@ def describe(spec: ExpectationFields) -> str:
 def _described(spec: ExpectationFields) -> str:
     inside = spec.predicates() if isinstance(spec, Expectation) else None
     predicates: Mapping[str, Predicate] = inside or {}
-    subject = spec.subject_field()
-    text = spec.word
+    said = {*OMITTED, *predicates}
     if predicates:
         first, *others = predicates.items()
-        text += f": {_described(first[1])}"
+        text = _described(first[1]) if others else f"{spec.word}: {_described(first[1])}"
         text += "".join(f" {key} {_described(inner)}" for key, inner in others)
-    elif subject and getattr(spec, subject) is not None:
-        text += f" {_subject(subject, getattr(spec, subject))}"
+    elif spec.sentence:
+        text = _filled(spec, spec.sentence)
+        said.update(FIELD.findall(spec.sentence))
+    else:
+        subject = spec.subject_field()
+        text = spec.word
+        if subject and getattr(spec, subject) is not None:
+            pair = f"{_key(subject)} " if isinstance(getattr(spec, subject), tuple) else ""
+            text += f" {pair}{_value(spec, subject)}"
+        said.add(subject)
     parts = [
         f"{_key(key)} {_value(spec, key)}"
         for key in type(spec).model_fields
-        if key in spec.model_fields_set
-        and key not in (*OMITTED, *predicates, subject)
-        and getattr(spec, key) is not None
+        if key not in said and _is_stated(spec, key)
     ]
     return ", ".join([text, *parts])
 
 
-def _subject(key: str, value: Any) -> str:
-    if isinstance(value, tuple):
-        return f"{_key(key)} {' and '.join(map(str, cast('tuple[Any, ...]', value)))}"
-    return str(value)
+def _filled(spec: ExpectationFields, template: str) -> str:
+    """A sentence with the values of fields; of its parts `[text|other]` those that apply."""
+    text, last, is_joined = "", 0, False
+    for found in OPTIONAL.finditer(template):
+        between = template[last : found.start()]
+        stated, _, other = found[1].partition("|")
+        is_stated = any(_is_stated(spec, key) for key in FIELD.findall(stated))
+        is_joined = is_joined and not between
+        text += between + (" and" * is_joined + stated if is_stated else other)
+        last, is_joined = found.end(), is_joined or is_stated
+    return FIELD.sub(lambda each: _value(spec, each[1]), text + template[last:])
+
+
+def _is_stated(model: BaseModel, key: str) -> bool:
+    """Whether a field says more than its absence."""
+    value = getattr(model, key)
+    return value is not None and value != type(model).model_fields[key].default
 
 
 def _key(key: str) -> str:
@@ -122,6 +146,8 @@ def _value(spec: ExpectationFields, key: str) -> str:
     if isinstance(value, dict):
         positions = cast("dict[str, float]", value)
         return ", ".join(f"{name}={item:.6g}" for name, item in positions.items())
+    if isinstance(value, tuple):
+        return " and ".join(map(str, cast("tuple[Any, ...]", value)))
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
@@ -133,12 +159,11 @@ def _value(spec: ExpectationFields, key: str) -> str:
 
 
 def _fields(model: BaseModel) -> str:
-    parts = [
-        f"{key} {_vector(value)}"
-        for key in type(model).model_fields
-        if (value := getattr(model, key)) is not None
-    ]
-    return "(" + ", ".join(parts) + ")"
+    """The fields of a model that differ from their defaults; of the short one alone, its value."""
+    stated = [key for key in type(model).model_fields if _is_stated(model, key)]
+    if stated == [getattr(model, "short", "")]:
+        return _vector(getattr(model, stated[0]))
+    return "(" + ", ".join(f"{_key(key)} {_vector(getattr(model, key))}" for key in stated) + ")"
 
 
 def _vector(value: Any) -> str:

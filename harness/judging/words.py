@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from harness.core.amounts import amount, amounts
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging import temporal
 from harness.judging.margins import MarginSignal, against
 from harness.judging.temporal import Decision, TooShort, later, longest_hold, with_future
-from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.language.expectation import PredicateFields, TemporalFields
 from harness.recording.verdict import Observed, Verdict, VerdictStatus, VerdictWarning

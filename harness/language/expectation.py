@@ -65,6 +65,10 @@ class ExpectationFields(SpecModel):
             form, unless it is a number.
         synonyms: What people call the expectation; an error suggests its word for them.
         opposite: The predicate that holds at the end where this one does not; empty without one.
+        sentence: A clause with the names of fields in braces, which says what is expected:
+            `[{object}|everything] is static`. Of a part in brackets the text after the bar, or
+            nothing, stands where no field of it differs from its default. Fields that the clause
+            does not name are appended.
         is_upper_bound: Whether it demands a small value by itself, as `slip` does.
         is_proposed: Whether the studio proposes it where it holds: it is rarely true by chance.
     """
@@ -74,6 +78,7 @@ class ExpectationFields(SpecModel):
     subject: ClassVar[str] = ""
     synonyms: ClassVar[tuple[str, ...]] = ()
     opposite: ClassVar[str] = ""
+    sentence: ClassVar[str] = ""
     is_upper_bound: ClassVar[bool] = False
     is_proposed: ClassVar[bool] = False
 

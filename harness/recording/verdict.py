@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from harness.core.quantity import distinct
+from harness.core.amounts import amounts
 from harness.core.types import Floats
 
 VerdictStatus = Literal["passed", "failed", "not reached", "not observable"]
@@ -44,13 +44,9 @@ class Measure:
 
     def __str__(self) -> str:
         where = f" ({self.detail})" if self.detail else ""
-        sign = self.comparison
-        unit = "" if self.unit == "1" else f" {self.unit}"
-        value, limit = distinct(
-            self.value, self.limit, lambda number, more: f"{number:.{6 + more}g}"
-        )
-        text = f"{self.name}: {value}{unit} (must be {sign} {limit})"
-        return f"{text} at t={self.time:.3f} s{where}"
+        bound = {"<=": "at most", ">=": "at least", "==": "exactly"}[self.comparison]
+        value, limit = amounts(self.value, self.limit, self.unit)
+        return f"{self.name}: {value} ({bound} {limit}) at t={self.time:.3f} s{where}"
 
 
 @dataclass(frozen=True)

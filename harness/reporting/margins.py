@@ -20,7 +20,7 @@ def margin_share(verdict: Verdict) -> float:
     """
     if math.isnan(verdict.margin):
         return math.nan
-    deciding = _deciding(verdict)
+    deciding = deciding_measures(verdict)
     scale = max((_scale(each, verdict.margin >= 0) for each in deciding), default=0.0)
     share = verdict.margin / scale if scale > 0 else math.copysign(1.0, verdict.margin)
     return max(-1.0, min(1.0, share))
@@ -34,7 +34,7 @@ def worst(verdicts: Sequence[Verdict]) -> Verdict | None:
     return min(with_margin, key=margin_share)
 
 
-def _deciding(verdict: Verdict) -> list[Measure]:
+def deciding_measures(verdict: Verdict) -> list[Measure]:
     """The measures that the margin is of: as far from their limit as it says."""
     limited = [each for each in verdict.measures if math.isfinite(each.limit)]
     near = [
@@ -49,6 +49,21 @@ def _scale(measure: Measure, is_passed: bool) -> float:
     if is_passed and measure.comparison == ">=" and math.isfinite(measure.ceiling):
         return measure.ceiling - measure.limit
     return max(abs(measure.limit), abs(measure.value)) if math.isfinite(measure.value) else 0.0
+
+
+def tightest_name(verdict: Verdict) -> str:
+    """What a verdict that passed has its margin of; empty where it is the required quantity."""
+    if verdict.status != "passed" or not verdict.measures:
+        return ""
+    deciding, required = deciding_measures(verdict), verdict.measures[0]
+    has_bound = math.isfinite(required.limit) and required.comparison != "=="
+    return deciding[0].name if deciding and has_bound and required not in deciding else ""
+
+
+def used_allowance(verdict: Verdict) -> float | None:
+    """Share of the allowance of the measure that decided a verdict; None where none has one."""
+    shares = [allowance_used(measure) for measure in deciding_measures(verdict)]
+    return next((share for share in shares if share is not None), None)
 
 
 def allowance_used(measure: Measure) -> float | None:

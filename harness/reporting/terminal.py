@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
+from harness.core.amounts import amount
 from harness.core.printable import ESC, counted, printable, printable_lines
 from harness.recording.step_record import is_nested
 from harness.recording.verdict import Measure, Verdict
+from harness.reporting.margins import tightest_name
 from harness.reporting.progress_events import StepFinished, StepProgress, StepStarted
 from harness.reporting.result import CaseResult, StepLine
 
@@ -255,10 +257,19 @@ def _excerpt(source: Sequence[str], number: int) -> list[str]:
 
 
 def verdict_line(verdict: Verdict) -> str:
-    """Status, margin and reason in one line."""
+    """Status, margin and reason in one line.
+
+    The margin of what holds is that of the required quantity; a tighter one follows.
+    """
     text = verdict.status
     if not math.isnan(verdict.margin):
-        text += f" by {abs(verdict.margin):.3g} {_unit(verdict.unit)}".rstrip()
+        margin, tightest = amount(abs(verdict.margin), verdict.unit), tightest_name(verdict)
+        if tightest:
+            required = verdict.measures[0]
+            gap = amount(abs(required.value - required.limit), required.unit)
+            text += f" by {gap} (tightest: {tightest}, by {margin})"
+        else:
+            text += f" by {margin}"
     if not math.isnan(verdict.time):
         text += f" at t={verdict.time:.3f} s"
     return f"{text}: {verdict.reason}" if verdict.reason else text
@@ -269,15 +280,10 @@ def measure_text(measure: Measure) -> str:
     if math.isnan(measure.limit):
         where = f" ({measure.detail})" if measure.detail else ""
         return (
-            f"{measure.name}: {measure.value:.6g} {_unit(measure.unit)}".rstrip()
-            + f" at t={measure.time:.3f} s{where}"
+            f"{measure.name}: {amount(measure.value, measure.unit)}"
+            f" at t={measure.time:.3f} s{where}"
         )
     return str(measure)
-
-
-def _unit(unit: str) -> str:
-    """A unit as it is written after a number; of a plain number, nothing."""
-    return "" if unit == "1" else unit
 
 
 def summary(outcomes: Iterable[str], seconds: float, style: Style = PLAIN) -> str:

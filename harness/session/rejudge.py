@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import repeat
 from pathlib import Path
 
 from harness.judging.judge import judge
-from harness.judging.placed import PlacedExpectation, describe
+from harness.judging.placed import PlacedExpectation
 from harness.language.reading.load import LoadedScenario, load_scenario
 from harness.language.step import Block
 from harness.recording.stored_run import RESOLVED, StoredRun
@@ -36,16 +38,15 @@ def _at_lines_of(
 ) -> list[PlacedExpectation]:
     """Expectations of the resolved file, which is written out, at the lines of the file that ran.
 
-    An expectation that has no verdict has no line there.
+    Those of a step, and those of the run, have the order of their verdicts; where their number
+    differs, their lines are not known.
     """
-    lines: dict[tuple[str, str], list[int]] = {}
+    lines: dict[str, list[int]] = {}
     for verdict in verdicts:
-        lines.setdefault((verdict.expectation, verdict.step), []).append(verdict.line)
-    return [
-        replace(each, line=found.pop(0) if found else 0)
-        for each in placed
-        for found in [lines.get((describe(each.spec), each.step), [])]
-    ]
+        lines.setdefault(verdict.step, []).append(verdict.line)
+    counts = Counter(each.step for each in placed)
+    known = {step: iter(found) for step, found in lines.items() if len(found) == counts[step]}
+    return [replace(each, line=next(known.get(each.step, repeat(0)))) for each in placed]
 
 
 def expectations_of(loaded: LoadedScenario) -> list[PlacedExpectation]:

@@ -70,7 +70,7 @@ class ScenarioResult:
         Raises:
             LookupError: None has them, or several.
         """
-        found = [each for each in self.case.verdicts if words in each.expectation]
+        found = [each for each in self.case.verdicts if _plain(words) in _plain(each.expectation)]
         return _one(found, words, [each.expectation for each in self.case.verdicts])
 
     def step(self, step_id: str) -> StepRecord:
@@ -82,6 +82,11 @@ class ScenarioResult:
         steps = self.run.steps if self.run is not None else ()
         found = [each for each in steps if each.id == step_id]
         return _one(found, step_id, [each.id for each in steps if each.id])
+
+
+def _plain(text: str) -> str:
+    """Words as they are compared: `named_target` is `named target`."""
+    return text.replace("_", " ").lower()
 
 
 def _one(found: list[T], words: str, known: list[str]) -> T:

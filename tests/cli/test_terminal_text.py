@@ -113,11 +113,11 @@ def test_a_failed_expectation_is_reported_with_every_number():
     held = Verdict("static", "passed", margin=1.0)
     lines = failure(result("failed", verdicts=(verdict, unseen, held))).splitlines()
     assert lines[1] == (
-        "  a.scenario.yaml:30: lifted red_box above 5 cm: failed by 0.038 m at t=7.200 s:"
+        "  a.scenario.yaml:30: lifted red_box above 5 cm: failed by 38.0 mm at t=7.200 s:"
         " it rose 1.2 cm"
     )
     assert lines[2] == (
-        "      height above start: 0.012 m (must be >= 0.05) at t=7.200 s (red_box)"
+        "      height above start: 12.0 mm (at least 50.0 mm) at t=7.200 s (red_box)"
     )
     assert lines[3] == "  a.scenario.yaml:31: sees red_box: not observable: no camera"
     assert len(lines) == 4

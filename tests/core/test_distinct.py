@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from harness.judging.text import amount, amounts, percentages
+from harness.core.amounts import amount, amounts, percentages
 from harness.planning.collision import wording
 from harness.ports.scene import Touch
 from harness.recording.verdict import Measure
@@ -47,7 +47,8 @@ def test_only_as_many_digits_are_written_as_it_takes(first, second, unit, texts)
 def test_shares_measures_and_distances_show_the_digits_that_differ(value, limit):
     assert len(set(percentages(value, limit))) == 2
     said = str(Measure("height", value, limit, ">=", "m", 0.0))
-    assert said.split(" m (must be >= ")[0].split(": ")[1] != said.split(">= ")[1].split(")")[0]
+    measured, least = said.removeprefix("height: ").split(")")[0].split(" (at least ")
+    assert measured != least
     said = wording.touch(Touch("hand", "box", value, limit))
     apart, required = said.split("(")[1].removesuffix(" required)").split(" apart, ")
     assert apart != required

@@ -1,5 +1,6 @@
 """What is executed, how an expectation is worded, what must be recorded."""
 
+import math
 import subprocess
 import sys
 from dataclasses import replace
@@ -10,12 +11,14 @@ import pytest
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
+from harness.judging.expectations.duration import DurationCheck
 from harness.judging.expectations.fraction import FractionCheck
+from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.in_ import In
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.sees import Sees
+from harness.judging.expectations.sees import HueRange, Sees
 from harness.judging.expectations.static import Static
 from harness.judging.expectations.tcp_path import TcpPath
 from harness.judging.expectations.tcp_pose import TcpPose
@@ -42,17 +45,31 @@ from tests.judging.synthetic_run import attachment, heights, lift_run, make_run
             Never(predicate=Collision(between=("robot", "Table"))),
             "never: collision between robot and Table",
         ),
-        (Always(predicate=WithinLimits()), "always: within_limits"),
+        (Always(predicate=WithinLimits()), "always: joints are within limits"),
         (
             Lifted(object="box", above="5 cm", **{"for": "1 s"}),
-            "lifted box, for 1.0 s, above 50.0 mm",
+            "box is lifted by at least 50.0 mm, for 1.0 s",
         ),
-        (Clearance(at_least=0.01), "clearance between robot and any, at least 10.0 mm"),
+        (Clearance(at_least=0.01), "clearance between robot and any is at least 10.0 mm"),
         (
             TcpPose(pose=Pose(xyz=(0.1, 0, 0)), name="there"),
-            "there (tcp_pose, pose (xyz [0.1, 0, 0], frame world))",
+            "there (TCP is at (xyz [0.1, 0, 0]))",
         ),
-        (Until(predicate=Static(), until=Static(object="box")), "until: static until static box"),
+        (
+            Until(predicate=Static(), until=Static(object="box")),
+            "everything is static until box is static",
+        ),
+        (
+            In(object="red_cube", container="red_bin", max_lean=math.pi / 4),
+            "red_cube is in red_bin",
+        ),
+        (
+            Sees(camera="top", color=HueRange(named="blue"), min_area=20),
+            "camera top sees blue, min area 20",
+        ),
+        (DurationCheck(at_least=1.0, at_most=2.5), "duration is at least 1.0 s and at most 2.5 s"),
+        (Placed(object="box", on="tray", during="put"), "box is placed on tray, during put"),
+        (Grasped(object="box", min_force=0.05), "box is grasped"),
     ],
 )
 def test_an_expectation_reads_like_the_file(spec, text):
@@ -77,7 +94,7 @@ def test_verdicts_keep_order_line_step_points_and_text():
     first, second = judge(lift_run(), placed)
     assert (first.line, first.step, first.points) == (12, "", 2)
     assert first.expectation == describe(Static(points=2))
-    assert (second.line, second.step, second.expectation) == (9, "lift", "lifted box")
+    assert (second.line, second.step, second.expectation) == (9, "lift", "box is lifted")
 
 
 def test_observations_name_frames_and_a_sufficient_cutoff():

@@ -84,7 +84,7 @@ def test_a_picture_counts_until_the_next_one_or_for_a_period():
 
 def test_no_more_than_the_whole_outline_is_seen_and_nothing_of_none():
     found = margins(capture(100, 9, outlines={"box": 8}))
-    assert found.evidence(100).measures[0].value == 1.0
+    assert found.evidence(100).measures[1].value == 1.0
     blind = margins(capture(100, 0, outlines={}))
     assert blind.values[100] == -1.0
     assert blind.evidence(100).text == "eye does not see box"

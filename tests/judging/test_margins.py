@@ -59,8 +59,10 @@ def test_one_part_keeps_its_unit_and_several_are_compared_as_shares():
     both = signal(far, near)
     assert (both.unit, both.values.tolist()) == ("1", [1, 0.5, -0.5])
     shown = both.evidence(1)
-    assert [measure.name for measure in shown.measures] == ["distance", "far"]
-    assert [measure.unit for measure in shown.measures] == ["m", "mm"]
+    assert [measure.name for measure in shown.measures] == ["far", "distance"], "what is required"
+    assert [measure.unit for measure in shown.measures] == ["mm", "m"]
+    broken = both.evidence(2).measures
+    assert [measure.name for measure in broken] == ["distance", "far"], "what decided"
     assert [measure.time for measure in shown.measures] == [11.0, 11.0]
     assert (shown.text, shown.margin, shown.unit, shown.is_moment) == ("1 distance", 1, "m", True)
     assert signal(far, near, shown=1).evidence(1).measures == shown.measures[:1]

@@ -16,6 +16,7 @@ from harness.judging.expectations.within_limits import WithinLimits
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.recording.run import ObjectRecord
+from harness.reporting.margins import deciding_measures
 from tests.cameras.camera_runs import (
     GREEN,
     ball,
@@ -108,7 +109,8 @@ def test_a_half_hidden_object_barely_passes_or_barely_does_not():
         assert answer.status == status
         assert abs(answer.margin) < 0.06
         assert answer.unit == "1"
-        assert answer.measures[0].name == "visible share of thing"
+        (measure,) = deciding_measures(answer)
+        assert measure.name == "visible share of thing"
 
 
 def test_hue_is_a_range_that_may_go_through_zero():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.core.amounts import amount, amounts, percentages
 from harness.judging.expectations.always import Always
 from harness.judging.expectations.gripper import GripperState
 from harness.judging.expectations.in_contact import InContact
@@ -19,7 +20,6 @@ from harness.judging.expectations.static import Static
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.judging.joints import gripper_joints, is_measured, near, resting_joints
-from harness.judging.text import amount, amounts, percentages
 from harness.judging.window import (
     NotObservable,
     NotReached,
@@ -184,6 +184,8 @@ def test_a_window_is_cut_short_by_a_step_that_failed_and_not_by_one_that_timed_o
         (1e-6, "m", "0.001 mm"),
         (0.9e-6, "m", "0.0 mm"),
         (np.pi, "rad", "180 deg"),
+        (5e-6, "rad", "0.0003 deg"),
+        (5e-7, "rad", "0.0 deg"),
         (np.pi / 4, "rad/s", "45.0 deg/s"),
         (0.9874, "m/s", "987 mm/s"),
         (1.0, "m/s", "1.0 m/s"),

@@ -55,8 +55,8 @@ def test_another_verdict_on_the_same_motion_is_reported_with_both_margins(record
     assert code == 1
     assert "different  the recorded signals are the same; commands or verdicts differ" in text
     assert "outcome\n  passed -> failed" in text
-    assert "duration, at least 0.05 s: passed by 0.05 s -> -" in text
-    assert "duration, at least 2.0 s: - -> failed by 1.9 s" in text
+    assert "duration is at least 0.05 s: passed by 0.05 s -> -" in text
+    assert "duration is at least 2.0 s: - -> failed by 1.9 s" in text
     assert "trajectories" not in text
     expected = "duration: {at_least: %s}"
     assert f"scenario\n  {expected % '50 ms'} -> {expected % '2 s'}\nverdicts" in text

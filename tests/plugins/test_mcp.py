@@ -113,6 +113,6 @@ def test_the_language_and_a_cell_are_described(assistant):
     assert assistant.answer("schema", name="move_to")["description"].startswith("Plan")
     assert "move_to" in assistant.text("list", kind="steps")
     program = assistant.text("explain", file="lessons/04_gripper_alone")
-    assert "duration, at most 10.0 s" in program
+    assert "duration is at most 10.0 s" in program
     facts = assistant.answer("describe", file="lessons/04_gripper_alone")
     assert facts["robot"]["name"] == "rh_p12_rn_a"

@@ -252,7 +252,7 @@ def test_junit_of_samples_has_the_smallest_margin_and_every_seed_and_digest(pyte
     assert (found["passed"], found["samples"]) == ("3", "3")
     assert len({found[f"seed:sample{i}"] for i in range(3)}) == 3
     assert len({found[f"digest:sample{i}"] for i in range(3)}) == 3
-    assert re.fullmatch(r"0\.0\d+ s \(sample[012]\)", found["margin:duration, at most 0.1 s"])
+    assert re.fullmatch(r"0\.0\d+ s \(sample[012]\)", found["margin:duration is at most 0.1 s"])
     results = json.loads((pytester.path / "reports/results.json").read_text())
     assert len(results["cases"]) == 3
     assert results["rates"][0]["rate"]["passed"] == 3
@@ -284,15 +284,15 @@ def test_margins_are_in_junit_and_reported_when_they_get_small(pytester, write):
 
     assert reported(0.05) == []
     [line] = reported(0.1)
-    assert re.match(r"holds by 2\.9% of its limit, was 51\.5% last time: duration, at most", line)
+    assert re.match(r"holds by 2\.9% of its limit, was 51\.5% last time: duration is at most", line)
     assert line.endswith("(tight.scenario.yaml::Just in time)")
     assert reported(0.1) == ["1 below 5% as they were last time"]
     assert not (pytester.path / "reports").exists()
     found = properties(pytester)
     assert [name for name, _ in found[:2]] == ["seed", "digest"]
     assert [value for name, value in found if name == "verifies"] == ["REQ-4", "REQ-5"]
-    assert ("margin:duration, at most 0.1 s", "0.003 s") in found
-    assert ("worst_margin", "duration, at most 0.1 s") in found
+    assert ("margin:duration is at most 0.1 s", "0.003 s") in found
+    assert ("worst_margin", "duration is at most 0.1 s") in found
 
 
 @pytest.mark.nightly(but=["-Hold still-imported0"])

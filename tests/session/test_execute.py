@@ -110,7 +110,7 @@ def test_a_step_without_duration_is_judged_at_its_one_sample(tmp_path):
     result, _ = run(tmp_path, steps, robot="{model: ur3e, start_state: home}")
     (failure,) = failures(result)
     assert failure.startswith(
-        "not reached: static, for 0.1 s: what stands still is known after 50 ms"
+        "not reached: everything is static, for 0.1 s: what stands still is known after 50 ms"
     )
 
 

@@ -43,7 +43,7 @@ world empty, physics step 1 ms
 steps
     10  wait 1 s  [seed {0}]
           {TCP}
-          expect upright red_box
+          expect red_box is upright
     12  repeat 2 times  [seed {1}]
           {TCP}
       12  gripper open  [seed {2}]

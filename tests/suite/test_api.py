@@ -82,8 +82,8 @@ def test_a_model_runs_as_its_file_does(tmp_path):
 def test_a_failure_says_why_and_wrong_names_what_there_is():
     result = harness.run(Scenario(**WAITS, expect=[DurationCheck(at_least=1.0)]))
     assert not result
-    assert "duration, at least 1" in str(result)
-    with pytest.raises(LookupError, match=r"0 have 'lifted': duration, at least 1"):
+    assert "duration is at least 1.0 s" in str(result)
+    with pytest.raises(LookupError, match=r"0 have 'lifted': duration is at least 1"):
         result.verdict("lifted")
     with pytest.raises(LookupError, match=r"0 have 'x': steps\[0\]"):
         result.step("x")

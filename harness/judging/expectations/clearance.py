@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount, amounts
 from harness.core.types import FloatArray, IntArray
 from harness.judging.collision import colliding
 from harness.judging.contacts import attached, shapeless
@@ -19,7 +20,6 @@ from harness.judging.margins import Evidence, MarginSignal, measured
 from harness.judging.observations import CLEARANCE_ROOM, Observations
 from harness.judging.poses import present
 from harness.judging.support import carried_by_hand
-from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, NotReached, Window, lasting
 from harness.language.base import Name, NonNegativeLength, PositiveLength
 from harness.language.expectation import Quantity
@@ -50,6 +50,9 @@ class Clearance(Predicate):
     some_of = ("at_least", "max_below_plan")
     subject = "between"
     judged = "always"
+    sentence = (
+        "clearance between {between} is[ at least {at_least}][ at most {max_below_plan} below plan]"
+    )
     quantities = (DISTANCE, LOSS)
 
     between: tuple[Name, Name] = Field(

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.collision import Pair, colliding, held_by, why_not_excused
 from harness.judging.contacts import (
@@ -25,7 +26,6 @@ from harness.judging.expectation import SPECIAL_BODIES, Predicate
 from harness.judging.margins import Evidence, MarginSignal, measured
 from harness.judging.observations import Observations
 from harness.judging.temporal import episodes, trailing_max, without_gaps
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, Window, lasting
 from harness.language.base import Flag, Name
 from harness.language.expectation import Quantity
@@ -78,6 +78,7 @@ class Collision(Predicate):
 
     short = "between"
     judged = "eventually"
+    sentence = "collision[ between {between}]"
     quantities = (FORCE, LEFT)
     synonyms = ("collide", "collides", "colliding", "collisions")
     is_opposed: ClassVar[bool] = True

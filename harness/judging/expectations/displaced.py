@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from harness.core.amounts import amount
 from harness.judging.body_motion import middles
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import physical_poses, start_poses
-from harness.judging.text import amount
 from harness.judging.window import Window, object_record
 from harness.language.base import PositiveLength
 from harness.language.expectation import Quantity
@@ -24,6 +24,7 @@ class Displaced(ObjectPredicate):
     A turn about that point is none: `upright` and the formula `tilt` measure it.
     """
 
+    sentence = "{object} is displaced[ by at least {at_least}]"
     quantities = (DISTANCE,)
     opposite = "static"
     is_change = True

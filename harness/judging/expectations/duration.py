@@ -22,6 +22,7 @@ class DurationCheck(Predicate):
     word = "duration"
     short = "at_most"
     some_of = ("at_most", "at_least")
+    sentence = "duration is[ at least {at_least}][ at most {at_most}]"
     quantities = (DURATION,)
 
     at_most: Duration | None = Field(

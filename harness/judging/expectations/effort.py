@@ -23,6 +23,7 @@ class Effort(Predicate):
 
     short = "max_fraction"
     judged = "always"
+    sentence = "effort is at most {max_fraction} of its limit"
     quantities = (EFFORT,)
     is_upper_bound = True
 

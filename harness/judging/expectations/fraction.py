@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from harness.core.amounts import percentages
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import percentages
 from harness.judging.window import NotReached, Window, refuse_unrecorded_steps
 from harness.language.base import Fraction
 from harness.language.expectation import Quantity
@@ -22,6 +22,7 @@ class FractionCheck(Predicate):
 
     word = "fraction"
     short = "at_least"
+    sentence = "fraction of the path is at least {at_least}"
     quantities = (FRACTION,)
 
     at_least: Fraction = Field(

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount, amounts
 from harness.judging.contacts import TOUCH_FORCE, attached, side_forces
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.hold import (
@@ -23,7 +24,6 @@ from harness.judging.hold import (
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import present
 from harness.judging.temporal import TIME_RESOLUTION, episodes
-from harness.judging.text import amount, amounts
 from harness.judging.window import Window, object_record
 from harness.language.base import AngleBetween, Force, PositiveLength
 from harness.language.expectation import Quantity
@@ -51,6 +51,7 @@ class Grasped(ObjectPredicate):
     lasts a few milliseconds, and what flies past at 0.5 m/s is 5 cm further by then.
     """
 
+    sentence = "{object} is grasped"
     quantities = (FINGERS, BETWEEN, HELD, SLIP, TURN)
     is_proposed = True
     synonyms = ("held", "holding")

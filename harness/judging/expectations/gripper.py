@@ -8,12 +8,12 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amounts
 from harness.core.state_words import stated_name
 from harness.judging.contacts import finger_gap, gripper_of
 from harness.judging.expectation import Predicate
 from harness.judging.joints import POSITION_ERROR, SLIDING_TOLERANCE, check_tolerance, near
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import amounts
 from harness.judging.window import NotObservable, NotReached, Window, refuse_unrecorded_steps
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
 from harness.language.expectation import Quantity
@@ -30,6 +30,7 @@ class GripperState(Predicate):
     word = "gripper"
     short = "named_target"
     one_of = ("named_target", "position", "width", "stalled")
+    sentence = "gripper is[ {named_target}][ at {position}][ open by {width}][ stalled: {stalled}]"
     quantities = (POSITION_ERROR, GAP, STALLED)
     is_proposed = True
 

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount, amounts
 from harness.core.geometry import Mesh, Shape, bounds_of, center_of
 from harness.core.pose_arrays import angle_between, relative, rotate
 from harness.core.solids import volume_of
@@ -18,7 +19,6 @@ from harness.core.types import BoolArray, FloatArray
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import UP, object_poses, physical_poses, present, start_samples
-from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, Window, object_record
 from harness.language.base import AngleBetween, Name
 from harness.language.expectation import Quantity
@@ -49,6 +49,7 @@ class In(ObjectPredicate):
     its outline, and not in it. That the object is closed in above is not required.
     """
 
+    sentence = "{object} is in {container}"
     quantities = (DEPTH, LEAN, SIDES)
     synonyms = ("inside",)
 
@@ -95,16 +96,16 @@ class In(ObjectPredicate):
         def text(index: int, _: Measure) -> str:
             deep = float(depth[index])
             where = "inside" if deep >= 0 else "outside"
-            leans, allowed = amounts(float(lean[index]), self.max_lean, "rad")
             if deep >= 0 and not enclosed[index]:
                 return (
                     f"{self.object} is {amount(deep, 'm')} inside the outline of {self.container},"
                     " which is neither under it nor around it"
                 )
-            return (
-                f"{self.object} is {amount(abs(deep), 'm')} {where} {self.container},"
-                f" which leans by {leans} of {allowed}"
-            )
+            said = f"{self.object} is {amount(abs(deep), 'm')} {where} {self.container}"
+            if lean[index] > self.max_lean:
+                leans, allowed = amounts(float(lean[index]), self.max_lean, "rad")
+                said += f", which leans by {leans} of {allowed}"
+            return said
 
         return all_of(window, parts, text, present=there)
 

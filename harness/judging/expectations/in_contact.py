@@ -10,6 +10,7 @@ from pydantic import Field
 
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.judging.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
@@ -24,7 +25,6 @@ from harness.judging.expectation import SPECIAL_BODIES, Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.temporal import without_gaps
-from harness.judging.text import amount
 from harness.judging.window import Window, lasting
 from harness.language.base import Force, Name
 from harness.language.expectation import Quantity
@@ -43,6 +43,7 @@ class InContact(Predicate):
 
     short = "between"
     judged = "eventually"
+    sentence = "{between} are in contact[ with at least {min_force}]"
     quantities = (CONTACT,)
     synonyms = ("contact", "contacts", "touch", "touching")
 

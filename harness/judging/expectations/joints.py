@@ -17,6 +17,7 @@ from harness.language.base import JointValue, Name
 class Joints(Predicate):
     """Joints stand at positions."""
 
+    sentence = "joints are at {positions}"
     quantities = (POSITION_ERROR,)
 
     positions: Annotated[dict[Name, JointValue], Field(min_length=1)] = Field(

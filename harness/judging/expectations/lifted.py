@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount, amounts
 from harness.core.types import BoolArray
 from harness.judging.body_motion import lowest_points
 from harness.judging.contacts import (
@@ -34,7 +35,6 @@ from harness.judging.margins import Evidence, MarginSignal, measured
 from harness.judging.poses import object_poses, present, start_poses
 from harness.judging.support import riders
 from harness.judging.temporal import TIME_RESOLUTION
-from harness.judging.text import amount, amounts
 from harness.judging.window import Window, object_record
 from harness.language.base import Flag, PositiveLength
 from harness.language.expectation import Quantity
@@ -68,6 +68,7 @@ class Lifted(ObjectPredicate):
     """
 
     judged = "eventually"
+    sentence = "{object} is lifted[ by at least {above}]"
     quantities = (HEIGHT, FINGERS, OTHERS, HELD, CARRIED, MOTION)
     is_change = True
 

@@ -19,6 +19,7 @@ class NamedTarget(Predicate):
     """A group stands at its named state."""
 
     short = "state"
+    sentence = "[{group}|arm] is at named target {state}"
     quantities = (POSITION_ERROR,)
     is_proposed = True
 

@@ -7,11 +7,11 @@ from pydantic import Field
 
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
+from harness.core.amounts import amounts
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import present
 from harness.judging.support import required_support, supports
-from harness.judging.text import amounts
 from harness.judging.window import Window
 from harness.language.base import Name
 from harness.language.expectation import Quantity
@@ -23,6 +23,7 @@ SUPPORT = Quantity("support from below", "N", "at least half of its weight, with
 class On(ObjectPredicate):
     """The object stands on another: in contact, above it, its weight carried by it."""
 
+    sentence = "{object} is on {support}"
     quantities = (SUPPORT,)
 
     support: Name = Field(description="The object or link that the object stands on.")

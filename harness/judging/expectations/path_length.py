@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from harness.core.amounts import amounts
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import amounts
 from harness.judging.window import Window
 from harness.language.base import PositiveLength
 from harness.language.expectation import Quantity
@@ -21,6 +21,7 @@ class PathLength(Predicate):
 
     short = "at_most"
     some_of = ("at_most", "at_least")
+    sentence = "path length is[ at least {at_least}][ at most {at_most}]"
     quantities = (LENGTH,)
 
     at_most: PositiveLength | None = Field(

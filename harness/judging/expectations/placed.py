@@ -9,6 +9,7 @@ from pydantic import Field
 
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
+from harness.core.amounts import amounts
 from harness.core.pose_arrays import (
     angle_between,
     compose,
@@ -37,7 +38,6 @@ from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import JUMP, UP, frame_poses, object_poses, present, start_samples
 from harness.judging.support import required_support, standing, supports
-from harness.judging.text import amounts
 from harness.judging.window import Window, object_record
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
@@ -69,6 +69,7 @@ class Placed(ObjectPredicate):
     the step's window.
     """
 
+    sentence = "{object} is placed[ on {on}][ at {pose}]"
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
     is_proposed = True
 
@@ -117,8 +118,8 @@ class Placed(ObjectPredicate):
         by = f"support by {self.on or 'anything but the robot'}"
         parts = [
             *self._at_pose(window),
-            *resting_parts(window, name, (self.max_velocity, self.max_angular_velocity)),
             Part(SUPPORT, window.cut(support), required_support(run, name), ">=", measured_name=by),
+            *resting_parts(window, name, (self.max_velocity, self.max_angular_velocity)),
             *released_parts(window, name),
         ]
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.judging.at_rest import ATTACHED, CONTACT, released_parts
 from harness.judging.contacts import was_in_robot
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, all_of
 from harness.judging.poses import present
-from harness.judging.text import amount
 from harness.judging.window import Window
 from harness.recording.verdict import Measure
 
@@ -16,6 +16,7 @@ from harness.recording.verdict import Measure
 class Released(ObjectPredicate):
     """No part of the gripper touches the object, and it is not attached."""
 
+    sentence = "{object} is released"
     quantities = (CONTACT, ATTACHED)
     opposite = "grasped"
 

@@ -89,6 +89,7 @@ class Sees(Predicate):
 
     subject = "object"
     one_of = ("object", "color", "marker")
+    sentence = "camera {camera} sees[ {object}][ {color}][ {marker}]"
     quantities = (PIXELS, VISIBLE)
 
     camera: Name = Field(description="The name of the camera.")

@@ -7,10 +7,10 @@ from typing import Annotated
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.judging.drift import drift_in_hand
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import amount
 from harness.judging.window import Window
 from harness.language.base import AngleBetween, PositiveLength
 from harness.language.expectation import Quantity
@@ -24,6 +24,7 @@ class Slip(ObjectPredicate):
     """A held object is where the planner believes it to be."""
 
     judged = "always"
+    sentence = "slip of {object} is at most {max_distance}"
     quantities = (SLIP, TURN)
     is_upper_bound = True
 

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.judging.at_rest import SPEED, TURNING, rest_is_known, resting_parts, still_part
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import physical_poses, present
-from harness.judging.text import amount
 from harness.judging.window import Window, lasting
 from harness.language.base import AngularVelocity, LinearVelocity, Name
 from harness.language.expectation import Quantity
@@ -33,6 +33,7 @@ class Static(Predicate):
     """
 
     short = "object"
+    sentence = "[{object}|everything] is static"
     quantities = (SPEED, TURNING, JOINT_SPEED)
     opposite = "displaced"
 

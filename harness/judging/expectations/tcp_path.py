@@ -6,13 +6,13 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from harness.cell.scope import At
+from harness.core.amounts import amounts, percentages
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses, link_poses
-from harness.judging.text import amounts, percentages
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.language.base import Fraction, PositiveLength, SpecModel
 from harness.language.expectation import Quantity
@@ -50,6 +50,7 @@ class TcpPath(Predicate):
     """
 
     judged = "always"
+    sentence = "TCP path is followed[ along the line {line}][ along the arc {arc}]"
     quantities = (DEVIATION, SHARE)
 
     line: Line | None = Field(

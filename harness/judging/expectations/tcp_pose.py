@@ -8,12 +8,12 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amounts
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses, frame_present, link_poses
-from harness.judging.text import amounts
 from harness.judging.window import Window
 from harness.language.base import Flag, Name
 from harness.language.expectation import Quantity
@@ -29,6 +29,7 @@ ORIENTATION = Quantity(
 class TcpPose(Predicate):
     """The TCP, or another link, stands at a pose."""
 
+    sentence = "[{link}|TCP] is at {pose}"
     quantities = (POSITION, ORIENTATION)
     is_proposed = True
 

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.expectation import Predicate
 from harness.judging.joints import gripper_joints
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, Window
 from harness.language.base import JointValue
 from harness.language.expectation import Quantity
@@ -26,6 +26,7 @@ class TrackingError(Predicate):
 
     short = "max"
     judged = "always"
+    sentence = "tracking error is at most {max}"
     quantities = (ERROR,)
     is_upper_bound = True
 

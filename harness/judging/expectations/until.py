@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 from pydantic import Field, model_validator
 
+from harness.core.amounts import amount
 from harness.core.types import FloatArray
 from harness.judging import temporal
 from harness.judging.expectation import InnerPredicate, Predicate, TemporalWord
 from harness.judging.margins import MarginSignal
 from harness.judging.temporal import TIME_RESOLUTION, Decision, TooShort, longest_hold
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, NotReached, Window, window_of
 from harness.judging.words import ALREADY_TRUE, terms_of, too_short
 from harness.recording.run import Run

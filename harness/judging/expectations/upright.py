@@ -7,11 +7,11 @@ from typing import Annotated
 
 from pydantic import Field
 
+from harness.core.amounts import amount
 from harness.core.pose_arrays import angle_between, rotate
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import UP, physical_poses
-from harness.judging.text import amount
 from harness.judging.window import Window
 from harness.language.base import Angle
 from harness.language.expectation import Quantity
@@ -23,6 +23,7 @@ LEAN = Quantity("lean", "rad", "at most `tolerance`")
 class Upright(ObjectPredicate):
     """The object's z axis points up."""
 
+    sentence = "{object} is upright"
     quantities = (LEAN,)
     is_proposed = True
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from pydantic import Field
 
+from harness.core.amounts import amounts
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
 from harness.judging.joints import ROUNDING, gripper_joints, is_measured, resting_joints
 from harness.judging.margins import MarginSignal, Part, all_of
-from harness.judging.text import amounts
 from harness.judging.window import NotObservable, Window
 from harness.language.base import Flag
 from harness.language.expectation import Quantity
@@ -59,6 +59,7 @@ class WithinLimits(Predicate):
     """
 
     judged = "always"
+    sentence = "joints are within limits"
     quantities = (POSITION, COMMAND, VELOCITY, EFFORT, ACCELERATION)
 
     position: Flag = Field(

@@ -28,9 +28,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.core.amounts import amount, amounts
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging.temporal import TIME_RESOLUTION, range_min
-from harness.judging.text import amount, amounts
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.judging.words import ALREADY_TRUE
 from harness.plugins.formulas.language.formula import (

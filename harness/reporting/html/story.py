@@ -15,7 +15,7 @@ from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.html.nearest import nearest_points
-from harness.reporting.margins import allowance_used
+from harness.reporting.margins import tightest_name, used_allowance
 from harness.robot.description import Joint
 
 TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}
@@ -89,7 +89,8 @@ def verdict_facts(run: Run, verdict: Verdict) -> dict[str, Any]:
         "status": verdict.status,
         "margin": _number(verdict.margin),
         "unit": verdict.unit,
-        "used": None if first is None else allowance_used(first),
+        "used": used_allowance(verdict),
+        "tightest": tightest_name(verdict),
         "time": _number(verdict.time),
         "line": verdict.line,
         "step": verdict.step,

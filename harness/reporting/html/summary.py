@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
-from harness.recording.verdict import Measure
+from harness.recording.verdict import Verdict
 from harness.reporting.html.story import depth_of, environment, ordered_steps
-from harness.reporting.margins import allowance_used
+from harness.reporting.margins import MOST_USED, used_allowance
 from harness.reporting.terminal import verdict_line
 
 STATUS = {
@@ -101,16 +101,16 @@ def _verdicts(stored: StoredRun) -> Iterator[Row]:
         holds, line = verdict.status == "passed", verdict.line
         yield Row(
             "good" if holds else "bad",
-            (str(number), verdict.expectation, verdict_line(verdict), _used(verdict.measures[:1]),
+            (str(number), verdict.expectation, verdict_line(verdict), _used(verdict),
              str(line or "")),
             source="" if holds or not 0 < line <= len(source) else source[line - 1].strip(),
             warnings=tuple(map(str, verdict.warnings)),
         )  # fmt: skip
 
 
-def _used(measures: Iterable[Measure]) -> str:
-    shares = [allowance_used(measure) for measure in measures]
-    return "".join(f"{100 * share:.0f} %" for share in shares if share is not None and share < 100)
+def _used(verdict: Verdict) -> str:
+    share = used_allowance(verdict)
+    return "" if share is None or share >= MOST_USED else f"{100 * share:.0f} %"
 
 
 def _steps(stored: StoredRun) -> Iterator[Row]:

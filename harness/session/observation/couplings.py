@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.judging.text import amount
+from harness.core.amounts import amount
 from harness.recording.run import Finding, Run
 from harness.robot.description import RobotDescription
 

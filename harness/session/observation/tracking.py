@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray, Pair
 from harness.judging.drift import drift_in_hand
 from harness.judging.hold import held_by_fingers
 from harness.judging.joints import gripper_joints
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, NotReached
 from harness.ports.kinematics import Kinematics
 from harness.recording.motion import Motion

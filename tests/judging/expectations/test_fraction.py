@@ -5,7 +5,7 @@ import pytest
 
 from harness.judging.expectations.fraction import FractionCheck
 from harness.judging.expectations.tcp_path import TcpPath
-from harness.reporting.margins import allowance_used, margin_share
+from harness.reporting.margins import allowance_used, margin_share, used_allowance
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Three
 from tests.judging.synthetic_run import followed, heights, make_run, step, verdict
@@ -44,7 +44,7 @@ def test_a_share_that_is_complete_uses_none_of_its_allowance():
     assert used["share travelled forwards"] == pytest.approx(0.0, abs=1e-9)
     assert margin_share(answer) == pytest.approx(1.0)
     half = verdict(along_z(end=0.495), TcpPath(line=LINE, max_deviation=1.0))
-    assert allowance_used(half.measures[0]) == pytest.approx(0.5, abs=1e-6)
+    assert used_allowance(half) == pytest.approx(0.5, abs=1e-6)
     assert margin_share(half) == pytest.approx(0.5, abs=1e-6)
 
 

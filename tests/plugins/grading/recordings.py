@@ -22,7 +22,7 @@ STORE = get_typestore(Stores.ROS2_JAZZY)
 POSES = "/world/default/dynamic_pose/info"
 SCENARIO = data_folder("scenarios") / "grading/pick_and_place.scenario.yaml"
 GAZEBO = BagTopics(objects=(POSES,))
-NEEDS_CONTACTS = ("grasped",)
+NEEDS_CONTACTS = " is grasped"
 GAZEBO_STARTED = 123.4
 """Simulated time at which the recording begins [s]."""
 WALL_CLOCK = 1_700_000_000.0

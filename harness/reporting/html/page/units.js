@@ -20,11 +20,29 @@ export function number(value) {
   return value.toFixed(digits);
 }
 
-/** A value with its unit; metres as millimetres, radians as degrees. @param {number} value @param {string} unit */
-export function amount(value, unit) {
+const FINEST = 1e-4; // in the unit that is shown: what is smaller is written as 0
+const MOST_DIGITS = 12;
+
+/**
+ * A value with its unit; metres as millimetres, radians as degrees.
+ * @param {number} value @param {string} unit @param {number} more digits than usual
+ */
+export function amount(value, unit, more = 0) {
   const [factor, name] = SHOWN[unit] ?? [1, unit];
   const gap = name === "" || name.startsWith("°") ? "" : " ";
-  return `${number(value * factor)}${gap}${name}`;
+  const shown = value * factor, size = Math.abs(shown);
+  if (more) return `${shown.toPrecision(3 + more)}${gap}${name}`;
+  const text = size < FINEST ? "0" : size < 1e-3 ? shown.toFixed(4) : number(shown);
+  return `${text}${gap}${name}`;
+}
+
+/** Two values with as many digits as show their difference. @returns {[string, string]} */
+export function amounts(first, second, unit) {
+  for (let more = 0; more < MOST_DIGITS; more++) {
+    const texts = [amount(first, unit, more), amount(second, unit, more)];
+    if (texts[0] !== texts[1] || first === second) return texts;
+  }
+  return [amount(first, unit), amount(second, unit)];
 }
 
 /** A joint's or link's name without what all of them have. @param {string} name */

@@ -1,7 +1,7 @@
 // The expectations: what was measured, the limit, and how much room was left.
 
 import { element } from "./dom.js";
-import { amount, seconds, tone } from "./units.js";
+import { amount, amounts, seconds, tone } from "./units.js";
 
 const WORST_SHOWN = 3;
 
@@ -41,9 +41,9 @@ function verdict(run, each, index, select) {
 }
 
 /** A bar of the allowance: how much of it was used. */
-function marginBar({ margin, unit, used, status }) {
+function marginBar({ margin, unit, used, status, tightest }) {
   if (margin === null) return null;
-  const marginText = `${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
+  const marginText = `${tightest && `${tightest}: `}${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
   if (used === null) return element("span.margin-text", {}, marginText);
   const percent = Math.round(100 * used);
   const bar = element("span.margin", { role: "img", "aria-label": `${percent} % of the allowance used` }, element("i"));
@@ -53,11 +53,11 @@ function marginBar({ margin, unit, used, status }) {
 }
 
 function measured({ name, value, limit, comparison, unit, detail }) {
-  const sign = { "<=": "≤", ">=": "≥", "==": "=" }[comparison];
+  const bound = { "<=": "at most", ">=": "at least", "==": "exactly" }[comparison];
+  const [shown, required] = limit === null ? [amount(value, unit), ""] : amounts(value, limit, unit);
   return element(
     "span.measure", {},
-    `${name} `, element("code", {}, amount(value, unit)),
-    limit === null ? "" : ` vs ${sign} ${amount(limit, unit)}`,
+    `${name} `, element("code", {}, shown), required && ` (${bound} ${required})`,
     detail && element("em", {}, ` ${detail}`),
   );
 }

@@ -1,10 +1,12 @@
-"""Numbers as a verdict's reason says them: millimetres, degrees, newtons."""
+"""Numbers for people: millimetres, degrees, newtons; digits until two of them differ."""
 
 from __future__ import annotations
 
 import math
 
 from harness.core.quantity import distinct
+
+FINEST_ANGLE = 1e-4  # [deg], a smaller angle is written as 0.0
 
 
 def amount(value: float, unit: str, more_digits: int = 0) -> str:
@@ -13,7 +15,7 @@ def amount(value: float, unit: str, more_digits: int = 0) -> str:
         case "m" if abs(value) < 1:
             return f"{_short(value * 1e3, more_digits)} mm"
         case "rad":
-            return f"{_short(math.degrees(value), more_digits)} deg"
+            return f"{_short(math.degrees(value), more_digits, FINEST_ANGLE)} deg"
         case "rad/s":
             return f"{_short(math.degrees(value), more_digits)} deg/s"
         case "m/s" if abs(value) < 1:
@@ -34,12 +36,14 @@ def percentages(value: float, limit: float) -> tuple[str, str]:
     return distinct(value, limit, lambda share, more: f"{100 * share:.{1 + more}f} %")
 
 
-def _short(value: float, more_digits: int) -> str:
+def _short(value: float, more_digits: int, finest: float = 1e-3) -> str:
     if not math.isfinite(value):
         return str(value)
     if more_digits:
         return f"{value:#.{3 + more_digits}g}"
     if 1e-3 <= abs(value) < 1:
         return f"{value:.2g}"
-    value = 0.0 if abs(value) < 1e-3 else value
+    if finest <= abs(value) < 1e-3:
+        return f"{value:.4f}"
+    value = 0.0 if abs(value) < finest else value
     return f"{value:.1f}" if abs(value) < 100 else f"{value:.0f}"
