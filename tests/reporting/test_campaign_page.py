@@ -83,7 +83,7 @@ def test_a_passed_run_without_a_report_is_found_in_the_table(page_file, visit):
     name = page.locator("#map output").inner_text().split(":")[0]
     page.mouse.click(*place)
     assert name in page.locator("tbody").inner_text()
-    assert page.locator("tbody tr").count() < 15
+    assert page.locator("tr.case").count() < 15
 
 
 def test_the_failure_rate_is_shown_for_each_cell(page_file, visit):
@@ -104,14 +104,14 @@ def test_a_narrow_screen_shows_every_row_whole(page_file, visit):
     page = visit(page_file).page
     page.set_viewport_size({"width": 390, "height": 800})
     assert page.evaluate(
-        "[...document.querySelectorAll('.wide, .wide td, .why')].every("
+        "[...document.querySelectorAll('#cases, #cases td, .why')].every("
         "each => each.scrollWidth <= each.clientWidth && each.scrollHeight <= each.clientHeight)"
     )
-    page.locator("tbody td .bar").first.wait_for(state="visible")
+    page.locator("tr.case .bar").first.wait_for(state="visible")
 
 
 def test_a_row_has_the_values_of_its_run(page_file, visit):
-    text = visit(page_file).page.locator("tbody tr").first.inner_text()
+    text = visit(page_file, "#sort=number").page.locator("tr.case").first.inner_text()
     assert "friction 0.238, x 1.769 cm, color green" in text
 
 
@@ -322,8 +322,7 @@ def test_a_page_of_many_samples_stays_small(tmp_path):
     text = page.read_text()
     assert len(text) < 5_000_000
     assert "10000 of 20000 runs are drawn" in text
-    assert "18000 more cases are not listed" in text
-    assert text.count("<tr data-index") == 2000
+    assert "10000 more cases are not listed" in text
 
 
 def test_hostile_words_stay_text(tmp_path, visit):

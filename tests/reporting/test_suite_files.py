@@ -85,7 +85,7 @@ def test_junit_names_seed_digest_margins_requirements_and_report():
     assert found["value:height"] == "5 cm"
     assert found["margin:lifted cube"] == "0.01 m"
     assert first.attrib["time"] == "0.250"
-    assert second.find("failure").attrib["message"] == "lifted cube: failed: 30 mm"
+    assert second.find("failure").attrib["message"] == "lifted cube: 30 mm"
     said = second.find("system-out").text
     assert "report: a/pick/c1/report.html#t=2.00&expect=2" in said
     assert "[[ATTACHMENT|" in said
@@ -135,7 +135,7 @@ def test_history_is_read_from_earlier_results_and_other_files_are_left_out(tmp_p
 def test_annotations_stand_at_their_lines_and_cannot_be_broken_out_of():
     lines = list(error_annotations([passed(0), failed(1), STUCK, INVALID, BROKEN]))
     assert lines[0] == (
-        "::error file=a/pick.scenario.yaml,line=9,title=Pick [c1]::lifted cube: failed: 30 mm"
+        "::error file=a/pick.scenario.yaml,line=9,title=Pick [c1]::lifted cube: 30 mm"
     )
     assert lines[1].startswith("::error file=b/place.scenario.yaml,line=7,title=Place::move_to far")
     assert lines[2].startswith("::error file=c/typo.scenario.yaml,line=3,col=5,")
@@ -166,7 +166,7 @@ def test_the_job_summary_has_the_worst_first_and_keeps_text_text():
 
 def test_short_lines_are_as_editors_have_them():
     assert list(short_lines([passed(0), failed(1), INVALID])) == [
-        "a/pick.scenario.yaml:9:1: [c1] lifted cube: failed: 30 mm",
+        "a/pick.scenario.yaml:9:1: [c1] lifted cube: 30 mm",
         "c/typo.scenario.yaml:3:5: no verb is called `pikc`: did you mean",
     ]
 

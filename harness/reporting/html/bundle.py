@@ -14,20 +14,19 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).with_name("page")
 TEMPLATE = FOLDER / "page.html"
-ENTRY = "main.js"
 IMPORT = re.compile(r'^import \{([^}]*)\} from "\./([\w-]+\.js)";$', re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async )?(?:function|const|class) (\w+))", re.MULTILINE)
 
 
 @cache
-def script() -> str:
-    """Every module that `main.js` needs, as one classic script.
+def script(entry: Path = FOLDER / "main.js") -> str:
+    """Every module that an entry needs, as one classic script; from its folder or the run page's.
 
     A browser refuses to import modules from disk, so each becomes a function that returns what it
     exports, in the order of their imports.
     """
     modules: dict[str, str] = {}
-    _collect(ENTRY, modules, ())
+    _collect(entry, modules, ())
     return "\n".join(modules.values())
 
 
@@ -43,14 +42,16 @@ def theme() -> str:
     return _read("theme.css")
 
 
-def _collect(name: str, modules: dict[str, str], importing: tuple[str, ...]) -> None:
+def _collect(file: Path, modules: dict[str, str], importing: tuple[str, ...]) -> None:
+    name = file.name
     if name in modules:
         return
     if name in importing:
         raise ValueError(f"modules import each other: {' -> '.join((*importing, name))}")
-    text = _read(name)
+    text = file.read_text(encoding="utf-8")
     for _, needed in IMPORT.findall(text):
-        _collect(needed, modules, (*importing, name))
+        own = file.with_name(needed)
+        _collect(own if own.is_file() else FOLDER / needed, modules, (*importing, name))
     exported = ", ".join(EXPORT.findall(text))
     text = IMPORT.sub(lambda match: f"const {{{match[1]}}} = {_variable(match[2])};", text)
     text = EXPORT.sub("", text)

@@ -27,6 +27,11 @@ class Packer:
         self._parts: list[bytes] = []
         self._length = 0
 
+    @property
+    def names(self) -> list[str]:
+        """The names of the buffers that were put in."""
+        return list(self._places)
+
     def add(self, name: str, data: Array | bytes) -> str:
         """Put a buffer in; returns its name."""
         raw = data if isinstance(data, bytes) else np.ascontiguousarray(data).tobytes()

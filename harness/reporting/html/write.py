@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import cv2
-import numpy as np
-
 from harness.recording.explanation import recorded_explanation
 from harness.recording.read_run import read_run
 from harness.recording.stored_run import PAGE, StoredRun, blames_changes
@@ -19,6 +16,7 @@ from harness.reporting.html.paths import pack_plan, pack_tcp_path
 from harness.reporting.html.pictures import pack_cameras
 from harness.reporting.html.presses import pack_presses
 from harness.reporting.html.scene import pack_scene
+from harness.reporting.html.still import small_still
 from harness.reporting.html.story import (
     contact_facts,
     environment,
@@ -111,8 +109,6 @@ def _short(value: str) -> str:
 PICTURES = 6
 WIDTH = 360  # [pixels]
 WHY = "-why"  # how names of pictures end that show what explains a failure
-CAPTION_SHARE = 26 / 480  # of a still's height: the strip below with words too small for the page
-QUALITY = 70
 
 
 def write_page(folder: Path, stored: StoredRun | None = None, begun: Page | None = None) -> Path:
@@ -163,7 +159,7 @@ def _pictures(folder: Path, stored: StoredRun) -> list[SummaryPicture]:
     return [
         SummaryPicture(caption, small)
         for file, caption in captioned
-        if (small := _small(file)) is not None
+        if (small := small_still(file, WIDTH)) is not None
     ]
 
 
@@ -172,16 +168,3 @@ def _spread(numbers: Sequence[int], count: int) -> list[int]:
         return []
     last = len(numbers) - 1
     return [numbers[round(last * (i + 1) / count)] for i in range(count)]
-
-
-def _small(file: Path) -> bytes | None:
-    if not file.is_file():
-        return None
-    picture = cv2.imdecode(np.frombuffer(file.read_bytes(), dtype=np.uint8), cv2.IMREAD_COLOR)
-    if picture is None:
-        return None
-    picture = picture[: round(picture.shape[0] * (1 - CAPTION_SHARE))]
-    height = round(picture.shape[0] * WIDTH / picture.shape[1])
-    picture = cv2.resize(picture, (WIDTH, height), interpolation=cv2.INTER_AREA)
-    is_coded, data = cv2.imencode(".webp", picture, [cv2.IMWRITE_WEBP_QUALITY, QUALITY])
-    return data.tobytes() if is_coded else None

@@ -43,8 +43,10 @@ def cause_of(result: CaseResult) -> Cause | None:
         return Cause(f"{step.error_code or 'failed'} in {step.verb}", text, step.line)
     for verdict in result.verdicts:
         if verdict.status != "passed":
-            text = f"{verdict.expectation}: {verdict.status}"
-            text += f": {verdict.reason}" if verdict.reason else ""
+            said = [verdict.expectation, verdict.status, verdict.reason]
+            if verdict.status == "failed" and verdict.reason:
+                said.remove("failed")
+            text = ": ".join(filter(None, said))
             return Cause(f"{verdict.status}: {verdict.expectation}", text, verdict.line)
     return Cause("failed", result.message or "no cause was reported")
 

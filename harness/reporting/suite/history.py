@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,6 +14,7 @@ from harness.reporting.suite.record import FORMAT
 MOST_RUNS = 30
 
 Key = tuple[str, str]  # file and name of a case
+History = Mapping[Key, Sequence[float | None]]
 
 
 def history_of(folder: Path) -> dict[Key, list[float | None]]:

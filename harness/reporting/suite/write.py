@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from harness.core.files import replaced, writing
 from harness.reporting.suite.columns import Columns
-from harness.reporting.suite.history import Key
+from harness.reporting.suite.history import History
 from harness.reporting.suite.junit import JunitWriter
 from harness.reporting.suite.page import MOST_ROWS, suite_html
 from harness.reporting.suite.record import SuiteCase, SuiteRecord, results_json
@@ -15,8 +15,6 @@ from harness.reporting.suite.record import SuiteCase, SuiteRecord, results_json
 PAGE = "index.html"
 JUNIT = "junit.xml"
 RESULTS = "results.json"
-
-History = Mapping[Key, Sequence[float | None]]
 
 
 def write_suite(

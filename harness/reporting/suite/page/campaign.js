@@ -1,6 +1,7 @@
 // Draws the runs over two parameters, or their failure rate, from the data in the page.
 
-(() => {
+/** Draw the map where the page has one. */
+export function drawCampaign() {
   const section = document.getElementById("map");
   if (!section) return;
   const data = JSON.parse(section.querySelector("script").textContent);
@@ -169,7 +170,7 @@
       const search = document.querySelector("#search input");
       search.value = found[NAME];
       search.dispatchEvent(new Event("input"));
-      document.querySelector("tbody").closest("section").scrollIntoView();
+      document.getElementById("cases").scrollIntoView();
     }
   });
   for (const select of [across, up, kind]) select.addEventListener("change", draw);
@@ -193,4 +194,4 @@
   section.hidden = false;
   up.value = count > 1 ? 1 : SHARE;
   draw();
-})();
+}

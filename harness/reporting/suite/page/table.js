@@ -1,0 +1,111 @@
+// The table of cases. Rows are made as far as the page is scrolled.
+
+import { element } from "./dom.js";
+import { outcomeBar } from "./query.js";
+
+const STRETCH = 100; // rows that are made at a time: two screens of them
+
+/** @param {import("./payload.js").Payload} payload */
+export function startTable(payload) {
+  const body = document.querySelector("#cases tbody"), count = document.getElementById("count");
+  const more = document.querySelector("#cases .more"), columns = document.querySelectorAll("#cases thead th").length;
+  const total = payload.run.rows.length, pictures = new Map();
+  let waiting = [], folded = new Set();
+
+  /** The address of a row's picture, which is made once. */
+  function picture(name) {
+    if (!pictures.has(name)) {
+      pictures.set(name, URL.createObjectURL(new Blob([payload.buffer(name)], { type: "image/webp" })));
+    }
+    return pictures.get(name);
+  }
+
+  function show(matches, groups) {
+    count.textContent = matches.length === total ? `${total}` : `${matches.length} of ${total}`;
+    body.replaceChildren();
+    waiting = groups ? groups.flatMap((group) => [group, ...(folded.has(group.name) ? [] : group.rows)]) : matches;
+    extend();
+    showHeads = () => show(matches, groups);
+  }
+  let showHeads = () => {};
+
+  function extend() {
+    const next = waiting.slice(0, STRETCH);
+    waiting = waiting.slice(STRETCH);
+    body.append(...next.map((each) => (each.rows ? heading(each) : caseRow(each))));
+    more.hidden = !waiting.length;
+    more.textContent = `${waiting.length} more`;
+  }
+
+  function heading(group) {
+    const isOpen = !folded.has(group.name);
+    const toggle = () => {
+      if (isOpen) folded.add(group.name); else folded.delete(group.name);
+      showHeads();
+    };
+    return element("tr.group", {}, element("td", { colspan: columns },
+      element("button.fold", { type: "button", "aria-expanded": String(isOpen), onclick: toggle },
+        element("span.name", {}, group.name), outcomeBar(group.counts),
+        element("span.number", {}, `${group.counts.passed ?? 0} of ${group.rows.length} passed`))));
+  }
+
+  function caseRow(row) {
+    const name = row.link ? element("a", { href: row.link }, row.name) : row.name;
+    const still = row.picture && element("img", { src: picture(row.picture), alt: `the moment that decided ${row.name}`, loading: "lazy" });
+    const made = element(`tr.case`, { "data-outcome": row.outcome, "data-share": row.share },
+      element("td", {}, element(`i.sign.${row.outcome}`), element("span.quiet", {}, row.outcome)),
+      element("td.still", {}, row.link && still ? element("a", { href: row.link, tabindex: -1 }, still) : still),
+      element("td.about", {},
+        element("span.title", {}, name, ...row.tags.map((tag) => element("span.tag", {}, tag))),
+        element("div.quiet", {}, row.file, row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
+        row.why && why(row)),
+      element("td.nearest", {}, row.margin && allowance(row), row.margin && element("div.quiet", {}, row.expectation)),
+      payload.run.history && element("td.history", {}, row.trend && spark(row.trend)),
+      element("td.number", { title: `${row.simulated.toFixed(1)} s simulated` }, row.wall ? `${row.wall.toFixed(1)} s` : "–"));
+    return made;
+  }
+
+  /** The cause in a line; a click shows everything that is known. */
+  function why(row) {
+    if (!row.why) return element("details.more-of", {}, element("summary", { "aria-label": `details of ${row.name}` }, "…"), facts(row));
+    return element("details.why", {}, element("summary", {}, row.why),
+      ...row.details.map((text) => element("pre", {}, text)), facts(row));
+  }
+
+  return { show: watched(more, extend, show) };
+}
+
+function facts(row) {
+  const command = `harness run ${row.file}${row.case ? ` --case ${row.case}` : ""}`;
+  return element("div.facts", {}, `simulated ${row.simulated.toFixed(2)} s · seed ${row.seed}`,
+    row.digest && ` · digest ${row.digest}`, " · ", element("code", {}, command));
+}
+
+/** How much of the allowance was used, and the margin. */
+function allowance(row) {
+  const tone = row.holds ? "good" : "bad";
+  if (row.used === null) return element("span.number", {}, row.margin);
+  const percent = Math.round(100 * row.used), text = `${percent} % of the allowance used`;
+  return element("span", {},
+    element("span.bar", { role: "img", "aria-label": text, title: text },
+      element(`i.${tone}`, { style: `width:${Math.min(100, Math.max(2, percent))}%` })),
+    element("span.number", {}, row.margin));
+}
+
+function spark({ text, points }) {
+  const make = (name, properties) => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(properties)) made.setAttribute(key, value);
+    return made;
+  };
+  const svg = make("svg", { class: "spark", role: "img", "aria-label": text, viewBox: "-2 -2 94 24", width: 90, height: 20 });
+  svg.append(make("line", { x1: 0, x2: 90, y1: 10, y2: 10 }), make("polyline", { points }));
+  return svg;
+}
+
+/** Makes more rows when the end of the table comes near. */
+function watched(more, extend, show) {
+  more.addEventListener("click", extend);
+  new IntersectionObserver((seen) => seen.some((each) => each.isIntersecting) && extend(), { rootMargin: "600px" }).observe(more);
+  return show;
+}

@@ -1,0 +1,121 @@
+"""The rows of a suite's page as plain data, which its script filters, groups and draws."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from harness.core.amounts import amount
+from harness.core.resources import with_short_names
+from harness.reporting.html.packing import Packer
+from harness.reporting.margins import used_allowance
+from harness.reporting.result import CaseResult
+from harness.reporting.sampled import short_value
+from harness.reporting.suite.history import History
+from harness.reporting.suite.record import SuiteCase
+from harness.reporting.terminal import causes, failure_place
+
+NO_MARGIN = 9.0  # a share that sorts behind every margin, which is 1 at most
+SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
+MOST_PICTURES = 100  # of failed cases; at 4 kB each, the page grows by less than 0.5 MB
+PICTURE_WIDTH = 200  # [pixels], twice what is shown, for screens of high density
+
+
+def row_facts(
+    number: int, case: SuiteCase, folder: Path, history: History, packer: Packer
+) -> dict[str, Any]:
+    """A row of the table of cases.
+
+    Args:
+        number: The place of the case in its suite.
+        folder: Where the page will stand; links are relative to it.
+        packer: Receives the picture of the moment that decided a failure.
+    """
+    result, nearest, cause = case.result, case.nearest, case.cause
+    file = with_short_names(result.file)
+    earlier = history.get((result.file, result.case), ())
+    used = used_allowance(nearest) if nearest else None
+    words = (result.title, result.case, file, *case.tags, *case.verifies)
+    return {
+        "number": number,
+        "name": result.name,
+        "file": file,
+        "folder": str(PurePosixPath(file).parent),
+        "tags": case.tags,
+        "outcome": result.outcome,
+        "cause": cause.group if cause else "",
+        "why": " ".join(cause.text.split()) if cause else "",
+        "details": causes(result) if cause else [],
+        "case": result.case,
+        "link": case.link(folder) + (failure_place(result) if result.page else ""),
+        "share": case.share if math.isfinite(case.share) else NO_MARGIN,
+        "used": used,
+        "margin": amount(nearest.margin, nearest.unit) if nearest else "",
+        "expectation": nearest.expectation if nearest else "",
+        "holds": nearest is not None and nearest.status == "passed",
+        "drawn": ", ".join(f"{path} {short_value(value)}" for path, value in case.values.items()),
+        "simulated": result.sim_time,
+        "wall": sum(result.wall_times.values()),
+        "seed": result.seed,
+        "digest": result.digest[:12],
+        "words": " ".join([*words, cause.text if cause else ""]).lower(),
+        "trend": _trend([*earlier, None if nearest is None else case.share]),
+        "picture": _picture(result, number, packer),
+    }
+
+
+def _picture(result: CaseResult, number: int, packer: Packer) -> str:
+    """The name of the buffer with a picture of the deciding moment; empty without one."""
+    if result.outcome != "failed" or not result.report_dir or len(packer.names) >= MOST_PICTURES:
+        return ""
+    stills = Path(result.report_dir, "images")
+    step = _deciding_step(result)
+    files = sorted(stills.glob(f"{step:02d}-*.jpg"))  # the one that explains a failure is last
+    if not files:
+        return ""
+    from harness.reporting.html.still import small_still  # loads OpenCV
+
+    picture = small_still(files[-1], PICTURE_WIDTH)
+    return packer.add(f"case.{number}", picture) if picture else ""
+
+
+def _deciding_step(result: CaseResult) -> int:
+    """The number of the step, from 1, at whose end or within which a case failed."""
+    steps = [step for step in result.steps if step.status != "not reached"]
+    for number, step in enumerate(steps, start=1):
+        is_outer = any(other.path.startswith(f"{step.path}.") for other in steps)
+        if step.status == "failed" and not is_outer:
+            return number
+    verdict = next((each for each in result.verdicts if each.status != "passed"), None)
+    time, end, last = math.inf if verdict is None else verdict.time, 0.0, len(steps)
+    for number, step in enumerate(steps, start=1):
+        if any(other.path.startswith(f"{step.path}.") for other in steps):
+            continue
+        end += step.sim_time
+        last = number
+        if end >= time - 1e-9:
+            break
+    return last
+
+
+def _trend(shares: Sequence[float | None]) -> dict[str, str] | None:
+    """Worst margins over runs as a line and in words; None where there are too few.
+
+    An expectation flips in the middle of the height. Heights are square roots: what happens near
+    the middle is what matters.
+    """
+    known = [(index, share) for index, share in enumerate(shares) if share is not None]
+    if len(known) < 2:
+        return None
+    step = SPARK_WIDTH / (len(shares) - 1)
+    points = " ".join(
+        f"{index * step:.1f},{SPARK_HEIGHT * (1 - _root(share)) / 2:.1f}" for index, share in known
+    )
+    text = f"worst margin in {len(known)} runs, now {known[-1][1]:.0%} of its limit"
+    return {"text": text, "points": points}
+
+
+def _root(share: float) -> float:
+    return math.copysign(math.sqrt(abs(share)), share)
