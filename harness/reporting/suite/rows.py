@@ -17,7 +17,7 @@ from harness.reporting.suite.history import History
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes, failure_place
 
-NO_MARGIN = 9.0  # a share that sorts behind every margin, which is 1 at most
+NO_MARGIN = 9.0  # a share that sorts after every margin, which is 1 at most
 SPARK_WIDTH, SPARK_HEIGHT = 90, 20  # [pixels]
 MOST_PICTURES = 100  # of failed cases; at 4 kB each, the page grows by less than 0.5 MB
 PICTURE_WIDTH = 200  # [pixels], twice what is shown, for screens of high density
