@@ -35,7 +35,8 @@ downloaded: an address of Fuel is looked up in Gazebo's cache (`~/.gz/fuel`). `m
 BECOMES = """## Models
 
 A model becomes one object with the model's name. An object is rigid: links that joints connect
-become one object, and a movable joint is held in its initial position, with a note. Links without
+become one object. What turns or slides on something static is one of its `joints`; any other
+movable joint is held in its initial position, with a note. Links without
 a joint become separate objects named `model::link`. Collisions become the object's shapes, each
 with its friction. Visuals of the same shapes colour them; other visuals are drawn in their place.
 A link without an inertial has 1 kg and 1 kg m^2, as SDF specifies, with a note. An inertia that no
@@ -74,7 +75,8 @@ collision another shape than these is an error; in a visual it is not drawn, wit
 - A colour is `diffuse`, else `ambient`, else that of a plain colour's `script` of Gazebo.
 - Of several `physics` elements the default one is read, else the first; of `state` the poses of
   models in the first. Pictures are 8 to 2048 pixels wide and high, of format `R8G8B8` or `L8`.
-- A movable joint is held in its initial position; a world's joint joins models to one object."""
+- A movable joint of what may fall is held in its initial position; a world's fixed joint joins
+  models to one object."""
 
 
 MJCF = """## MuJoCo scenes

@@ -47,7 +47,7 @@ class HingeSpec(_Motion):
     @model_validator(mode="after")
     def _starts_within_its_range(self) -> HingeSpec:
         _check_range(self.range, self.start, "rad")
-        if max(map(abs, self.range)) > math.pi:
+        if max(map(abs, self.range)) > math.pi + 1e-9:
             raise ValueError("a hinge turns by at most half a turn from its closed position")
         return self
 

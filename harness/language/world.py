@@ -177,6 +177,17 @@ class JointSpec(SpecModel):
         description="The mass of the part [kg]; the default follows from its volume at 1000"
         " kg/m^3.",
     )
+    visuals: tuple[ShapeSpec, ...] = Field(
+        default=(), description="The geometries that pictures show in place of the shapes."
+    )
+    center_of_mass: Xyz = Field(
+        default=(0.0, 0.0, 0.0),
+        description="The centre of mass in the object's frame [m]; the default follows from the"
+        " shapes.",
+    )
+    inertia: InertiaSpec | None = Field(
+        default=None, description="The inertia; the default is that of the solid shapes."
+    )
     color: Color | None = Field(default=None, description=COLOR)
     friction: SurfaceFriction | None = Field(
         default=None, description="The friction of the part's surface."
@@ -186,7 +197,7 @@ class JointSpec(SpecModel):
 class ObjectSpec(SpecModel):
     """An object: one geometry next to its keys, or several under `shapes`.
 
-    One with `visuals` alone is seen and touches nothing.
+    One with `visuals` alone is seen and touches nothing; one with `joints` alone carries its parts.
     """
 
     not_yet: ClassVar[Mapping[str, str]] = {
@@ -284,8 +295,8 @@ class ObjectSpec(SpecModel):
     @model_validator(mode="after")
     def _some_shape(self) -> ObjectSpec:
         given = [kind for kind in GEOMETRIES if getattr(self, kind) is not None]
-        is_only_seen = bool(self.visuals) and not given
-        if len(given) > 1 or (bool(given) == bool(self.shapes) and not is_only_seen):
+        needs_none = bool(self.visuals or self.joints) and not given
+        if len(given) > 1 or (bool(given) == bool(self.shapes) and not needs_none):
             raise ValueError(
                 f"an object is exactly one of {', '.join(GEOMETRIES)}, or several `shapes`"
             )

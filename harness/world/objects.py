@@ -110,7 +110,10 @@ def resolve_parts(
         body = ObjectSpec(
             name=f"{spec.name}/{each.name}",
             shapes=each.shapes,
+            visuals=each.visuals,
             mass=each.mass,
+            center_of_mass=each.center_of_mass,
+            inertia=each.inertia,
             color=each.color or spec.color,
             friction=spec.friction if each.friction is None else each.friction,
         )

@@ -39,6 +39,35 @@ A_MODEL = (
     f"<geometry>{BOX}</geometry></collision></link></model>"
 )
 AUTO = "' auto='true"
+OF_DOORS = ("axis", "limit", "dynamics")
+DOOR = """<sdf version='1.9'><world name='k'><model name='cabinet'><pose>1 2 3 0 0 0.5</pose>
+ <joint name='floor' type='fixed'><parent>world</parent><child>body</child></joint>
+ <link name='body'><collision name='c'><geometry><box><size>0.3 0.4 0.4</size></box></geometry>
+  </collision></link>
+ <link name='door'><pose>-0.2 0.2 0 0 0 0.1</pose>{inertial}<collision name='panel'>
+  <pose>0 -0.2 0 0 0 0</pose><geometry><box><size>0.02 0.4 0.4</size></box></geometry></collision>
+ </link>
+ <joint name='hinge' type='{kind}'><parent>body</parent><child>door</child>
+  <axis>{axis}<limit>{limit}</limit><dynamics>{dynamics}</dynamics></axis></joint>
+</model>{more}</world></sdf>"""
+INERTIAL = """<inertial><mass>1</mass><inertia><ixx>0.02</ixx><iyy>0.01</iyy><izz>0.02</izz>
+ </inertia></inertial>"""
+
+
+def door(folder, **parts):
+    """The one joint of a cabinet, and the notes."""
+    words = dict.fromkeys(("axis", "limit", "dynamics", "more"), "")
+    words |= {"kind": "revolute", "inertial": INERTIAL} | parts
+    found = load(folder, DOOR.format(**words))
+    (cabinet,) = found.world.objects
+    (joint,) = cabinet.joints
+    assert (cabinet.name, cabinet.static, len(cabinet.shapes or (cabinet.box,))) == (
+        "cabinet",
+        True,
+        1,
+    )
+    return joint, [note.message for note in found.notes]
+
 
 READ = {
     ("sdf", "world"): ("", lambda w: w.world == "w"),
@@ -200,6 +229,12 @@ READ = {
     ("joint", "parent"): ("<parent>world</parent>", lambda w: the(w, "m::lid").static),
     ("joint", "child"): ("<parent>world</parent><child>l</child>", lambda w: the(w, "m::l").static),
     ("joint", "pose"): None,  # below: a frame
+    **dict.fromkeys(
+        (kind, word)
+        for kind in ("joint", "axis", "limit", "dynamics")
+        for word in READ_WORDS[kind]
+        if kind != "joint" or word == "axis"
+    ),  # below: a door
     ("frame", "pose"): ("<pose>0 0 2 0 0 0</pose>", lambda w: xyz(w)[2] == 1.75),
     ("light", "pose"): (
         "<pose degrees='true'>0 0 0 90 0 0</pose>",
@@ -270,7 +305,7 @@ def test_a_word_that_is_read_counts(tmp_path, kind, tag):
 @pytest.mark.parametrize(
     ("kind", "tag"),
     [
-        *((kind, "gz:extra") for kind in READ_WORDS if kind != "geometry"),
+        *((kind, "gz:extra") for kind in READ_WORDS if kind not in (*OF_DOORS, "geometry")),
         ("sdf", "actor"),
         ("world", "wind"),
         ("model", "plugin"),
@@ -279,7 +314,6 @@ def test_a_word_that_is_read_counts(tmp_path, kind, tag):
         ("surface", "bounce"),
         ("friction/ode", "slip1"),
         ("material", "pbr"),
-        ("joint", "axis"),
         ("physics", "real_time_factor"),
         ("camera", "lens"),
     ],
@@ -408,3 +442,64 @@ def test_lights_of_other_kinds_are_reported(tmp_path):
         note.message for note in found.notes
     ]
     assert len(found.world.lights) == 1
+
+
+def test_a_door_on_what_stands_still_is_a_joint(tmp_path):
+    joint, notes = door(
+        tmp_path,
+        axis="<xyz>0 0 -2</xyz>",
+        limit="<lower>0</lower><upper>1.5</upper>",
+        dynamics="<friction>0.3</friction><damping>0.2</damping>"
+        "<spring_stiffness>4</spring_stiffness><spring_reference>0.7</spring_reference>",
+    )
+    assert notes == []
+    hinge = joint.hinge
+    assert (joint.name, joint.mass, hinge.range, hinge.start) == ("hinge", 1, (0, 1.5), 0)
+    assert (hinge.friction, hinge.damping) == (0.3, 0.2)
+    assert (hinge.stiffness, hinge.rest) == (4, 0.7)
+    assert hinge.axis == pytest.approx((0, 0, -1))
+    assert hinge.at == pytest.approx((-0.2, 0.2, 0))
+    panel = joint.shapes[0].pose.se3()
+    assert panel.translation == pytest.approx(
+        (-0.2 + 0.2 * math.sin(0.1), 0.2 - 0.2 * math.cos(0.1), 0)
+    )
+
+
+def test_an_axis_is_in_the_frame_that_the_file_names(tmp_path):
+    own, _ = door(tmp_path, kind="prismatic", axis="<xyz>1 0 0</xyz>")
+    assert own.slide.axis == pytest.approx((math.cos(0.1), math.sin(0.1), 0))
+    other, _ = door(tmp_path, kind="prismatic", axis="<xyz expressed_in='__model__'>1 0 0</xyz>")
+    assert other.slide.axis == pytest.approx((1, 0, 0))
+    model, _ = door(
+        tmp_path,
+        kind="prismatic",
+        axis="<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>",
+    )
+    assert model.slide.axis == pytest.approx((1, 0, 0))
+
+
+def test_a_joint_without_limits_gets_some_with_a_note(tmp_path):
+    endless, notes = door(tmp_path, kind="continuous")
+    assert endless.hinge.range == pytest.approx((-math.pi, math.pi))
+    assert notes == ["the joint 'hinge' is limited to -3.14159 to 3.14159 here"]
+    slide, notes = door(tmp_path, kind="prismatic", limit="<upper>0.2</upper><effort>3</effort>")
+    assert slide.slide.range == (-1, 0.2)
+    assert "<effort> of <limit> is left out" in notes
+
+
+@pytest.mark.parametrize(
+    ("axis", "message"),
+    [("<xyz>0 0 0</xyz>", "an axis must not be 0 0 0"), ("<xyz>0 1</xyz>", "3")],
+)
+def test_an_axis_that_is_none_is_refused(tmp_path, axis, message):
+    with pytest.raises(SpecError, match=message):
+        door(tmp_path, axis=axis)
+
+
+def test_a_joint_on_a_part_or_between_what_may_fall_is_held(tmp_path):
+    knob = """<joint name='turn' type='revolute'><parent>cabinet::door</parent><child>knob</child>
+     <axis/></joint><model name='knob'><link name='l'><collision name='c'><geometry><sphere><radius>
+     0.02</radius></sphere></geometry></collision>"""
+    joint, notes = door(tmp_path, more=f"{knob}{INERTIAL}</link></model>")
+    assert len(joint.shapes) == 2
+    assert notes[-1] == "the revolute joint 'turn' is held in its initial position"

@@ -4,17 +4,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import ValidationError
 
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
-from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
+from harness.language.world import JointSpec, LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
+from harness.plugins.formats.fixture_words import PartJoint, on_fixture
 from harness.plugins.formats.mjcf.elements import Elements
 from harness.plugins.formats.mjcf.shapes import GeomReader
 from harness.plugins.formats.mjcf_robot.compiled import compile_mjcf, driven_trees
@@ -31,6 +32,7 @@ from harness.world.imported import ImportedWorld
 from harness.world.notes import Notes
 
 LONGEST_NAME = 100
+KINDS: dict[int, Literal["hinge", "slide"]] = {2: "slide", 3: "hinge"}  # of mjtJoint
 
 
 class _Folders(PackagePath):
@@ -123,7 +125,7 @@ class _Scene:
                 fixed = np.flatnonzero(model.body_weldid == body) if root else [body]
                 welded = [int(each) for each in fixed]
                 found.append(self._body(body, welded, is_static=root == 0))
-        objects = [item for item in found if item is not None]
+        objects = self._with_parts([item for item in found if item is not None])
         if len({tuple(model.geom_friction[geom]) for geom in self.touching}) > 1:
             message = "a contact takes the smaller friction of its two geoms, not the larger"
             reader.notes.add(reader.elements.root.place, message)
@@ -193,6 +195,8 @@ class _Scene:
             is_object = is_free and joint_trees.count(tree) == 1 and tree not in driven
             if parent in left_out or body in bases or (is_jointed and not is_object):
                 left_out.add(body)
+                if self._is_part(body, driven):
+                    continue
                 if tree not in driven and parent not in left_out:
                     why = "objects are rigid, and it has joints or carries bodies with joints"
                     self._note(body, why)
@@ -200,6 +204,88 @@ class _Scene:
                     robots.add(tree)
                     self._note(body, "a robot is read with `robot: {mjcf: FILE}`")
         return left_out
+
+    def _is_part(self, body: int, driven: Collection[int]) -> bool:
+        """Whether a body turns or slides on what stands still, and nothing drives it."""
+        model = self.reader.model
+        if int(model.body_jntnum[body]) != 1 or int(model.body_rootid[body]) in driven:
+            return False
+        kind = int(model.jnt_type[model.body_jntadr[body]])
+        return kind in KINDS and int(model.body_weldid[model.body_parentid[body]]) == 0
+
+    def _with_parts(self, objects: Sequence[ObjectSpec]) -> list[ObjectSpec]:
+        """The objects, with the bodies on hinges and slides as the joints of what carries them."""
+        model, driven = self.reader.model, driven_trees(self.reader.model)
+        whole = {item.name: item for item in objects}
+        for body in range(1, model.nbody):
+            if not self._is_part(body, driven):
+                continue
+            parent = int(model.body_parentid[body])
+            fixture = self.names[parent] if parent and self.names[parent] in whole else ""
+            base = self._pose(parent if fixture else body)
+            joint = self._part(body, base)
+            if joint is None:
+                continue
+            name = fixture or self.names[body]
+            words: dict[str, Any] = {"name": name, "pose": pose_spec(base), "static": True}
+            item = whole.get(name) or ObjectSpec.model_construct(**words)
+            update = {"joints": (*item.joints, joint)}
+            whole[name] = item.model_copy(update=update)
+        return list(whole.values())
+
+    def _part(self, body: int, base: SE3) -> JointSpec | None:
+        """A body and what it carries as a part on its joint; None where nothing of it touches."""
+        model, reader, element = self.reader.model, self.reader, self._element(body)
+        carried = [each for each in range(body, model.nbody) if self._is_below(each, body)]
+        for each in carried[1:]:
+            if model.body_jntnum[each]:
+                message = f"the body '{self.names[each]}' is held where the file puts it"
+                reader.notes.add(self._element(each).place, f"{message}: a part has one joint")
+        on_base = {each: base.inverse() @ self._pose(each) for each in carried}
+        geoms = self._geoms(carried)
+        shapes = {geom: reader.shape(geom, on_base[int(model.geom_bodyid[geom])]) for geom in geoms}
+        touching = [s for geom, s in shapes.items() if s is not None and reader.touches(geom)]
+        drawn = [s for geom, s in shapes.items() if s is not None and reader.is_drawn(geom)]
+        if not touching:
+            self._note(body, "nothing of it touches")
+            return None
+        self.touching += [geom for geom in geoms if reader.touches(geom)]
+        joint = self._joint(body, on_base[body])
+        if joint.limits != joint.usable_limits:
+            lower, upper = joint.usable_limits
+            unit = "rad" if joint.kind == "hinge" else "m"
+            text = (
+                f"the joint '{joint.name}' turns or slides from {lower:g} to {upper:g} {unit} here"
+            )
+            reader.notes.add(element.place, text)
+        mass = together([self._mass(each).placed(on_base[each]) for each in carried])
+        looks = [shape.model_copy(update={"friction": None}) for shape in drawn]
+        same = len(looks) == len(touching) and looks == touching
+        return validated(JointSpec, joint.words(touching, [] if same else looks, mass), element)
+
+    def _is_below(self, body: int, top: int) -> bool:
+        while body > top:
+            body = int(self.reader.model.body_parentid[body])
+        return body == top
+
+    def _joint(self, body: int, on_base: SE3) -> PartJoint:
+        model = self.reader.model
+        number = int(model.body_jntadr[body])
+        place, dof = int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
+        axis, point = on_fixture(on_base, model.jnt_axis[number], model.jnt_pos[number])
+        zero, endless = float(model.qpos0[place]), not model.jnt_limited[number]
+        lower, upper = (-np.inf, np.inf) if endless else model.jnt_range[number] - zero
+        return PartJoint(
+            name=self.reader.model.joint(number).name or "joint",
+            kind=KINDS[int(model.jnt_type[number])],
+            axis=axis,
+            point=point,
+            limits=(float(lower), float(upper)),
+            friction=float(model.dof_frictionloss[dof]),
+            damping=float(np.ravel(model.dof_damping[dof])[0]),
+            stiffness=float(np.ravel(model.jnt_stiffness[number])[0]),
+            rest=float(model.qpos_spring[place]) - zero,
+        )
 
     def _note(self, body: int, why: str) -> None:
         message = f"the body '{self.names[body]}' and what it carries are left out: {why}"

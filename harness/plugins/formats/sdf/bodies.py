@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from harness.core.errors import SpecError
 from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
+from harness.plugins.formats.sdf.joints import KINDS
 from harness.plugins.formats.sdf.scope import OWN, WORLD, Named, SdfScope
 from harness.plugins.formats.sdf.values import text_of
 from harness.world.notes import Notes
@@ -29,6 +30,25 @@ class SdfLink:
     pose: SE3
 
 
+@dataclass(frozen=True, eq=False)
+class SdfJoint:
+    """A joint between two links.
+
+    Attributes:
+        scope: The model with the joint.
+        name: The name of the joint in its model.
+        element: The element of the joint.
+        parent: The full name of a link, or `world`.
+        child: The full name of the link that it moves.
+    """
+
+    scope: SdfScope
+    name: str
+    element: XmlElement
+    parent: str
+    child: str
+
+
 @dataclass(eq=False)
 class SdfBody:
     """Links that form one rigid object.
@@ -37,12 +57,14 @@ class SdfBody:
         name: Name of the object.
         links: The links in file order.
         is_static: Whether the object is fixed in the world.
+        joint: The hinge or slide on which it hangs; None of an object of its own.
     """
 
     name: str
     pose: SE3
     links: list[SdfLink] = field(default_factory=list[SdfLink])
     is_static: bool = False
+    joint: SdfJoint | None = None
 
 
 class _Groups:
@@ -68,8 +90,9 @@ class _Groups:
 def bodies_of(world: SdfScope, notes: Notes) -> list[SdfBody]:
     """The rigid objects of a world, in file order.
 
-    The links of a static model, and links that a joint connects, are one object; a movable joint is
-    held in its initial position, with a note.
+    The links of a static model, and links that a joint connects, are one object. What turns or
+    slides on something static is an object with its joint; any other movable joint is held in its
+    initial position, with a note.
 
     Raises:
         SpecError: A joint, frame or pose refers to an unknown name.
@@ -82,17 +105,46 @@ def bodies_of(world: SdfScope, notes: Notes) -> list[SdfBody]:
         if static is not None:
             fixed.add(link.name)
             groups.join(firsts.setdefault(id(static), link.name), link.name)
+    movable: list[SdfJoint] = []
     for scope in _scopes(world):
         _check_links(scope)
         for name, item in scope.named.items():
             if item.kind == "joint":
-                _join(scope, name, item, groups, fixed, notes)
+                joint = _joint(scope, name, item)
+                if item.element.need("type").strip() == "fixed":
+                    _join(joint, groups, fixed)
+                else:
+                    movable.append(joint)
+    parts = _parts(movable, groups, fixed)
+    for joint in movable:
+        if joint not in parts.values():
+            kind = joint.element.need("type").strip()
+            message = f"the {kind} joint '{joint.name}' is held in its initial position"
+            notes.add(joint.element.place, message)
+            _join(joint, groups, fixed)
     by_group: dict[str, list[SdfLink]] = {}
     for link in links:
         by_group.setdefault(groups.find(link.name), []).append(link)
     held = {groups.find(name) for name in fixed}
-    sizes = Counter(id(_top(link.scope)) for link in links)
-    return [_body(members, sizes, group in held) for group, members in by_group.items()]
+    hanging = {groups.find(name): joint for name, joint in parts.items()}
+    sizes = Counter(id(_top(link.scope)) for link in links if groups.find(link.name) not in hanging)
+    return [
+        _body(members, sizes, group in held, hanging.get(group))
+        for group, members in by_group.items()
+    ]
+
+
+def _parts(movable: Sequence[SdfJoint], groups: _Groups, fixed: set[str]) -> dict[str, SdfJoint]:
+    """The hinges and slides by which one body hangs on what is fixed, by the name of its link."""
+    held = {WORLD, *(groups.find(name) for name in fixed)}
+    children = Counter(groups.find(joint.child) for joint in movable)
+    found: dict[str, SdfJoint] = {}
+    for joint in movable:
+        child = groups.find(joint.child)
+        hangs = groups.find(joint.parent) in held and child not in held and children[child] == 1
+        if hangs and joint.element.need("type").strip() in KINDS:
+            found[joint.child] = joint
+    return found
 
 
 def _check_links(scope: SdfScope) -> None:
@@ -142,24 +194,23 @@ def _top(scope: SdfScope) -> SdfScope:
     return scope
 
 
-def _join(
-    scope: SdfScope, name: str, item: Named, groups: _Groups, fixed: set[str], notes: Notes
-) -> None:
-    """Join the two sides of a joint; a side that is the world makes the other static."""
-    kind = item.element.need("type").strip()
-    if kind != "fixed":
-        notes.add(item.element.place, f"the {kind} joint '{name}' is held in its initial position")
-    sides = [
+def _joint(scope: SdfScope, name: str, item: Named) -> SdfJoint:
+    first, second = (
         link_name(scope, text_of(item.element, tag), item.element) for tag in ("parent", "child")
-    ]
-    first, second = sides
+    )
     if first == second:
         place = item.element.find("child") or item.element
         place.refuse(f"'{first}' is parent and child of this joint")
+    return SdfJoint(scope, name, item.element, first, second)
+
+
+def _join(joint: SdfJoint, groups: _Groups, fixed: set[str]) -> None:
+    """Join the two sides of a joint; a side that is the world makes the other static."""
+    sides = (joint.parent, joint.child)
     if WORLD in sides:
         fixed.update(side for side in sides if side != WORLD)
     else:
-        groups.join(first, second)
+        groups.join(*sides)
 
 
 def link_name(scope: SdfScope, name: str, element: XmlElement, depth: int = 0) -> str:
@@ -207,15 +258,18 @@ def _canonical(scope: SdfScope, element: XmlElement, depth: int) -> str:
     raise SpecError([element.problem(f"the model '{scope.name}' has no link")])
 
 
-def _body(members: list[SdfLink], sizes: Mapping[int, int], is_static: bool) -> SdfBody:
+def _body(
+    members: list[SdfLink], sizes: Mapping[int, int], is_static: bool, joint: SdfJoint | None
+) -> SdfBody:
     """An object, named after its model when it has all of its links, else after its first link.
 
     Args:
         sizes: Number of links of each top-level model, by the identity of its scope.
         is_static: Whether the object is fixed in the world.
+        joint: The hinge or slide on which it hangs; None of an object of its own.
     """
     first = members[0]
     top = _top(first.scope)
     if sum(_top(link.scope) is top for link in members) == sizes[id(top)]:
-        return SdfBody(top.name, top.in_world(), members, is_static)
-    return SdfBody(first.name, first.pose, members, is_static)
+        return SdfBody(top.name, top.in_world(), members, is_static, joint)
+    return SdfBody(first.name, first.pose, members, is_static, joint)

@@ -2,29 +2,68 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from harness.core.errors import collected
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
-from harness.language.world import ObjectSpec, ShapeSpec
+from harness.language.world import JointSpec, ObjectSpec, ShapeSpec
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import pose_spec
-from harness.plugins.formats.sdf.bodies import SdfBody, SdfLink
+from harness.plugins.formats.sdf.bodies import SdfBody, SdfJoint, SdfLink
 from harness.plugins.formats.sdf.elements import note_unread_elements
+from harness.plugins.formats.sdf.joints import part_joint
 from harness.plugins.formats.sdf.masses import link_masses
 from harness.plugins.formats.sdf.model_path import MissingFileError
 from harness.plugins.formats.sdf.shapes import ShapeReader
-from harness.plugins.formats.sdf.values import pose_of
+from harness.plugins.formats.sdf.values import pose_of, validated
 
 LONGEST_NAME = 100
 
 
 def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
     """The object; None, with a note, for a body without shapes and visuals."""
-    first = body.links[0]
+    first, (shapes, visuals, masses) = body.links[0], _contents(body, reader)
     if len(body.name) > LONGEST_NAME:
         first.element.refuse(f"the name '{body.name}' has more than {LONGEST_NAME} characters")
+    if not shapes and not visuals:
+        reader.notes.add(first.element.place, "a body without shapes and visuals is left out")
+        return None
+    words: dict[str, Any] = {"name": body.name, "pose": pose_spec(body.pose)}
+    if body.is_static:
+        words["static"] = True
+    else:
+        words |= mass_words(together(masses))
+    return ObjectSpec(**words, **look_words(shapes, visuals))
+
+
+def part_of(body: SdfBody, joint: SdfJoint, fixture: SE3, reader: ShapeReader) -> JointSpec | None:
+    """A body on its hinge or slide; None, with a note, for one that touches nothing.
+
+    Args:
+        body: The body.
+        joint: The joint on which it hangs.
+        fixture: T_world_fixture of the object that carries it.
+        reader: Reads the shapes.
+    """
+    first = body.links[0]
+    shapes, visuals, masses = _contents(replace(body, pose=fixture), reader)
+    if not shapes:
+        reader.notes.add(first.element.place, "a part of a fixture without collisions is left out")
+        return None
+    motion = part_joint(joint.scope, joint.name, joint.element, fixture, reader.notes)
+    if motion.limits != motion.usable_limits:
+        lower, upper = motion.usable_limits
+        message = f"the joint '{joint.name}' is limited to {lower:g} to {upper:g} here"
+        reader.notes.add(joint.element.place, message)
+    return validated(JointSpec, motion.words(shapes, visuals, together(masses)), joint.element)
+
+
+def _contents(
+    body: SdfBody, reader: ShapeReader
+) -> tuple[list[ShapeSpec], list[ShapeSpec], list[MassProperties]]:
+    """The shapes, the visuals and, where it moves, the masses of a body's links."""
     shapes: list[ShapeSpec] = []
     visuals: list[ShapeSpec] = []
     masses: list[MassProperties] = []
@@ -36,15 +75,7 @@ def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
         if not body.is_static:
             on_object = body.pose.inverse() @ link.pose
             masses.append(link_masses(link.element, touched, on_object, reader.notes))
-    if not shapes and not visuals:
-        reader.notes.add(first.element.place, "a body without shapes and visuals is left out")
-        return None
-    words: dict[str, Any] = {"name": body.name, "pose": pose_spec(body.pose)}
-    if body.is_static:
-        words["static"] = True
-    else:
-        words |= mass_words(together(masses))
-    return ObjectSpec(**words, **look_words(shapes, visuals))
+    return shapes, visuals, masses
 
 
 def _collisions(

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,11 @@ from harness.language.cameras import CameraSpec
 from harness.language.files.xml_file import XmlElement
 from harness.language.world import LightSpec, ObjectSpec, PhysicsSpec, WorldSpec
 from harness.plugins.formats.plain_values import pose_spec, rounded
-from harness.plugins.formats.sdf.bodies import bodies_of
+from harness.plugins.formats.sdf.bodies import SdfBody, bodies_of
 from harness.plugins.formats.sdf.cameras import cameras_of
 from harness.plugins.formats.sdf.elements import note_unread_elements
 from harness.plugins.formats.sdf.model_path import MissingFileError, ModelPath
-from harness.plugins.formats.sdf.object import LONGEST_NAME, object_of
+from harness.plugins.formats.sdf.object import LONGEST_NAME, object_of, part_of
 from harness.plugins.formats.sdf.shapes import ShapeReader
 from harness.plugins.formats.sdf.tree import SdfLight, SdfTree
 from harness.plugins.formats.sdf.values import is_flag, is_true, numbers_of, validated
@@ -46,7 +47,10 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
     objects: list[ObjectSpec] = []
     cameras: list[tuple[str, CameraSpec]] = []
     unusable: list[tuple[str, Problem]] = []
-    for body in bodies_of(tree.world, notes):
+    bodies = bodies_of(tree.world, notes)
+    for body in bodies:
+        if body.joint is not None:
+            continue
         try:
             item = object_of(body, reader)
         except MissingFileError as error:
@@ -60,6 +64,7 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
         objects += [item] if item is not None else []
         found = cameras_of(body, notes, is_there=item is not None)
         cameras += [(body.name, camera) for camera in found]
+    objects = _with_parts(objects, bodies, reader)
     lights = [_light(light, tree, notes) for light in tree.lights]
     title = tree.root.get("name").strip()[:100] or path.stem[:100]
     world = WorldSpec(
@@ -70,6 +75,30 @@ def load_sdf(path: Path, folders: Sequence[Path] = ()) -> ImportedWorld:
         physics=_physics(tree.root, notes),
     )
     return ImportedWorld(world, path, notes.all(), tuple(unusable))
+
+
+def _with_parts(
+    objects: Sequence[ObjectSpec], bodies: Sequence[SdfBody], reader: ShapeReader
+) -> list[ObjectSpec]:
+    """The objects, with the bodies that hang on them as their joints."""
+    whole = {item.name: item for item in objects}
+    carriers = {link.name: body for body in bodies for link in body.links}
+    for body in (body for body in bodies if body.joint is not None):
+        joint = body.joint
+        assert joint is not None  # of these bodies
+        carrier = carriers.get(joint.parent)
+        carrier = carrier if carrier is not None and carrier.name in whole else body
+        part = part_of(body, joint, carrier.pose, reader)
+        if part is None:
+            continue
+        words: dict[str, Any] = {
+            "name": carrier.name,
+            "pose": pose_spec(carrier.pose),
+            "static": True,
+        }
+        item = whole.get(carrier.name) or ObjectSpec.model_construct(**words)
+        whole[carrier.name] = item.model_copy(update={"joints": (*item.joints, part)})
+    return list(whole.values())
 
 
 def _options(problem: Problem, name: str) -> str:
