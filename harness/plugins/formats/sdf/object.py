@@ -42,10 +42,10 @@ def part_of(body: SdfBody, joint: SdfJoint, fixture: SE3, reader: ShapeReader) -
     """A body on its hinge or slide; None, with a note, for one that touches nothing.
 
     Args:
-        body: The body.
+        body: The body that hangs on the joint.
         joint: The joint on which it hangs.
         fixture: T_world_fixture of the object that carries it.
-        reader: Reads the shapes.
+        reader: The reader of the shapes, with its notes.
     """
     first = body.links[0]
     shapes, visuals, masses = _contents(replace(body, pose=fixture), reader)
