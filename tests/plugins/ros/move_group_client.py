@@ -73,6 +73,18 @@ def primitive(kind, *sizes):
     return message("shape_msgs/msg/SolidPrimitive", type=kind, dimensions=np.array(sizes, float))
 
 
+def mesh(corners, faces):
+    points = [
+        message("geometry_msgs/msg/Point", **dict(zip("xyz", map(float, each), strict=True)))
+        for each in corners
+    ]
+    triangles = [
+        message("shape_msgs/msg/MeshTriangle", vertex_indices=np.array(each, np.uint32))
+        for each in faces
+    ]
+    return message("shape_msgs/msg/Mesh", vertices=points, triangles=triangles)
+
+
 def box(name, xyz, size, **fields):
     return moveit(
         "CollisionObject",

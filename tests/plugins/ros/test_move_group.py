@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from harness.core.errors import ErrorCode
 from harness.plugins.ros.actions import Status
@@ -18,6 +19,7 @@ from tests.plugins.ros.move_group_client import (
     MoveGroupClient,
     box,
     joint_goal,
+    mesh,
     moveit,
     pose,
     pose_goal,
@@ -217,8 +219,11 @@ def test_requests_that_mean_nothing_are_answered_with_moveits_codes(tmp_path):
             ),
             moveit("CollisionObject", id="empty"),
             moveit("CollisionObject", id="gone", operation=1),
-            moveit("CollisionObject", id="cone", primitives=[primitive(4, 1, 1)]),
+            moveit("CollisionObject", id="prism", primitives=[primitive(5, 1, 1)]),
             moveit("CollisionObject", id="mesh", meshes=[message("shape_msgs/msg/Mesh")]),
+            moveit("CollisionObject", id="odd", meshes=[mesh([[0, 0, 0], [1, 0, 0]], [[0, 1, 2]])]),
+            moveit("CollisionObject", id="wild", meshes=[mesh([[np.inf] * 3] * 3, [[0, 1, 2]])]),
+            moveit("CollisionObject", id="plane", planes=[message("shape_msgs/msg/Plane")]),
             box("odd", (0, 0, 1), (1, 1, 1), operation=9),
         ]
         assert not any(client.apply(each) for each in bad_objects)
@@ -301,3 +306,77 @@ def test_goals_that_are_canceled_before_they_are_planned_do_not_move_the_arm(tmp
     assert kinds == ["plan", "trajectory", "plan", "trajectory", "cancel", "plan", "trajectory",
                      "cancel"]  # fmt: skip
     assert replay(tmp_path / "run").digest == results[0].case.digest
+
+
+CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.01, 0.01) for z in (-0.3, 0.3)])
+FACES = ConvexHull(CORNERS).simplices
+WALLS = {
+    "mesh": {"meshes": [mesh(CORNERS, FACES)]},
+    "cone": {"primitives": [primitive(4, 0.6, 0.3)]},
+    "plane": {"planes": [message("shape_msgs/msg/Plane", coef=np.array([0, -2.0, 0, 0]))]},
+}
+
+
+def test_meshes_cones_and_planes_are_in_the_way_and_come_back_in_the_scene(tmp_path):
+    folder = tmp_path / "run"
+    with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": folder}) as (node, results):
+        client = MoveGroupClient(node)
+        assert client.move_to(pose_goal(pose((0.4, 0.1, 0.3)))).result.error_code.val == SUCCESS
+
+        def fraction():
+            return client.call(
+                "compute_cartesian_path", "GetCartesianPath",
+                group_name=GROUP, waypoints=[pose((0.4, 0.5, 0.3))], max_step=0.01,
+            ).fraction  # fmt: skip
+
+        free, blocked = fraction(), {}
+        at = pose((0.4, 0.35, 0.3), (0.0, 0.0, 0.0, 1.0))
+        for name, shapes in WALLS.items():
+            assert client.apply(moveit("CollisionObject", id=name, pose=at, **shapes)), name
+            blocked[name] = fraction()
+            kind = next(iter(shapes)) if name != "cone" else "meshes"
+            [known] = [each for each in client.scene().world.collision_objects if each.id == name]
+            assert len(getattr(known, kind)) == 1, name
+            assert client.apply(moveit("CollisionObject", id=name, operation=1))
+            assert fraction() == free, name
+    assert free == 1.0
+    assert all(0.05 < each < 0.8 for each in blocked.values()), blocked
+    assert replay(folder).digest == results[0].case.digest
+
+
+def test_a_whole_scene_replaces_the_one_before_and_a_scene_of_a_plan_is_of_it_alone(tmp_path):
+    rest = CUBE + "expect: [{always: within_limits}]"
+    folder = tmp_path / "run"
+    with bridge(scenario(tmp_path, HOLD, rest, robot=UR), run={"report_dir": folder}) as (
+        node,
+        results,
+    ):
+        client = MoveGroupClient(node)
+
+        def names():
+            return sorted(each.id for each in client.scene().world.collision_objects)
+
+        before = names()
+        assert client.apply(box("wall", (0.4, 0.3, 0.3), (1, 0.02, 0.6)))
+        whole = client.scene()
+        apply = "apply_planning_scene", "ApplyPlanningScene"
+        assert client.call(*apply, scene=whole).success, "what was sent is taken back"
+        assert names() == sorted([*before, "wall"])
+        whole.world.collision_objects = []
+        assert client.call(*apply, scene=whole).success
+        assert names() == []
+        assert client.apply(moveit("CollisionObject", id="cube"))
+        assert names() == ["cube"]
+
+        def planned(*objects):
+            world = moveit("PlanningSceneWorld", collision_objects=list(objects))
+            diff = moveit("PlanningScene", is_diff=True, world=world)
+            options = moveit("PlanningOptions", plan_only=True, planning_scene_diff=diff)
+            goal = request(pose_goal(pose((0.4, 0.1, 0.3))))
+            content = message(f"{MOVE}_Goal", request=goal, planning_options=options)
+            return node.send(content, client.move).result.error_code.val
+
+        assert planned(box("here", (0.4, 0.1, 0.3), [0.1] * 3)) == NUMBERS["GOAL_IN_COLLISION"]
+        assert names() == ["cube"]
+        assert planned() == SUCCESS
+    assert replay(folder).digest == results[0].case.digest

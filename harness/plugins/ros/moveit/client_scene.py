@@ -3,26 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Shape, Sphere
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Plane,
+    Shape,
+    Sphere,
+)
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.plugins.ros.interfaces import header
+from harness.plugins.ros.moveit.client_meshes import client_mesh, cone_mesh
 from harness.plugins.ros.moveit.goals import BOX, SPHERE
 from harness.plugins.ros.moveit.scene_changes import CYLINDER, Change
 from harness.plugins.ros.moveit.values import state_message
 from harness.reporting.rosbag.messages import message, pose_message
+from harness.robot.mesh_file import read_triangles
 
-GEOMETRIES: Mapping[str, Callable[[Sequence[float]], Geometry]] = {
-    "box": lambda size: Box((size[0], size[1], size[2])),
-    "sphere": lambda size: Sphere(size[0]),
-    "cylinder": lambda size: Cylinder(radius=size[1], length=size[0]),
+GEOMETRIES: Mapping[str, Callable[[Change], Geometry]] = {
+    "box": lambda shape: Box((shape["size"][0], shape["size"][1], shape["size"][2])),
+    "sphere": lambda shape: Sphere(shape["size"][0]),
+    "cylinder": lambda shape: Cylinder(radius=shape["size"][1], length=shape["size"][0]),
+    "cone": lambda shape: cone_mesh(shape["size"][0], shape["size"][1]),
+    "plane": lambda _: Plane(),
+    "mesh": lambda shape: client_mesh(np.array(shape["corners"]), np.array(shape["triangles"])),
 }
+"""The geometry of each kind of shape in a change."""
 
 
 class ClientScene:
@@ -54,17 +71,18 @@ class ClientScene:
             if name not in cell.scene.object_names():
                 cell.scene.add_object(cell.presence[name].obj, cell.measured_pose(name))
             return
-        known = cell.presence.get(name)
+        shapes, known = _shapes(change), cell.presence.get(name)
         if known is not None and known.is_there:
             if name in cell.scene.attached():
                 cell.detach(name)
             cell.remove_from_scene(name)
-        shapes = tuple(
-            Shape(GEOMETRIES[each["kind"]](each["size"]), _pose(each)) for each in change["shapes"]
-        )
-        pose = _pose(change)
+        self._put(name, shapes, _pose(change))
+
+    def _put(self, name: str, shapes: Sequence[Shape], pose: SE3) -> None:
+        """Let an object of a client appear."""
+        cell, known = self.cell, self.cell.presence.get(name)
         obj = WorldObject(
-            name, shapes, pose, is_static=False, mass=0.0, center_of_mass=np.zeros(3),
+            name, tuple(shapes), pose, is_static=False, mass=0.0, center_of_mass=np.zeros(3),
             inertia=np.zeros((3, 3)), in_simulation=False,
         )  # fmt: skip
         if known is not None:
@@ -76,15 +94,11 @@ class ClientScene:
         if presence is None or not presence.is_there or presence.obj.in_simulation:
             self._add(change)
             return
-        back = presence.pose.inverse() @ _pose(change)
-        added = [{**each, "pose": (back @ _pose(each)).as_vector()} for each in change["shapes"]]
-        kinds = {Box: "box", Sphere: "sphere", Cylinder: "cylinder"}
-        old = [
-            {"kind": kinds[type(shape.geometry)], "size": _size(shape.geometry),
-             "pose": shape.pose.as_vector()}
-            for shape in presence.obj.shapes
-        ]  # fmt: skip
-        self._add({**change, "pose": presence.pose.as_vector(), "shapes": [*old, *added]})
+        pose, old = presence.pose, presence.obj.shapes
+        back = pose.inverse() @ _pose(change)
+        added = [replace(each, pose=back @ each.pose) for each in _shapes(change)]
+        self._remove(change)
+        self._put(change["name"], [*old, *added], pose)
 
     def _move(self, change: Change) -> None:
         if not self._is_physical(change["name"]):
@@ -108,6 +122,8 @@ class ClientScene:
         touch = change["touch_links"] or (hand.links if hand else ())
         if unknown := {link, *touch} - {*cell.description.link_names}:
             raise StepFailed("INVALID_LINK_NAME", f"the robot has no link '{min(unknown)[:80]}'")
+        if cell.scene.attached().get(change["name"]) == link:
+            return
         cell.attach(change["name"], link, touch)
 
     def _detach(self, change: Change) -> None:
@@ -162,16 +178,20 @@ class ClientScene:
         )
 
     def _object(self, name: str, pose: SE3) -> Any:
-        """A CollisionObject; shapes that have no primitive, such as meshes, are left out."""
+        """A CollisionObject."""
         shapes = self.cell.presence[name].obj.shapes
-        known = [(shape, each) for shape in shapes if (each := _primitive(shape.geometry))]
+        fields: dict[str, list[Any]] = {}
+        for shape in shapes:
+            key, content = _shape_message(shape.geometry)
+            fields.setdefault("meshes" if key == "mesh" else f"{key}s", []).append(content)
+            at = pose_message(list(shape.pose.as_vector()))
+            fields.setdefault(f"{key}_poses", []).append(at)
         return message(
             "moveit_msgs/msg/CollisionObject",
             header=header(self.cell.simulator.time, "world"),
             id=name,
             pose=pose_message(list(pose.as_vector())),
-            primitives=[each for _, each in known],
-            primitive_poses=[pose_message(list(shape.pose.as_vector())) for shape, _ in known],
+            **fields,
         )
 
     def _matrix(self) -> Any:
@@ -193,24 +213,39 @@ def _pose(values: Change) -> SE3:
     return SE3.from_vector(values["pose"]) if "pose" in values else SE3.identity()
 
 
-def _size(geometry: Geometry) -> list[float]:
-    match geometry:
-        case Box(size):
-            return [*size]
-        case Sphere(radius):
-            return [radius]
-        case Cylinder(radius, length):
-            return [length, radius]
-        case _:
-            return []
+def _shapes(change: Change) -> list[Shape]:
+    return [Shape(GEOMETRIES[each["kind"]](each), _pose(each)) for each in change["shapes"]]
 
 
-def _primitive(geometry: Geometry) -> Any:
-    """The SolidPrimitive of a geometry; None where there is none."""
-    kinds = {Box: BOX, Sphere: SPHERE, Cylinder: CYLINDER}
+def _shape_message(geometry: Geometry) -> tuple[str, Any]:
+    """A shape of shape_msgs, and whether it is a `primitive`, a `mesh` or a `plane`."""
     if isinstance(geometry, Capsule):  # MoveIt has none; the cylinder around it
         geometry = Cylinder(geometry.radius, geometry.length + 2 * geometry.radius)
-    if type(geometry) not in kinds:
-        return None
-    kind, sizes = kinds[type(geometry)], np.array(_size(geometry))
-    return message("shape_msgs/msg/SolidPrimitive", type=kind, dimensions=sizes)
+    match geometry:
+        case Box(size):
+            kind, sizes = BOX, [*size]
+        case Sphere(radius):
+            kind, sizes = SPHERE, [radius]
+        case Cylinder(radius, length):
+            kind, sizes = CYLINDER, [length, radius]
+        case Plane():
+            return "plane", message("shape_msgs/msg/Plane", coef=np.array([0.0, 0.0, 1.0, 0.0]))
+        case Mesh():
+            return "mesh", _mesh_message(geometry)
+    primitive = "shape_msgs/msg/SolidPrimitive"
+    return "primitive", message(primitive, type=kind, dimensions=np.array(sizes, dtype=float))
+
+
+@lru_cache(maxsize=64)
+def _mesh_message(mesh: Mesh) -> Any:
+    """The triangles of a file."""
+    read = read_triangles(mesh)
+    points = [
+        message("geometry_msgs/msg/Point", x=float(x), y=float(y), z=float(z))
+        for x, y, z in read.vertices
+    ]
+    faces = [
+        message("shape_msgs/msg/MeshTriangle", vertex_indices=face.astype(np.uint32))
+        for face in read.faces
+    ]
+    return message("shape_msgs/msg/Mesh", triangles=faces, vertices=points)

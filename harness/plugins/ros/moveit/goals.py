@@ -27,6 +27,9 @@ from harness.ports.motions import ArcPoint
 BOX, SPHERE = 1, 2
 """Types of shape_msgs/SolidPrimitive."""
 
+HALF_TURN = 3.14
+"""The least tolerance that allows any turn [rad]: clients write pi with few digits."""
+
 TIGHTEST = 1e-4
 """The least tolerance of a goal [m or rad]: what inverse kinematics reaches."""
 
@@ -177,9 +180,9 @@ def _rotation(cell: Cell, constraint: Any) -> FloatArray:
 
 
 def _tolerances(constraint: Any) -> tuple[float, float, float]:
-    """The tolerances about the link's x, y, z [rad]."""
-    axes = (getattr(constraint, f"absolute_{axis}_axis_tolerance") for axis in "xyz")
-    x, y, z = (min(max(TIGHTEST, float(value)), np.pi) for value in axes)
+    """The tolerances about the link's x, y, z [rad]; what clients write for pi is pi."""
+    axes = (float(getattr(constraint, f"absolute_{axis}_axis_tolerance")) for axis in "xyz")
+    x, y, z = (max(TIGHTEST, each) if each < HALF_TURN else np.pi for each in axes)
     return x, y, z
 
 

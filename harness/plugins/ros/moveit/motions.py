@@ -13,7 +13,7 @@ from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.interfaces import EXECUTE, MOVE
 from harness.plugins.ros.moveit.planning import plan_fields
 from harness.plugins.ros.moveit.requests import Requests
-from harness.plugins.ros.moveit.scene_changes import changes_of_scene
+from harness.plugins.ros.moveit.scene_changes import changes_of_scene, is_empty
 from harness.plugins.ros.moveit.values import error_code
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wiring import trajectory_content
@@ -107,10 +107,13 @@ class Motions:
         """Plan a goal of `move_action`, and follow the plan unless it is requested alone."""
         known, requests = self._goals[goal], self._requests
         options = known.content.planning_options
-        if not requests.change(changes_of_scene, options.planning_scene_diff):
+        diff, before = options.planning_scene_diff, requests.here.as_message()
+        if not requests.change(changes_of_scene, diff):
             self._finish(goal, StepFailed("FAILURE", "planning_scene_diff cannot be applied"))
             return
         planned, code, seconds = requests.plan(known.content.request)
+        if not is_empty(diff):  # which is of this plan alone
+            requests.change(changes_of_scene, before)
         fields = plan_fields(requests.here.cell, planned)
         kind = f"{MOVE}_Result"
         known.result = message(kind, error_code=code, planning_time=seconds, **fields)
