@@ -22,6 +22,7 @@ from harness.language.base import (
 )
 from harness.language.cameras import CameraSpec, VideoSpec
 from harness.language.expectation import AnyExpectation
+from harness.language.mount import MountSpec
 from harness.language.planning import Planning
 from harness.language.plugin_field import PluginName
 from harness.language.poses import Pose
@@ -126,6 +127,10 @@ class RobotSpec(SpecModel):
         "of the robot's files. A contact has the smaller one of its two surfaces.",
     )
     base: Pose = Field(default=Pose(), description="The pose of the base in the world.")
+    mount: MountSpec | None = Field(
+        default=None,
+        description="What the base stands on: rails, which are joints of the arm, or a pedestal.",
+    )
     kinematics: str | None = Field(
         default=None, description="The UR calibration file, as ur_calibration writes it."
     )

@@ -32,6 +32,7 @@ from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.import_robot import read_robot
 from harness.robot.imported_part import names_integrated_gripper
+from harness.robot.mount import mounted
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
@@ -132,6 +133,8 @@ def _loaded_once(bundled: _Bundled, collision: CollisionMode | None) -> RobotDes
 def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotDescription:
     main, tool = _parts(spec, base_dir, collision)
     description = compose_robot(main, tool, spec.base.se3())
+    if spec.mount is not None:
+        description = mounted(description, spec.mount)
     if spec.kinematics is not None:
         note = f"the joints' poses are those of the calibration {spec.kinematics}"
         description = replace(description, notes=(*description.notes, note))
