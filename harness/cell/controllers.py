@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from harness.cell.scope import Problems
 from harness.language.scenario import Ros2Names
@@ -17,10 +17,12 @@ class ControllerNames:
         arm: Names of the arm's trajectory controller, which all lead to the same one; empty without
             an arm.
         gripper: The name of the gripper's controller; empty without a gripper.
+        prefix: What nodes put before the names of joints and links.
     """
 
     arm: tuple[str, ...] = ()
     gripper: str = ""
+    prefix: str = ""
 
 
 def controller_names(
@@ -32,10 +34,10 @@ def controller_names(
     """
     own, group, gripper = description.controllers, description.arm_group, description.gripper
     arm = names.arm_controllers or own.get("arm") or (f"{group}_controller",)
-    found = ControllerNames(arm if group else ())
+    found = ControllerNames(arm if group else (), prefix=names.prefix or "")
     if gripper is not None:
         default = next(iter(own.get("gripper", ())), f"{gripper.group}_controller")
-        found = ControllerNames(found.arm, names.gripper_controller or default)
+        found = replace(found, gripper=names.gripper_controller or default)
     if found.gripper in found.arm:
         key = "arm_controllers" if names.arm_controllers else "gripper_controller"
         is_own = not (names.arm_controllers or names.gripper_controller)

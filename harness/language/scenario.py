@@ -203,6 +203,10 @@ class Ros2Names(SpecModel):
     gripper_controller: RosName | None = Field(
         default=None, description="The gripper's controller, of GripperCommand and trajectories."
     )
+    prefix: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,39}$")] | None = Field(
+        default=None,
+        description="What nodes put before the names of joints and links, such as `left_`.",
+    )
 
 
 class WorldChoice(SpecModel):

@@ -48,12 +48,17 @@ class Use:
 
 @dataclass(frozen=True)
 class Publisher:
-    """Publishes messages of one topic, by a function that sends them serialised."""
+    """Publishes messages of one topic, by a function that sends them serialised.
+
+    Attributes:
+        outward: Makes of a message what other nodes read.
+    """
 
     kind: str
     send: Callable[[bytes], object]
     count: Callable[[], int]
     is_latched: bool = False
+    outward: Callable[[Any], Any] = lambda content: content
 
     @property
     def subscribers(self) -> int:
@@ -63,7 +68,7 @@ class Publisher:
     def publish(self, message: Any) -> None:
         """Send a message of the topic's type to every subscriber."""
         if self.is_latched or self.subscribers:
-            self.send(encoded(message, self.kind))
+            self.send(encoded(self.outward(message), self.kind))
 
 
 @dataclass(frozen=True)

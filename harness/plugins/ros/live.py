@@ -21,6 +21,7 @@ from harness.plugins.ros.launch import Program, start_program
 from harness.plugins.ros.moveit.server import MoveGroup
 from harness.plugins.ros.names import mismatched, unserved
 from harness.plugins.ros.pacing import Pace
+from harness.plugins.ros.prefix import Prefix
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.state_topics import StateTopics
 from harness.plugins.ros.wiring import Wiring
@@ -73,6 +74,8 @@ class LiveControl(HandOver):
         self._graph, self._request = graph, request
         self._pace = Pace(request.factor)
         program = prepared.program
+        prefix = Prefix(program.controllers.prefix, self.robot)
+        graph.outward, graph.inward = prefix.outward, prefix.inward
         objects = [each.name for each in program.all_objects()]
         cameras = camera_edges(tuple(program.cameras.values()), self.robot, objects)
         self._states = StateTopics(graph, self.robot, cameras)

@@ -18,6 +18,7 @@ from harness.plugins.ros.control.goals import Code
 from harness.plugins.ros.interfaces import COMMAND, FOLLOW, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
 from harness.plugins.ros.names import actions
+from harness.plugins.ros.prefix import Prefix
 from harness.plugins.ros.rtps.graph import Graph
 from harness.ports.simulation import ExpectedGrasp, Faults, GripperResult
 from harness.recording.execution_failures import ControlFailure
@@ -90,8 +91,10 @@ class RemoteArm:
         self._kinematics, self._program = prepared.ports.kinematics, prepared.program
         self.description = self._program.description
         self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
-        self._states = JointStates(graph, self.description)
         names = self._program.controllers
+        prefix = Prefix(names.prefix, self.description)
+        graph.outward, graph.inward = prefix.outward, prefix.inward
+        self._states = JointStates(graph, self.description)
         arms = [ActionClient(graph, f"/{arm}/follow_joint_trajectory", FOLLOW) for arm in names.arm]
         finger = f"/{names.gripper}/gripper_cmd"
         self._gripper = ActionClient(graph, finger, GRIPPER) if names.gripper else None
@@ -101,7 +104,7 @@ class RemoteArm:
             _unreachable(f"{required} is not served in this domain; served are: {served}")
         self._arm = next(arm for arm in arms if arm.is_ready)
         if not self._wait(lambda: self._states.time >= 0, PATIENCE):
-            joints = ", ".join(self.description.joint_names)
+            joints = ", ".join(names.prefix + each for each in self.description.joint_names)
             _unreachable(f"/joint_states brings no message with all joints: {joints}")
 
     @property

@@ -28,6 +28,7 @@ from harness.plugins.ros.rtps.wire import Sample
 from harness.plugins.ros.rtps.writer import Writer
 from harness.reporting.rosbag.messages import message
 
+Convert = Callable[[Any], Any]
 SERVICE_QOS = Qos(depth=100)
 DISCOVERY = "ros_discovery_info"
 INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
@@ -49,6 +50,10 @@ class Graph:
 
     Messages are those of `harness.plugins.ros.interfaces`, services are named without `Request`,
     and actions are made of services and topics by `harness.plugins.ros.actions`.
+
+    Attributes:
+        outward: Makes of a message what other nodes read.
+        inward: Makes of a message of other nodes what this one reads.
     """
 
     def __init__(self, domain: int, *, node: str, is_local: bool = True) -> None:
@@ -62,6 +67,8 @@ class Graph:
         """
         self.participant = Participant(domain, name=node, is_local=is_local)
         self.close = self.participant.close
+        self.outward: Convert = lambda content: content
+        self.inward: Convert = lambda content: content
         self._node = node
         self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED)
         self._introduce()
@@ -82,7 +89,8 @@ class Graph:
     def advertise(self, topic: str, kind: str, qos: Qos = DEFAULT) -> Publisher:
         """A publisher of a topic."""
         made = self._writer(f"rt{topic}", kind, qos)
-        return Publisher(kind, made.write, lambda: len(made.matched), qos.is_latched)
+        count = lambda: len(made.matched)  # noqa: E731
+        return Publisher(kind, made.write, count, qos.is_latched, lambda m: self.outward(m))
 
     def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
         """Receive the messages of a topic; what cannot be read is ignored."""
@@ -94,7 +102,8 @@ class Graph:
 
         def take(request: Any, identity: bytes) -> None:
             def answer(response: Any) -> None:
-                writer.write(*_framed(encoded(response, f"{kind}_Response"), identity))
+                payload = encoded(self.outward(response), f"{kind}_Response")
+                writer.write(*_framed(payload, identity))
 
             on_request(request, answer)
 
@@ -113,7 +122,8 @@ class Graph:
             if any(server.startswith(CYCLONE) for server in writer.matched):
                 identity = guid[8:] + number.to_bytes(8, "little")
             waiting[identity] = on_response
-            writer.write(*_framed(encoded(request, f"{kind}_Request"), identity))
+            payload = encoded(self.outward(request), f"{kind}_Request")
+            writer.write(*_framed(payload, identity))
 
         reader = self._reader(f"rr{name}Reply", f"{kind}_Response", take)
         writer = self._writer(f"rq{name}Request", f"{kind}_Request", SERVICE_QOS)
@@ -137,7 +147,7 @@ class Graph:
             payload, identity = _unframed(sample, topic)
             content = decoded(payload, kind)
             if content is not None:
-                take(content, identity)
+                take(self.inward(content), identity)
 
         prepare(kind)
         made = self.participant.reader(topic, dds_type(kind), qos, deliver)
