@@ -8,7 +8,7 @@ import pytest
 
 from harness.cli.main import main
 from harness.plugins.comparison.compare import MOST, compare, line_changes
-from harness.plugins.comparison.page import comparison_lines
+from harness.plugins.comparison.lines import comparison_lines
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from tests.judging.synthetic_run import ROBOT, make_run
@@ -25,6 +25,12 @@ expect:
   - duration: {at_least: 50 ms}
 """
 FASTER = {"overrides": {"planning.max_velocity_scaling_factor": "0.2"}}
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    """Pages are written below the working folder."""
+    monkeypatch.chdir(tmp_path)
 
 
 @pytest.fixture
@@ -95,8 +101,8 @@ steps:
         run_case(file, report_dir=tmp_path / name, stills=False, page=False)
     assert main(["compare", str(tmp_path / "one"), str(tmp_path / "two")]) == 1
     said = capsys.readouterr().out
-    assert "steps[1]: wait 0.2 s -> settle" in said
-    assert "steps[0]:" not in said
+    assert "steps\n  wait 0.2 s: passed -> -\n  settle: - -> passed" in said
+    assert "wait 0.1 s:" not in said
     scenario = said[said.index("scenario\n") : said.index("steps\n")]
     assert "wait" in scenario
     assert "settle" in scenario

@@ -11,6 +11,7 @@ import numpy as np
 
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
+from harness.plugins.comparison.alignment import StepPair, aligned_steps, names_of
 from harness.recording.first_difference import FirstDifference, first_difference
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
@@ -58,14 +59,16 @@ class RunComparison:
 def compare(first: StoredRun, second: StoredRun) -> RunComparison:
     """Everything that differs, the outcome first."""
     one, two = first.run, second.run
+    pairs = aligned_steps(one, two)
+    names = names_of(pairs)
     changes = [
         *_words("outcome", "", first.outcome, second.outcome),
         *(Change("scenario", "", before, after) for before, after in line_changes(one, two)),
         *_words("robot", "", one.robot.name, two.robot.name),
         *_words("seed", "", str(one.seed), str(two.seed)),
         *_versions(one.versions, two.versions),
-        *_steps(one.steps, two.steps),
-        *_verdicts(first.verdicts, second.verdicts),
+        *_steps(pairs, names),
+        *_verdicts(*map(_by_name, (first.verdicts, second.verdicts), names)),
         *_findings(one, two),
     ]
     warnings = (
@@ -89,11 +92,12 @@ def _versions(one: Mapping[str, str], two: Mapping[str, str]) -> list[Change]:
     ]
 
 
-def _steps(one: Sequence[StepRecord], two: Sequence[StepRecord]) -> list[Change]:
-    ours, theirs = {step.id: step for step in one}, {step.id: step for step in two}
+def _steps(
+    pairs: Sequence[StepPair], names: tuple[Mapping[str, str], Mapping[str, str]]
+) -> list[Change]:
     changes: list[Change] = []
-    for name in dict.fromkeys([*ours, *theirs]):
-        a, b = ours.get(name), theirs.get(name)
+    for a, b in pairs:
+        name = names[0][a.id] if a is not None else names[1][b.id] if b is not None else ""
         if a is None or b is None:
             changes.append(Change("step", name, _status(a), _status(b)))
             continue
@@ -138,8 +142,7 @@ def _resampled(trajectory: JointTrajectory) -> FloatArray:
     return resampled
 
 
-def _verdicts(one: Sequence[Verdict], two: Sequence[Verdict]) -> list[Change]:
-    ours, theirs = _by_name(one), _by_name(two)
+def _verdicts(ours: Mapping[str, Verdict], theirs: Mapping[str, Verdict]) -> list[Change]:
     changes: list[Change] = []
     for name in dict.fromkeys([*ours, *theirs]):
         a, b = ours.get(name), theirs.get(name)
@@ -157,11 +160,17 @@ def _margin(name: str, one: Verdict, two: Verdict) -> Change:
     return Change("margin", name, before, after)
 
 
-def _by_name(verdicts: Sequence[Verdict]) -> dict[str, Verdict]:
-    """Verdicts under a name that does not depend on lines: text, step, and which of equal ones."""
+def _by_name(verdicts: Sequence[Verdict], steps: Mapping[str, str]) -> dict[str, Verdict]:
+    """Verdicts under a name that does not depend on lines: text, step, and which of equal ones.
+
+    Args:
+        verdicts: Those of a run.
+        steps: Names of its steps by their ids.
+    """
     named: dict[str, Verdict] = {}
     for verdict in verdicts:
-        base = f"{verdict.expectation} ({verdict.step})" if verdict.step else verdict.expectation
+        step = steps.get(verdict.step, verdict.step)
+        base = f"{verdict.expectation} ({step})" if step else verdict.expectation
         name, count = base, 2
         while name in named:
             name, count = f"{base} #{count}", count + 1

@@ -67,11 +67,12 @@ class Page:
             facts=summary_facts(stored),
             pictures=pictures,
             tables=summary_tables(stored),
-            data=self._data(stored),
+            data=self.data(stored),
         )
         return text.encode(errors="replace").decode()  # names of files may have half characters
 
-    def _data(self, stored: StoredRun) -> str:
+    def data(self, stored: StoredRun) -> str:
+        """What the page's scripts show, as text that `payload.js` unpacks."""
         run, packer = stored.run, self._packer
         steps = [
             step_facts(run, step, stored.verdicts) | plan

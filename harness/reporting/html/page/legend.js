@@ -53,8 +53,8 @@ export function makeLegend(run, scene, hasPictures, again) {
   byId("tools").append(element("details", { open: isWide ? "" : null }, element("summary", {}, "legend"), list));
 }
 
-/** Buttons that look from a side, follow the TCP, or save the picture. @param {any} scene @param {() => number} now time [s] @param {string} title of the run */
-export function makeSides(scene, now, title) {
+/** Buttons that look from a side, follow the TCP, or save the picture. @param {any} scene @param {() => number} now time [s] @param {string} title of the run @param {boolean} [canFollow] */
+export function makeSides(scene, now, title, canFollow = true) {
   const { orbit, viewer } = scene;
   const follow = element("button", { type: "button", "aria-pressed": false, title: "Keep the TCP in the middle" }, "follow TCP");
   const setFollow = (is) => {
@@ -74,5 +74,5 @@ export function makeSides(scene, now, title) {
     const link = element("a", { href: viewer.canvas.toDataURL("image/png"), download: `${title} ${now().toFixed(2)} s.png` });
     link.click();
   });
-  byId("sides").append(...sides, follow, save);
+  byId("sides").append(...sides, ...(canFollow ? [follow] : []), save);
 }

@@ -5,6 +5,7 @@ import { Clock } from "./clock.js";
 import { makeControls } from "./controls.js";
 import { byId, scrollToTop } from "./dom.js";
 import { makeFilm } from "./film.js";
+import { keepDrawing } from "./frames.js";
 import { listenToKeys } from "./keys.js";
 import { makeLegend, makeSides } from "./legend.js";
 import { unpack, valueAt } from "./payload.js";
@@ -176,22 +177,7 @@ async function start() {
   addEventListener("hashchange", () => goTo(location.hash));
   if (location.hash) goTo(location.hash);
   else openAtFailure();
-  let isFrameDue = false;
-  function requestFrame() {
-    if (isFrameDue) return;
-    isFrameDue = true;
-    requestAnimationFrame((now) => {
-      isFrameDue = false;
-      clock.tick(now);
-      scene?.viewer.draw(scene.orbit, clock.isPlaying || scene.orbit.isHeld);
-      if (clock.isPlaying) requestFrame();
-    });
-  }
-  clock.onPlay(requestFrame);
-  if (scene) scene.viewer.onChange = requestFrame;
-  requestFrame();
-  window.readyAfter = performance.now(); // [ms] since the page was requested
-  document.documentElement.dataset.ready = "yes";
+  keepDrawing(clock, scene);
 }
 
 start().catch((error) => {

@@ -3,7 +3,7 @@
 import { addScaled, cross, dot, lookAt, multiply, normalize, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
-const FRAMED = { left: 0.95, right: 0.95, top: 0.84, bottom: 0.93 }; // shares of half the picture; its top has the readout
+const FRAMED = { left: 0.95, right: 0.95, top: 0.88, bottom: 0.86 }; // shares of half the picture: words lie along its edges
 const THICKNESS = 0.09; // of the arm's size, by which links reach beyond their origins
 const FOLLOWED = 0.8; // of the arm's size: how much of it is seen around a TCP that is followed
 const TURN_PER_PIXEL = 0.008; // [rad]

@@ -323,7 +323,7 @@ export class Plot {
   #drawValues(pen, time, pixel) {
     const texts = readings(this.data, time);
     const rows = this.data.series
-      .map(({ name }, index) => ({ index, text: `${texts[index]}  ${short(name)}`, value: parseFloat(texts[index]) }))
+      .map(({ name, label }, index) => ({ index, text: `${texts[index]}  ${label ?? short(name)}`, value: parseFloat(texts[index]) }))
       .filter(({ index, value }) => !this.hidden.has(index) && Number.isFinite(value))
       .sort((a, b) => b.value - a.value)
       .slice(0, Math.max(1, Math.floor(this.height / LINE) - 1));

@@ -49,6 +49,13 @@ export class Plots {
     this.#showLegend();
   }
 
+  /** Take the lines anew: they have changed. */
+  refill() {
+    this.decoded.clear();
+    for (const panel of this.panels) this.#fill(panel, panel.choice.value);
+    this.#showLegend();
+  }
+
   /** Show a group, in the panel that shows it already or else in the last one. @param {string} id */
   reveal(id) {
     const panel = this.panels.find(({ data }) => data.id === id) ?? this.panels.at(-1);

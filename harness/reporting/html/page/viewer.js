@@ -42,6 +42,8 @@ export class Viewer {
   constructor(host, bounds) {
     this.host = host;
     this.onChange = () => {}; // called when draw is due
+    /** Shows what each half of the picture holds, where there are two. @type {(() => void)[] | null} */
+    this.halves = null;
     this.onDrawn = () => {}; // called when what lies over the picture has to follow it
     this.canvas = document.createElement("canvas");
     const gl = this.canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
@@ -160,7 +162,8 @@ export class Viewer {
       this.canvas.height = height;
     }
     const begin = performance.now();
-    this.#drawAt(orbit, null, width, height, ratio);
+    if (this.halves) this.#drawHalves(orbit, width, height, ratio);
+    else this.#drawAt(orbit, null, width, height, ratio);
     this.onDrawn();
     if (this.cost === 0 && this.drawn++ > 0) {
       this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits
@@ -221,7 +224,16 @@ export class Viewer {
     return w > 0 ? [(0.5 + (0.5 * x) / w) * width, (0.5 - (0.5 * y) / w) * height] : null;
   }
 
-  #drawAt(orbit, buffer, width, height, ratio) {
+  #drawHalves(orbit, width, height, ratio) {
+    const half = Math.floor(width / 2);
+    this.halves.forEach((show, index) => {
+      show();
+      this.hasMoved = true;
+      this.#drawAt(orbit, null, half, height, ratio, index * (width - half));
+    });
+  }
+
+  #drawAt(orbit, buffer, width, height, ratio, left = 0) {
     const { gl } = this;
     const shown = this.surfaces.filter((surface) => surface.visible);
     if (this.hasMoved) this.#drawShadows(shown);
@@ -229,9 +241,12 @@ export class Viewer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
     gl.enable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
-    gl.viewport(0, 0, width, height);
+    gl.viewport(left, 0, width, height);
+    gl.scissor(left, 0, width, height);
+    gl.enable(gl.SCISSOR_TEST);
     gl.clearColor(this.background[0], this.background[1], this.background[2], 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.disable(gl.SCISSOR_TEST);
     const view = orbit.matrix(width / height);
     this.#drawSurfaces(shown, view, orbit.eye);
     this.#drawLines(view, width, height, ratio, orbit.tangent);

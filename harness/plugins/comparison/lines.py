@@ -42,6 +42,11 @@ def comparison_lines(comparison: RunComparison, style: Style = PLAIN) -> Iterato
 def _parting(first: FirstDifference | None) -> str:
     if first is None:
         return "the recorded signals are the same; commands or verdicts differ"
+    return parting_text(first)
+
+
+def parting_text(first: FirstDifference) -> str:
+    """Where two recordings part, in words."""
     where = f"in step {first.step}, " if first.step else ""
     if first.signal == "times":
         return f"one run continues {where}after t={first.time:.3f} s"

@@ -1,0 +1,102 @@
+"""The page of two runs on one clock, in one file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from harness.core.printable import printable
+from harness.plugins.comparison.alignment import aligned_steps
+from harness.plugins.comparison.compare import Change, RunComparison
+from harness.plugins.comparison.lines import HEADINGS, parting_text
+from harness.recording.stored_run import StoredRun
+from harness.reporting.html import bundle
+from harness.reporting.html.packing import Packer
+from harness.reporting.html.story import ordered_steps
+from harness.reporting.html.write import Page
+
+FOLDER = Path(__file__).with_name("page")
+
+
+def comparison_page(
+    first: StoredRun, second: StoredRun, comparison: RunComparison, folders: tuple[Path, Path]
+) -> str:
+    """The text of the page.
+
+    Args:
+        first: The run that the other one is compared with.
+        second: The other run.
+        comparison: What differs.
+        folders: Those of the runs, which give them their names.
+    """
+    groups = _groups(comparison.changes)
+    parting = comparison.first_difference
+    text = "" if parting is None else parting_text(parting)
+    facts = {
+        "pairs": _indices(first, second),
+        "parting": None if parting is None else {"time": parting.time, "text": text},
+        "warnings": comparison.warnings,
+        "groups": groups,
+    }
+    page = bundle.rendered(
+        FOLDER / "compare.html",
+        script=bundle.script(FOLDER / "compare.js"),
+        style=bundle.style() + (FOLDER / "compare.css").read_text(encoding="utf-8"),
+        runs=(first, second),
+        folders=[printable(name) for name in distinct_parts(*folders)],
+        outcome="same" if comparison.is_same else "different",
+        tone="good" if comparison.is_same else "bad",
+        parting=text,
+        groups=groups,
+        facts=Packer().text(facts),
+        first=Page(first).data(first),
+        second=Page(second).data(second),
+    )
+    return page.encode(errors="replace").decode()  # names of files may have half characters
+
+
+def distinct_parts(one: Path, two: Path) -> tuple[str, str]:
+    """Two folders by the parts of their paths that differ; the last part of equal ones."""
+    parts = [list(folder.resolve().parts) for folder in (one, two)]
+    if parts[0] == parts[1]:
+        return one.name, two.name
+    while min(map(len, parts)) > 1 and parts[0][0] == parts[1][0]:
+        parts = [each[1:] for each in parts]
+    while min(map(len, parts)) > 1 and parts[0][-1] == parts[1][-1]:
+        parts = [each[:-1] for each in parts]
+    first, second = ("/".join(each) for each in parts)
+    return first, second
+
+
+def _indices(first: StoredRun, second: StoredRun) -> list[dict[str, int | None]]:
+    """Places of aligned steps in the lists of both pages."""
+    places = [
+        {id(step): index for index, step in enumerate(ordered_steps(each.run))}
+        for each in (first, second)
+    ]
+    return [
+        {"first": places[0].get(id(one)), "second": places[1].get(id(two))}
+        for one, two in aligned_steps(first.run, second.run)
+    ]
+
+
+ORDER = ("outcome", "verdict", "findings", "margin", "scenario", "robot", "seed", "version")
+
+
+def _groups(changes: Sequence[Change]) -> list[dict[str, Any]]:
+    order = [*ORDER, *(what for what in HEADINGS if what not in ORDER)]
+    ranked = sorted(changes, key=lambda change: order.index(change.what))
+    return [
+        {"title": HEADINGS[what], "rows": [_row(change) for change in group]}
+        for what, group in groupby(ranked, key=lambda change: change.what)
+    ]
+
+
+def _row(change: Change) -> dict[str, str]:
+    amount = "" if math.isnan(change.amount) else f"{change.amount:+.3g} {change.unit}".rstrip(" 1")
+    if change.what == "trajectory":
+        amount = amount.removeprefix("+")
+    return {"name": change.name, "before": change.before, "after": change.after, "amount": amount}
