@@ -28,8 +28,8 @@ def comparison_page(
 
     Args:
         first: The run that the other one is compared with.
-        second: The other run.
-        comparison: What differs.
+        second: The run that is compared with it.
+        comparison: What differs between both of them.
         folders: Those of the runs, which give them their names.
     """
     groups = _groups(comparison.changes)
