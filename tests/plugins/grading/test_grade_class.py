@@ -175,7 +175,11 @@ def command_line(pid):
         ("import subprocess, sys, time\nfor _ in range(5):\n    subprocess.Popen([sys.executable,"
          " '-c', 'import time; time.sleep(60)'], start_new_session=True)\ntime.sleep(60)",
          {"processes": 3}, "processes and threads, 3 may be"),
-        ("while True: pass", {"processor_time": 0.1}, ""),
+        ("while True: pass", {"processor_time": 0.1}, "s of processor time, 0.1 may be"),
+        ("import os\nfor _ in range(3): os.fork()\nwhile True: pass",
+         {"processor_time": 0.8}, "s of processor time, 0.8 may be"),
+        ("import os, time\nfor _ in range(6): os.fork()\ntime.sleep(60)", {"processes": 20},
+         "processes and threads, 20 may be"),
     ],
 )  # fmt: skip
 def test_a_program_is_ended_at_its_bounds_with_all_that_it_started(tmp_path, code, limits, words):

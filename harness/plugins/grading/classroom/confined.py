@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import math
 import os
 import resource
 import shlex
@@ -19,7 +20,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from harness.plugins.grading.assignment import Limits  # takes half a second
@@ -34,6 +35,9 @@ person and no service."""
 MODULE = "harness.plugins.grading.classroom.confined"
 
 LOOK_EVERY = 0.25  # [s]
+SHARED = 8
+"""Programs of one user, each with all its processes, that may run at the same time: the kernel
+counts processes of a user, and the bound of one program is looked at every quarter of a second."""
 EXCEEDED = 71
 """Exit code of a program that exceeded a bound."""
 
@@ -60,7 +64,7 @@ class Confinement:
             bounds.memory,
             bounds.processes,
             bounds.files,
-            round(bounds.processor_time + 1),
+            bounds.processor_time,
             -1 if self.user is None else self.user,
         ]
         places = [str(self.folder), str(self.inside)]
@@ -121,25 +125,42 @@ def _prctl(option: int, value: int) -> None:
         ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
-def _processes() -> dict[int, tuple[int, int, int]]:
-    """Parent, threads and resident memory [bytes] of each process of this machine."""
-    found: dict[int, tuple[int, int, int]] = {}
+class Process(NamedTuple):
+    """A process of this machine, and what it uses.
+
+    Attributes:
+        memory: Resident memory [bytes].
+        seconds: Processor time, that of its children which have ended included [s].
+    """
+
+    parent: int
+    threads: int
+    memory: int
+    seconds: float
+
+
+def _processes() -> dict[int, Process]:
+    """The processes of this machine."""
+    found: dict[int, Process] = {}
+    page, tick = resource.getpagesize(), 1.0 / os.sysconf("SC_CLK_TCK")
     for place in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError, ValueError, IndexError):
             words = (place / "stat").read_text(errors="replace").rpartition(")")[2].split()
-            memory = int(words[21]) * resource.getpagesize()
-            found[int(place.name)] = int(words[1]), int(words[17]), memory
+            used = tick * sum(map(int, words[11:15]))
+            found[int(place.name)] = Process(
+                int(words[1]), int(words[17]), int(words[21]) * page, used
+            )
     return found
 
 
-def descendants(root: int, spared: Collection[int] = ()) -> dict[int, tuple[int, int, int]]:
+def descendants(root: int, spared: Collection[int] = ()) -> dict[int, Process]:
     """What a process started, at any depth, without some of it and what that started."""
-    every, found, waiting = _processes(), dict[int, tuple[int, int, int]](), {root}
+    every, found, waiting = _processes(), dict[int, Process](), {root}
     while waiting:
         waiting = {
             pid
             for pid, each in every.items()
-            if each[0] in waiting and pid not in found and pid not in spared
+            if each.parent in waiting and pid not in found and pid not in spared
         }
         found |= {pid: every[pid] for pid in waiting}
     return found
@@ -147,7 +168,7 @@ def descendants(root: int, spared: Collection[int] = ()) -> dict[int, tuple[int,
 
 def children() -> set[int]:
     """The processes that this one is the parent of."""
-    return {pid for pid, each in _processes().items() if each[0] == os.getpid()}
+    return {pid for pid, each in _processes().items() if each.parent == os.getpid()}
 
 
 def end_children(spared: Collection[int] = ()) -> None:
@@ -162,7 +183,7 @@ def end_children(spared: Collection[int] = ()) -> None:
         time.sleep(0.001)  # the orphans of those arrive
 
 
-def _bound(memory: int, files: int, processes: int, seconds: int) -> None:
+def _bound(memory: int, files: int, processes: int, seconds: float) -> None:
     """Bounds that the kernel keeps for each process."""
     os.umask(0o077)
     _prctl(DEATH_SIGNAL, signal.SIGKILL)
@@ -170,20 +191,33 @@ def _bound(memory: int, files: int, processes: int, seconds: int) -> None:
     for kind, most in (
         (resource.RLIMIT_AS, memory * 10**6),
         (resource.RLIMIT_FSIZE, files * 10**6),
-        (resource.RLIMIT_CPU, seconds),
+        (resource.RLIMIT_CPU, math.ceil(seconds) + 1),  # whole seconds; `_excess` is exact
         (resource.RLIMIT_CORE, 0),
     ):
         resource.setrlimit(kind, (most, most))
-    if os.geteuid() >= FIRST_USER:  # it counts all processes of the user, and this user has no more
-        resource.setrlimit(resource.RLIMIT_NPROC, (processes, processes))
+    most = processes if os.geteuid() >= FIRST_USER else SHARED * processes + _threads_of_user()
+    resource.setrlimit(resource.RLIMIT_NPROC, (most, most))  # the kernel exempts root
+
+
+def _threads_of_user() -> int:
+    """Processes and threads of the user that this process runs as."""
+    running = _processes()
+    with contextlib.suppress(OSError):
+        return sum(
+            each.threads
+            for pid, each in running.items()
+            if Path(f"/proc/{pid}").stat().st_uid == os.geteuid()
+        )
+    return len(running)
 
 
 def main(words: Sequence[str]) -> int:
     """Run a command; its exit code, or `EXCEEDED` with a line that says what was exceeded."""
     folder, inside, command = words[0], words[1], words[7:]
-    memory, processes, files, seconds, user = map(int, words[2:7])
+    memory, processes, files, user = (int(words[index]) for index in (2, 3, 4, 6))
+    seconds = float(words[5])
     adopt_orphans()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the program of the same group receives it too
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     places = {"HOME": folder, "TMPDIR": folder, "PATH": path}
     rights = {} if user < 0 else {"user": user, "group": user, "extra_groups": []}
@@ -192,18 +226,21 @@ def main(words: Sequence[str]) -> int:
             command,
             cwd=inside,
             env={**os.environ, **places, "PYTHONDONTWRITEBYTECODE": "1"},
+            process_group=0,  # all of a group end at once, while processes one by one may multiply
             preexec_fn=partial(_bound, memory, files, processes, seconds),
             **rights,
         )
     except OSError as error:
         sys.stderr.write(f"`{shlex.join(command)}` cannot be started: {error.strerror}\n")
         return 127
+    signal.signal(signal.SIGINT, lambda *_: _to_group(child.pid, signal.SIGINT))
     reason = ""
     while not reason:
         with contextlib.suppress(subprocess.TimeoutExpired):
             child.wait(LOOK_EVERY)
             break
-        reason = _excess(Path(folder), memory, processes, files)
+        reason = _excess(Path(folder), memory, processes, files, seconds)
+    _to_group(child.pid, signal.SIGKILL)
     end_children()
     if reason:
         sys.stderr.write(f"ended by the grader: {reason}\n")
@@ -211,12 +248,19 @@ def main(words: Sequence[str]) -> int:
     return child.returncode if child.returncode >= 0 else 128 - child.returncode
 
 
-def _excess(folder: Path, memory: int, processes: int, files: int) -> str:
+def _to_group(group: int, number: signal.Signals) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(group, number)
+
+
+def _excess(folder: Path, memory: int, processes: int, files: int, seconds: float) -> str:
     """What all processes and files of the program exceed together; empty where nothing is."""
     running = descendants(os.getpid()).values()
-    if (count := sum(each[1] for each in running)) > processes:
+    if (count := sum(each.threads for each in running)) > processes:
         return f"{count} processes and threads, {processes} may be"
-    if (used := sum(each[2] for each in running)) > memory * 10**6:
+    if (time_used := sum(each.seconds for each in running)) > seconds:
+        return f"{time_used:.2f} s of processor time, {seconds:g} may be"
+    if (used := sum(each.memory for each in running)) > memory * 10**6:
         return f"{used / 1e6:.0f} MB of memory, {memory} may be"
     size = 0
     for path in folder.rglob("*"):
