@@ -25,6 +25,11 @@ class Credit:
     share: float = 1.0
     reason: str = ""
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """One sentence where points are missing of what holds; else none."""
+        return (f"what holds {self.reason}",) if self.reason else ()
+
 
 FULL = Credit()
 

@@ -145,7 +145,7 @@ def grade_bag(
     verdicts = judge(run, prepared.expectations)
     is_full = all(each.status == "passed" for each in verdicts)
     credit = credit_of_run(is_idle=stood_still(run), is_full=is_full)
-    notes += filter(None, [credit.reason])
+    notes += credit.notes
     rows = [
         replace(row, earned=0.0, withheld=kinds, is_measured=is_measured or not needs)
         if kinds

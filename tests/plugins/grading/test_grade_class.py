@@ -22,7 +22,7 @@ from harness.plugins.grading.classroom.confined import (
     adopted_orphans,
     descendants,
 )
-from tests.plugins.grading.classes import IK, SUBMISSIONS, scenario_class
+from tests.plugins.grading.classes import IK, SOLUTION, SUBMISSIONS, scenario_class
 
 EXERCISE = "the TCP is at the target"
 
@@ -156,6 +156,22 @@ def test_what_holds_because_the_robot_did_not_move_earns_nothing(tmp_path):
     assert {each["line"] for each in json.loads(report)["steps"]} == {2}
     assert {each["line"] for each in json.loads(report)["verdicts"]} == {0}
     assert json.loads(report)["file"] == "halfway.scenario.yaml"
+
+
+def test_a_report_that_cannot_be_written_costs_its_page_and_no_points(tmp_path):
+    """Files of the case have at most 1 MB, as on a full disk; 40 s of simulation need more."""
+    assignment, _ = scenario_class(tmp_path)
+    text = (assignment / "assignment.yaml").read_text().replace("30 s}", "60 s, files: 1}")
+    (assignment / "assignment.yaml").write_text(text.partition("hidden")[0] + text.splitlines()[-1])
+    (tmp_path / "all").mkdir()
+    (tmp_path / "all/short.scenario.yaml").write_text(SOLUTION)
+    long = SOLUTION.replace("  - move_to: up\n", "  - move_to: up\n  - wait: 40 s\n")
+    (tmp_path / "all/long.scenario.yaml").write_text(long)
+    words = ["grade-class", str(assignment), str(tmp_path / "all"), "-j", "2"]
+    assert main([*words, "--report-dir", str(tmp_path / "grades")]) == 0
+    assert "File too large" in page(tmp_path / "grades", "long")
+    assert not (tmp_path / "grades/students/long/run").exists()
+    assert (tmp_path / "grades/students/short/run/report.html").is_file()
 
 
 def command_line(pid):

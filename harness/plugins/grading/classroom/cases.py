@@ -98,7 +98,13 @@ def _scenario(case: GradedCase, notify: Notify) -> CaseResult:
     source = merged_source(case.main, case.file, takes, name)
     reading = read_scenario(case.file, case.overrides, case.seed, source)
     refuse_scene_verbs(reading, name, case.file)
-    return _credited(run_job(replace(case, source=source), notify))
+    case = replace(case, source=source)
+    result = run_job(case, notify)
+    if result.outcome == "error" and case.report_dir is not None and not case.report_dir.exists():
+        why = result.message  # a full disk, or a report that is too large: points need neither
+        result = run_job(replace(case, report_dir=None), notify)
+        result = replace(result, notes=(*result.notes, why))
+    return _credited(result)
 
 
 def _credited(result: CaseResult) -> CaseResult:

@@ -122,7 +122,7 @@ def _show_case(case: CaseResult, file: Path, arguments: argparse.Namespace) -> i
     credit = credit_of_run(is_idle=case.is_idle, is_full=case.outcome == "passed")
     rows = graded([replace(each, line=0) for each in case.verdicts if not each.step], credit)
     notes = tuple(note for note in case.notes if ": warning: " not in note)  # the rows have them
-    grade = Grade(None, rows, (*notes, *filter(None, [credit.reason])))
+    grade = Grade(None, rows, (*notes, *credit.notes))
     code = EXIT_CODES[case.outcome] or (0 if grade.is_full else EXIT_CODES["failed"])
     if arguments.json:
         points = {"points": grade.points, "earned": grade.earned, "rows": rows}

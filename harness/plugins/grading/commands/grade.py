@@ -168,7 +168,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
         return code, {"format": "armharness-grade/1", "exit_code": code, **failed}
     run = read_run(Path(case.report_dir)).run if case.report_dir else None
     credit = credit_of_run(is_idle=case.is_idle, is_full=case.outcome == "passed")
-    notes = (*case.notes, *filter(None, [credit.reason]))
+    notes = (*case.notes, *credit.notes)
     grade = Grade(run, graded(case.verdicts, credit), notes)
     code = _code(grade) if case.outcome == "passed" else EXIT_CODES["failed"]
     if not arguments.json:
