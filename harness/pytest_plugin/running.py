@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import csv
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib import import_module
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +23,10 @@ from harness.pytest_plugin.session_options import (
     server_of,
     shown,
 )
+from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
+from harness.reporting.suite.failure_picture import picture_of
 from harness.reporting.suite.junit import case_properties, sample_properties
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
@@ -149,17 +154,35 @@ def _keep(
     record = ItemRecord(item.nodeid, number, tuple(cases), tuple(rates))
     setattr(item, RECORD, as_plain(record))
     if item.config.getoption("--alluredir", default=None):
-        _attach_to_allure([each.result for each in cases])
+        _attach_to_allure(cases)
 
 
-def _attach_to_allure(results: Sequence[CaseResult]) -> None:
-    """Attach pages to the test in Allure's results; of samples those of the first that failed."""
+def _attach_to_allure(cases: Sequence[SuiteCase]) -> None:
+    """Attach page, picture and margins to the test; of samples those of the first that failed."""
     allure: Any = import_module("allure")  # of allure-pytest, whose option is in use
-    if len(results) > 1:
-        results = [each for each in results if each.outcome != "passed"][:LISTED_SAMPLES]
-    kind = allure.attachment_type.HTML
-    for page, name in [(each.page, f"{each.name}: report") for each in results if each.page]:
-        allure.attach.file(page, name=name, attachment_type=kind, extension="html")
+    kinds = allure.attachment_type
+    if len(cases) > 1:
+        cases = [each for each in cases if each.result.outcome != "passed"][:LISTED_SAMPLES]
+    for case in cases:
+        name = case.result.name
+        if case.result.verdicts:
+            text = _margins(case.result.verdicts)
+            allure.attach(text, name=f"{name}: margins", attachment_type=kinds.CSV)
+        if picture := picture_of(case):
+            allure.attach.file(picture, name=f"{name}: picture", attachment_type=kinds.JPG)
+        if page := case.result.page:
+            allure.attach.file(page, name=f"{name}: report", attachment_type=kinds.HTML)
+
+
+def _margins(verdicts: Sequence[Verdict]) -> str:
+    """A table of verdicts for spreadsheets."""
+    text = StringIO()
+    table = csv.writer(text)
+    table.writerow(("expectation", "step", "status", "margin", "unit", "reason"))
+    for each in verdicts:
+        margin = f"{each.margin:.6g}" if math.isfinite(each.margin) else ""
+        table.writerow((each.expectation, each.step, each.status, margin, each.unit, each.reason))
+    return text.getvalue()
 
 
 def _add_properties(item: pytest.Item, case: SuiteCase) -> None:

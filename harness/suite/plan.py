@@ -144,10 +144,6 @@ class Plan(LazySequence[PlannedCase]):
         chosen = (n for n, each in zip(self._numbers, self, strict=True) if is_selected(each))
         return Plan(self.files, array("Q", chosen))
 
-    def slice(self, indices: slice) -> Plan:
-        """The cases at some indices."""
-        return Plan(self.files, array("Q", self._numbers[indices]))
-
 
 def planned_cases(files: Sequence[Path], request: SuiteRequest) -> Plan:
     """Every case of the files that the request selects, in file order.

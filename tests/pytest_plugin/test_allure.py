@@ -17,13 +17,14 @@ expect: [{always: within_limits}]
 
 
 def attachments(folder):
-    """Each test's name with the contents of its attachments."""
+    """Each test's name with kinds and contents of its attachments."""
     found = {}
     for file in folder.glob("*-result.json"):
         result = json.loads(file.read_text())
         listed = result.get("attachments", [])
-        assert all(each["type"] == "text/html" for each in listed)
-        found[result["name"]] = [(folder / each["source"]).read_text() for each in listed]
+        found[result["name"]] = [
+            (each["type"], (folder / each["source"]).read_bytes()) for each in listed
+        ]
     return found
 
 
@@ -31,9 +32,21 @@ def test_the_page_of_a_scenario_is_attached_to_its_test(pytester):
     pytester.path.joinpath("a.scenario.yaml").write_text(SCENARIO)
     done = pytester.runpytest_subprocess("--alluredir", "allure", "--harness-in-process")
     done.assert_outcomes(passed=1)
-    [page] = attachments(pytester.path / "allure")["Stands still"]
-    assert "<html" in page
-    assert "Stands still" in page
+    [margins, page] = attachments(pytester.path / "allure")["Stands still"]
+    assert margins[0] == "text/csv"
+    assert b"always: within_limits,,passed,0." in margins[1]
+    assert page[0] == "text/html"
+    assert b"Stands still" in page[1]
+
+
+def test_the_picture_of_a_failure_is_attached_too(pytester):
+    failing = SCENARIO.replace("[{always: within_limits}]", "[{never: within_limits}]")
+    pytester.path.joinpath("a.scenario.yaml").write_text(failing)
+    done = pytester.runpytest_subprocess("--alluredir", "allure", "--harness-in-process")
+    done.assert_outcomes(failed=1)
+    found = attachments(pytester.path / "allure")["Stands still"]
+    assert [kind for kind, _ in found] == ["text/csv", "image/jpg", "text/html"]
+    assert found[1][1].startswith(b"\xff\xd8")
 
 
 def test_without_the_option_nothing_is_attached(pytester):

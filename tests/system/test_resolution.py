@@ -41,10 +41,20 @@ def test_every_required_package_has_a_wheel(platform, python):
     assert {"mujoco", "ompl", "pin"} <= set(found)
 
 
+@pytest.mark.parametrize("platform", [*PLATFORMS, "Linux"])
 @pytest.mark.parametrize("library", ["lerobot", "vla-eval", "gymnasium", "robosuite"])
-def test_another_library_can_be_installed_too(library, python):
-    found = resolved(python, constraint=library)
+def test_another_library_can_be_installed_too(library, platform, python):
+    """With `-s`, the rows of the table in docs/guides/platforms.md."""
+    found = resolved(
+        python,
+        "--python-platform",
+        PLATFORMS.get(platform, "x86_64-manylinux_2_28"),
+        constraint=library,
+    )
     assert {"mujoco", "ompl", "pin", library} <= set(found)
+    names = (library, "opencv-python-headless", "numpy")
+    versions = " | ".join(found[name] for name in names)
+    sys.stdout.write(f"\n| {library} | {python} | {platform} | {versions} |\n")
 
 
 def test_the_newest_opencv_that_lerobot_accepts_is_accepted(python):

@@ -151,8 +151,8 @@ def _lacking(
 ) -> Iterator[str]:
     """A sentence for each part that was interrupted."""
     planned, lacking = Counter[int](), Counter[int]()
-    for index in range(len(suite.plan)):
-        number = records[0].shard.number_of(index)
+    for index, case in enumerate(suite.plan):
+        number = records[0].shard.number_of(case)
         planned[number] += 1
         lacking[number] += index not in suite.results
     for folder, record in zip(folders, records, strict=True):

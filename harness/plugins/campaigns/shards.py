@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -17,9 +18,10 @@ from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
 from harness.suite.header import ScenarioHeader, read_header, stated_variation
 from harness.suite.installation import Installation, installation
+from harness.suite.plan import PlannedCase
 from harness.suite.request import SuiteRequest, SuiteSelection
 
-FORMAT = "armharness-shard/3"
+FORMAT = "armharness-shard/4"
 FILE = "shard.json"
 AUTO = "auto"
 SOURCES = (
@@ -45,18 +47,18 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.count}"
 
-    def number_of(self, index: int) -> int:
-        """The number of the part that a case belongs to: each part has one case in turn.
+    def number_of(self, case: PlannedCase) -> int:
+        """The number of the part that a case belongs to, by a hash of its file and name.
 
-        Args:
-            index: The index of the case among the selected cases of the whole suite.
+        A case that is added or left out moves no other one to another part.
         """
-        return index % self.count + 1
+        identity = f"{case.file.as_posix()}\0{case.name}".encode(errors="surrogateescape")
+        digest = hashlib.blake2b(identity, digest_size=8).digest()
+        return int.from_bytes(digest, "big") % self.count + 1
 
-    @property
-    def indices(self) -> slice:
-        """The indices of its cases among the selected cases of the whole suite."""
-        return slice(self.number - 1, None, self.count)
+    def has(self, case: PlannedCase) -> bool:
+        """Whether a case belongs to this part."""
+        return self.number_of(case) == self.number
 
 
 def shard_of(text: str, environment: Mapping[str, str] = os.environ) -> Shard:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,7 +27,7 @@ Margins = Mapping[str, Mapping[str, float]]
 
 @dataclass(frozen=True)
 class ShrunkMargin:
-    """A margin that is smaller than it may be, of an expectation that still passes.
+    """A margin that is smaller than it may be, or whose expectation is not judged any more.
 
     Attributes:
         file: The file of the scenario.
@@ -35,7 +35,7 @@ class ShrunkMargin:
         case: The name of the case in the baseline.
         expectation: The expectation and the step that it belongs to.
         before: The margin in the baseline, in `unit`.
-        now: The margin of this run, in `unit`.
+        now: The margin of this run, in `unit`; NaN where nothing has this expectation any more.
     """
 
     file: str
@@ -47,24 +47,34 @@ class ShrunkMargin:
     unit: str
 
     @property
+    def is_gone(self) -> bool:
+        """Whether the expectation is not judged any more."""
+        return math.isnan(self.now)
+
+    @property
     def change(self) -> str:
         """The change in small units: `40 -> 6 mm`."""
+        if self.is_gone:
+            return f"{self.before:.4g}{'' if self.unit == '1' else f' {self.unit}'} -> gone"
         if self.unit == "m":
             return f"{self.before * 1000:.4g} -> {self.now * 1000:.4g} mm"
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.before:.4g} -> {self.now:.4g}{unit}"
 
     def __str__(self) -> str:
+        if self.is_gone:
+            return f"{self.expectation} is expected no more, or in other words: {self.change}"
         return f"the margin of {self.expectation} shrank: {self.change}"
 
 
 def shrunk_margins(
-    cases: Iterable[SuiteCase], baseline: Margins, keep: float = KEEP
+    cases: Sequence[SuiteCase], baseline: Margins, keep: float = KEEP
 ) -> list[ShrunkMargin]:
-    """The margins of passed expectations that lost more than they may.
+    """The margins of passed expectations that lost more than they may, and those that are gone.
 
     A failed expectation is none of them: its case has failed. What the baseline does not have, or
-    had no margin in it, cannot shrink.
+    had no margin in it, cannot shrink. An expectation is gone where its case passes without it,
+    or where its file exists no more; a case that was not selected is not.
 
     Args:
         cases: The cases of this run.
@@ -83,7 +93,25 @@ def shrunk_margins(
         known = found.setdefault((name, key), shrunk)
         if shrunk.now < known.now:
             found[name, key] = shrunk
-    return list(found.values())
+    return [*found.values(), *_gone(cases, baseline)]
+
+
+def _gone(cases: Sequence[SuiteCase], baseline: Margins) -> Iterator[ShrunkMargin]:
+    """Expectations of the baseline that are judged no more, though their case was run."""
+    judged: dict[str, set[str]] = {}
+    for case in cases:
+        names = judged.setdefault(_case_name(case), set())
+        names.update(map(_named, case.result.verdicts))
+    failed = {_case_name(case) for case in cases if case.result.outcome != "passed"}
+    for name, margins in baseline.items():
+        file = name.partition(" [")[0]
+        if name in failed or (name not in judged and Path(file).exists()):
+            continue
+        for key, before in margins.items():
+            expectation, _, unit = key.rpartition(" [")
+            if expectation not in judged.get(name, ()):
+                unit = unit.removesuffix("]")
+                yield ShrunkMargin(file, 0, name, expectation, before, math.nan, unit)
 
 
 def new_margins(cases: Iterable[SuiteCase], baseline: Margins) -> int:

@@ -9,8 +9,8 @@ from urllib.parse import quote
 
 from harness.core.printable import counted
 from harness.plugins.ci.baseline import ShrunkMargin
-from harness.plugins.ci.pictures import picture_of
 from harness.plugins.ci.results import SavedSuite
+from harness.reporting.suite.failure_picture import picture_of
 from harness.reporting.suite.github import SIGNS, markdown_cell
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.suite.write import PAGE
@@ -36,7 +36,9 @@ def comment_text(
     outcome = "failed" if shrunk and suite.outcome == "passed" else suite.outcome
     passed = sum(case.result.outcome == "passed" for case in suite.cases)
     counts = [f"{passed} of {counted(len(suite.cases), 'case')} passed"]
-    counts += [f"{counted(len(shrunk), 'margin')} shrank"] if shrunk else []
+    gone = sum(each.is_gone for each in shrunk)
+    counts += [f"{counted(len(shrunk) - gone, 'margin')} shrank"] if len(shrunk) > gone else []
+    counts += [f"{counted(gone, 'expectation')} gone"] if gone else []
     lines = [MARK, f"### {SIGNS[outcome]} armharness: {'; '.join(counts)}"]
     lines += _table(
         ("case", "why it did not pass"),

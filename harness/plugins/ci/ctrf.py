@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from harness import __version__
-from harness.plugins.ci.pictures import picture_of
 from harness.plugins.ci.results import SavedSuite
 from harness.reporting.json_text import json_text
+from harness.reporting.suite.failure_picture import picture_of
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 

@@ -62,7 +62,7 @@ def gate(arguments: argparse.Namespace, folder: Path) -> int:
     """Write what the options request from the results in a folder.
 
     Returns:
-        The exit code: 1 where a margin shrank.
+        The exit code: 1 where a margin shrank or is gone.
     """
     suite = read_results(folder)
     shrunk: Sequence[ShrunkMargin] = ()

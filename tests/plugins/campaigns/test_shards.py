@@ -230,21 +230,36 @@ def test_a_merge_does_not_overwrite_one_of_its_parts(parts, tmp_path):
     assert (folders[1] / "results.jsonl").read_bytes() == before
 
 
+def identities(plan):
+    return [(each.file.name, each.name) for each in plan]
+
+
 @pytest.mark.parametrize("count", [1, 2, 3, 7])
-def test_parts_differ_by_one_case_at_most(tmp_path, count):
-    """Two files of one case were in one part of two, and none in the other."""
+def test_every_case_is_in_one_part_and_a_new_file_moves_none(tmp_path, monkeypatch, count):
+    monkeypatch.chdir(tmp_path)
     for name, text in {"a": GRID, "b": GRID, "c": SAMPLED.replace("EARLY", "true")}.items():
-        (tmp_path / f"{name}.scenario.yaml").write_text(text)
-    for files in (sorted(tmp_path.iterdir()), sorted(tmp_path.iterdir())[:1]):
-        whole = [(each.file, each.name) for each in planned_cases(files, SuiteRequest())]
+        Path(f"{name}.scenario.yaml").write_text(text)
+    shards = [Shard(number, count) for number in range(1, count + 1)]
+
+    def parts(*names):
+        files = [Path(f"{name}.scenario.yaml") for name in names]
         plan = planned_cases(files, SuiteRequest())
-        parts = [plan.slice(Shard(number, count).indices) for number in range(1, count + 1)]
-        assert max(map(len, parts)) - min(map(len, parts)) <= 1
-        held = [[(each.file, each.name) for each in part] for part in parts]
-        assert sorted(each for part in held for each in part) == sorted(whole)
-        assert [Shard(1, count).number_of(whole.index(part[0])) for part in held if part] == [
-            number for number in range(1, count + 1) if held[number - 1]
-        ]
+        held = [identities(plan.where(shard.has)) for shard in shards]
+        assert sorted(each for part in held for each in part) == sorted(identities(plan))
+        return held
+
+    for few, all_ in zip(parts("a", "c"), parts("a", "b", "c"), strict=True):
+        assert few == [each for each in all_ if each[0] != "b.scenario.yaml"]
+
+
+def test_many_cases_are_spread_evenly(tmp_path, monkeypatch):
+    """Within four standard deviations of 250 of 1000 cases."""
+    monkeypatch.chdir(tmp_path)
+    Path("c.scenario.yaml").write_text(SAMPLED.replace("EARLY", "true"))
+    plan = planned_cases([Path("c.scenario.yaml")], SuiteRequest(samples=1000))
+    counts = [len(plan.where(Shard(number, 4).has)) for number in range(1, 5)]
+    assert sum(counts) == len(plan)
+    assert max(abs(each - len(plan) / 4) for each in counts) < 4 * (len(plan) * 3 / 16) ** 0.5
 
 
 @pytest.mark.parametrize(

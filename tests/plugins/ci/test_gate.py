@@ -132,6 +132,40 @@ def test_an_expectation_without_an_earlier_margin_is_noted_and_passes(folder, ca
     assert "note: 1 margin not in margins.json yet" in capsys.readouterr().err
 
 
+def expecting(result, text):
+    return replace(result, verdicts=(replace(result.verdicts[0], expectation=text),))
+
+
+def test_an_expectation_that_was_deleted_or_loosened_fails(folder, capsys):
+    baseline(folder, passed(0), passed(1))
+    save(folder, expecting(passed(0), "lifted cube, above 1 mm"), passed(1))
+    assert gate("--comment", "comment.md") == 1
+    said = capsys.readouterr().err
+    assert "a/pick.scenario.yaml: lifted cube is expected no more" in said
+    assert "0.01 m -> gone" in said
+    assert "1 expectation gone" in (folder / "comment.md").read_text()
+    assert gate("--update-baseline") == 0
+    assert gate() == 0
+
+
+def test_a_scenario_that_was_deleted_fails_until_the_baseline_is_updated(folder):
+    baseline(folder, passed(0), replace(passed(0), file="a/other.scenario.yaml"))
+    save(folder, passed(0))
+    (folder / "a/other.scenario.yaml").unlink(missing_ok=True)
+    assert gate() == 1
+    assert gate("--update-baseline") == 0
+    assert gate() == 0
+
+
+def test_what_was_not_selected_or_failed_is_not_gone(folder, capsys):
+    baseline(folder, passed(0), passed(1))
+    save(folder, passed(0))
+    assert gate() == 0
+    save(folder, passed(0), replace(failed(1), verdicts=()))
+    gate()
+    assert "expected no more" not in capsys.readouterr().err
+
+
 def test_of_samples_the_least_margin_counts(folder):
     sample = replace(passed(0), case="sample1")
     kept = baseline(

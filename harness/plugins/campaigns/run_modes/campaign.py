@@ -127,7 +127,7 @@ def _with_part(
         if conditions is not None:
             conditions.copy(root)  # a merge has neither the scenario files nor the conditions
 
-    return replace(hooks, part=lambda plan: plan.slice(shard.indices), planned=planned)
+    return replace(hooks, part=lambda plan: plan.where(shard.has), planned=planned)
 
 
 def _write(suite: SuiteRun, folder: Path, history: History) -> tuple[Path, Columns]:
