@@ -129,7 +129,7 @@ class Process(NamedTuple):
     """A process of this machine, and what it uses.
 
     Attributes:
-        memory: Resident memory [bytes].
+        memory: Its resident memory in bytes.
         seconds: Processor time, that of its children which have ended included [s].
     """
 
