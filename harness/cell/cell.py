@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
-from harness.cell.program import ProgramStep, step_seed
+from harness.cell.program import ProgramStep, step_seed, with_arm
 from harness.core.camera import Camera
 from harness.core.details import Detail, Details
 from harness.core.errors import StepFailed
@@ -58,6 +59,13 @@ class Belief:
     pose: SE3 | None
 
 
+class Held(NamedTuple):
+    """An object that a `grasp` closed on, and the arm of a robot with several."""
+
+    object: str
+    arm: str
+
+
 @dataclass
 class StepNotes:
     """What a step leaves in its record."""
@@ -72,7 +80,7 @@ class StepNotes:
 class Cell:
     """Everything that steps work with: robot, planning, physics, and the state of the scene."""
 
-    description: RobotDescription
+    robot: RobotDescription
     scene: PlanningScene
     kinematics: Kinematics
     planner: MotionPlanner
@@ -81,7 +89,7 @@ class Cell:
     run_steps: Callable[[Sequence[ProgramStep]], None]
     presence: dict[str, Presence] = field(default_factory=dict[str, Presence])
     attachments: list[AttachmentRecord] = field(default_factory=list[AttachmentRecord])
-    held: list[str] = field(default_factory=list[str])
+    held: list[Held] = field(default_factory=list["Held"])
     allowed: list[Sequence[tuple[str, str]]] = field(
         default_factory=list[Sequence[tuple[str, str]]]
     )
@@ -103,8 +111,14 @@ class Cell:
         return self.step
 
     @property
+    def description(self) -> RobotDescription:
+        """The robot, with the arm of the current step selected."""
+        arm = "" if self.step is None else self.step.arm
+        return self.robot.of_arm[arm] if arm else self.robot
+
+    @property
     def gripper(self) -> Gripper:
-        """The robot's gripper; compile has made sure that there is one."""
+        """The gripper of the step's arm; compile has made sure that there is one."""
         gripper = self.description.gripper
         if gripper is None:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
@@ -145,14 +159,13 @@ class Cell:
     # -- where things are ---------------------------------------------------------------------
 
     def planning_start(self) -> FloatArray:
-        """Where motions start: set points of the arm, measured positions of the gripper."""
+        """Where motions start: set points of arms, measured positions of grippers."""
         start = self.simulator.commanded_positions()
-        gripper = self.description.gripper
-        if gripper is not None:
-            measured = self.simulator.joint_positions()
-            index = self.description.joint_index[gripper.joint]
+        measured = self.simulator.joint_positions()
+        for gripper in self.robot.grippers:
+            index = self.robot.joint_index[gripper.joint]
             start[index] = measured[index]
-        return self.description.with_mimics(start)
+        return self.robot.with_mimics(start)
 
     def measured_pose(self, name: str) -> SE3:
         """T_world_object as the physics has it now, or as it is expected later."""
@@ -307,8 +320,60 @@ class Cell:
             if record.object == name and record.end_time == float("inf"):
                 self.attachments[index] = replace(record, end_time=self.simulator.time)
                 self._return_represented(record)
-        if name in self.held:
-            self.held.remove(name)
+        self.held[:] = [each for each in self.held if each.object != name]
+
+    @property
+    def held_objects(self) -> tuple[str, ...]:
+        """The objects that the gripper of the step's arm holds, in the order of their grasps."""
+        arm = self.description.selected_arm
+        return tuple(each.object for each in self.held if each.arm == arm)
+
+    def holders(self, name: str) -> tuple[str, ...]:
+        """The arms that hold an object."""
+        return tuple(each.arm for each in self.held if each.object == name)
+
+    def take_hold(self, name: str, weld: bool) -> None:
+        """Attach an object that the gripper has closed on; it may be in another gripper, too.
+
+        The planner carries it with the arm that grasped it last.
+
+        Args:
+            name: The name of the object.
+            weld: Whether the physics fixes it to the hand.
+        """
+        before = [each for each in self.held if each.object == name]
+        if before:
+            self.detach(name)
+        touched = [self.robot.of_arm[each.arm].gripper for each in before]
+        links = [link for hand in (self.gripper, *touched) if hand for link in hand.links]
+        self.attach(name, self.description.tcp_link, links)
+        if weld:
+            self.weld(name, self.gripper.palm_link)
+        self.held += [*before, Held(name, self.description.selected_arm)]
+
+    def let_go(self, name: str) -> None:
+        """Detach an object that the gripper has released; another one that holds it keeps it."""
+        arm = self.description.selected_arm
+        others = [each for each in self.held if each.object == name and each.arm != arm]
+        if not others:
+            self.detach(name)
+            return
+        keeper, start = self.robot.of_arm[others[-1].arm], self.planning_start()
+        hands = [self.robot.of_arm[each.arm].gripper for each in others]
+        links = [link for hand in hands if hand for link in hand.links]
+        if self.is_carried_by_other(name):
+            self.scene.detach_object(name, start)
+            self.scene.attach_object(name, keeper.tcp_link, links, start)
+        else:
+            self.detach(name)
+            self.sync_scene()
+            self.attach(name, keeper.tcp_link, links)
+        self.held[:] = [*(each for each in self.held if each.object != name), *others]
+
+    def is_carried_by_other(self, name: str) -> bool:
+        """Whether the planner carries an object with another arm than the step's."""
+        link = self.scene.attached().get(name)
+        return len(self.holders(name)) > 1 and link != self.description.tcp_link
 
     def unweld(self, name: str) -> None:
         """End the weld of an attached object, if it has one; it stays attached."""
@@ -336,7 +401,15 @@ class Cell:
         parent = self.current
         path = f"{parent.path}.{name}"
         options = replace(parent.options, seed=step_seed(parent.options.root_seed, path))
-        return ProgramStep(f"{parent.id}.{name}", path, spec, summary, parent.line, options)
+        return ProgramStep(
+            f"{parent.id}.{name}",
+            path,
+            spec,
+            with_arm(parent.arm, summary),
+            parent.line,
+            options,
+            arm=parent.arm,
+        )
 
     def run_children(self, children: Sequence[ProgramStep] | None = None) -> None:
         """Run the steps that the current one is made of; its own notes go on after them."""
@@ -351,7 +424,13 @@ class Cell:
     def motion(
         self, group: str, motion: PlannedMotion, options: PlanningOptions | None = None
     ) -> MotionRequest:
-        """The request of a motion from where the arm is now; the step's options by default."""
+        """The request of a motion from where the arm is now; the step's options by default.
+
+        Raises:
+            StepFailed: START_STATE_INVALID, when an arm that it moves holds an object together with
+                another one.
+        """
+        self.refuse_joint_hold(self.robot.group_joints(group))
         return MotionRequest(group, self.planning_start(), motion, options or self.current.options)
 
     def move(
@@ -366,7 +445,13 @@ class Cell:
         self.carry_out(self.planner.plan(self.motion(group, motion, options)))
 
     def carry_out(self, plan: MotionPlan) -> None:
-        """Note a plan, check it against the step's timeout, then follow it."""
+        """Note a plan, check it against the step's timeout, then follow it.
+
+        Raises:
+            StepFailed: START_STATE_INVALID, as of `motion`; TIMED_OUT, when it takes longer than
+                the step may; or the arm cannot follow it.
+        """
+        self.refuse_joint_hold(plan.trajectory.joint_names)
         self.notes.trajectory = plan.trajectory
         self.notes.planner += plan.statistics
         self.notes.explanation = plan.explanation
@@ -381,3 +466,19 @@ class Cell:
                 TimeoutFailure(plan.trajectory.duration, timeout),
             )
         self.simulator.track(plan.trajectory)
+
+    def refuse_joint_hold(self, moved: Sequence[str]) -> None:
+        """Refuse to move joints of an arm that holds an object together with another one.
+
+        Raises:
+            StepFailed: START_STATE_INVALID.
+        """
+        for name in dict.fromkeys(each.object for each in self.held):
+            arms = self.holders(name)
+            joints = {joint for arm in arms for joint in self.robot.group_joints(arm)}
+            if len(arms) > 1 and joints.intersection(moved):
+                raise StepFailed(
+                    "START_STATE_INVALID",
+                    f"'{name}' is held by {' and '.join(arms)}, which cannot move while both hold"
+                    f" it; put `release: {name}` with `robot: {arms[0]}` before this step",
+                )

@@ -22,6 +22,11 @@ def step_seed(seed: int, path: str) -> int:
     return int.from_bytes(digest[:4], "big") & 0x7FFFFFFF
 
 
+def with_arm(arm: str, summary: str) -> str:
+    """The summary of a step of one of several arms: `left: pick box`."""
+    return f"{arm}: {summary}" if arm else summary
+
+
 @dataclass(frozen=True, eq=False)
 class ProgramStep:
     """A step with everything around it known.
@@ -34,6 +39,8 @@ class ProgramStep:
         line: The line in the file, from 1.
         options: How its motions are planned, seed included.
         children: Nested steps of the file.
+        arm: The arm that carries it out, of a robot with several; empty where the step names none
+            and none is the default.
     """
 
     id: str
@@ -43,6 +50,7 @@ class ProgramStep:
     line: int
     options: PlanningOptions
     children: tuple[ProgramStep, ...] = ()
+    arm: str = ""
 
     def flat(self) -> Iterator[ProgramStep]:
         """This step, then those nested in it."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
 from typing import Literal
 
 from harness.core.camera import Camera
@@ -162,8 +163,24 @@ class Scope:
         self.cameras: dict[str, Camera] = {}
         self.requested_time = 0.0
         self.requested_pictures = 0.0
-        self.step_ids: dict[str, None] = {}
+        self.step_ids: dict[str, str] = {}  # with the arm of each
+        self._arm_key: str = "robot"
         self._lacks_gripper = False
+
+    @contextmanager
+    def with_arm(self, arm: str, key: str = "robot") -> Generator[None]:
+        """Select an arm of a robot with several, or none with an empty name.
+
+        Args:
+            arm: The name of the arm.
+            key: The key that names an arm in what is checked.
+        """
+        whole, before = self.description, self._arm_key
+        self.description, self._arm_key = (whole.of_arm[arm] if arm else whole), key
+        try:
+            yield
+        finally:
+            self.description, self._arm_key = whole, before
 
     def add_object(self, obj: WorldObject, *, present: bool = False) -> None:
         """Make an object known; `present` when it is in the scene from the start."""
@@ -171,11 +188,11 @@ class Scope:
         if present:
             self.present[obj.name] = None
 
-    def claim_step_id(self, step_id: str) -> bool:
-        """Claim a step's id; returns whether it was free."""
+    def claim_step_id(self, step_id: str, arm: str = "") -> bool:
+        """Claim an id for a step of an arm; returns whether it was free."""
         if step_id in self.step_ids:
             return False
-        self.step_ids[step_id] = None
+        self.step_ids[step_id] = arm
         return True
 
     # -- names --------------------------------------------------------------------------------
@@ -230,14 +247,58 @@ class Scope:
             )
 
     def check_group(self, name: str | None, loc: Loc) -> str:
-        """Check a planning group; returns its name, or the default group's."""
+        """Check the planning group at a key of a step; returns its name, or the default group's."""
         if name is None:
+            self.check_arm(loc[:-1])
             return self.description.default_group
         if name not in self.description.groups:
             self.problems.unknown(
                 loc, "planning group", name, self.description.groups, needs=("robot",)
             )
         return name
+
+    def arm_of(self, robot: str | None, group: str | None, loc: Loc, key: str = "robot") -> str:
+        """The arm that a step or an expectation is about: as stated, of its group, or the default.
+
+        Reports a name of no arm, and a group of other joints than the arm's.
+
+        Args:
+            robot: The stated name of an arm.
+            group: The stated planning group.
+            loc: The place of the step or expectation.
+            key: Its key that states the arm.
+        """
+        description = self.description
+        arms, of_group = description.of_arm, description.arm_of_group(group or "")
+        if robot is None:
+            return of_group if of_group or group else description.default_arm
+        if not arms:
+            self.problems.add(
+                (*loc, key),
+                f"the robot has one arm, and '{robot}' selects one of several",
+                f"leave out `{key}`; `robots: {{{robot}: ...}}` in place of `robot` names arms",
+                needs=("robot",),
+            )
+        elif robot not in arms:
+            self.problems.unknown((*loc, key), "arm", robot, arms, needs=("robot",))
+        elif group is not None and of_group != robot and group in description.groups:
+            self.problems.add(
+                (*loc, "group"), f"'{group}' is not a group of the arm '{robot}'", needs=("robot",)
+            )
+        return robot if robot in arms else next(iter(arms), "")
+
+    def check_arm(self, loc: Loc, key: str = "") -> bool:
+        """Whether it is known which arm is intended; reports where the robot has several."""
+        if not self.description.needs_arm:
+            return True
+        names = [arm.name for arm in self.description.arms]
+        self.problems.add(
+            loc,
+            f"the robot has several arms: {', '.join(names)}; this does not say which",
+            f"add `{key or self._arm_key}: {names[0]}` or another one's name",
+            needs=("robot",),
+        )
+        return False
 
     def check_object(
         self, name: str, loc: Loc, *, simulated: bool = False, is_key: bool = False
@@ -320,7 +381,9 @@ class Scope:
         self.problems.check_unit(loc, unit, needs=("robot",))
 
     def check_gripper(self, loc: Loc, what: str) -> bool:
-        """Whether the robot has a gripper, which `what` needs; reports the first use without."""
+        """Whether the arm has a gripper, which `what` needs; reports the first use without."""
+        if len(self.description.grippers) > 1 and not self.check_arm(loc):
+            return False
         if self.description.gripper is None:
             if self._lacks_gripper:
                 return False

@@ -168,13 +168,15 @@ class RobotOptionError(RobotError):
     """A key of a scenario's `robot` does not fit the robot, or names what does not exist.
 
     Attributes:
-        key: Dotted path below `robot`, such as `joint_limits.wrist_1_joint.max_velocity`.
+        key: Dotted path below `robot`, such as `joint_limits.wrist_1_joint.max_velocity`; below
+            `robots` it begins with the name of an arm.
         reason: Why the value cannot be used.
+        below: The key of the scenario that has it, `robot` or `robots`.
     """
 
-    def __init__(self, key: str, reason: str) -> None:
-        self.key, self.reason = key, reason
-        super().__init__(f"robot.{key}: {reason}")
+    def __init__(self, key: str, reason: str, below: str = "robot") -> None:
+        self.key, self.reason, self.below = key, reason, below
+        super().__init__(f"{below}.{key}: {reason}")
 
 
 class ModelRefused(HarnessError):

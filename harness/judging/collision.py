@@ -31,9 +31,7 @@ from harness.judging.contacts import (
     attached,
     bodies,
     debounced,
-    finger_links,
     force_between,
-    hand_links,
     side_forces,
 )
 from harness.judging.excused_force import (
@@ -44,6 +42,7 @@ from harness.judging.excused_force import (
     leaving_limit,
     mean_force,
 )
+from harness.judging.hands import each_hand, finger_links, gripper_of, hand_links
 from harness.judging.hold import gripped, held_by_fingers
 from harness.judging.support import carried_by_hand, is_below
 from harness.judging.temporal import bridged, episodes
@@ -62,8 +61,8 @@ def colliding(run: Run, pair: Pair, count_allowed: bool = False) -> BoolArray:
     links = frozenset(run.robot.link_names)
     moving = [name for name in pair if name in links]
     if len(moving) == 2:
-        gripper = run.robot.gripper
-        fingers_meet = gripper is not None and set(pair) <= finger_links(gripper)
+        fingers = [finger_links(gripper_of(hand)) for hand in each_hand(run)]
+        fingers_meet = any(set(pair) <= links for links in fingers)
         return np.zeros_like(touching) if fingers_meet else touching
     if not moving:
         return touching & (_hits_from_hand(run, *pair) | _hits_from_hand(run, *pair[::-1]))
@@ -72,9 +71,12 @@ def colliding(run: Run, pair: Pair, count_allowed: bool = False) -> BoolArray:
     static = {record.name for record in run.objects if record.is_static}
     if link in run.robot.static_links and thing in static:
         return np.zeros_like(touching)
-    gripping = _gripping(run, link, thing)
+    hand = _hand_with(run, link)
+    if hand is None:
+        return touching
+    gripping = _gripping(hand, link, thing)
     if gripping.any():
-        gripping &= mean_force(run, link, thing) <= hand_limit(run, thing)
+        gripping &= mean_force(run, link, thing) <= hand_limit(hand, thing)
     return touching & ~gripping
 
 
@@ -85,15 +87,16 @@ def why_not_excused(run: Run, pair: Pair) -> str:
     """
     links = frozenset(run.robot.link_names)
     things = [name for name in pair if name not in links]
-    if run.robot.gripper is None:
+    if not each_hand(run):
         return ""
     force = mean_force(run, *pair)
     beyond = np.zeros(len(force))
     limits = np.zeros(len(force))
     for link, thing in permutations(pair):
-        if link in links and thing not in links:
-            limits = hand_limit(run, thing)
-            beyond = np.where(_gripping(run, link, thing), force - limits, 0.0)
+        hand = _hand_with(run, link)
+        if hand is not None and thing not in links:
+            limits = hand_limit(hand, thing)
+            beyond = np.where(_gripping(hand, link, thing), force - limits, 0.0)
     for held, other in permutations(things, 2):
         for contact in _contacts_in_hand(run, held, other):
             if contact.dragged is None:
@@ -140,6 +143,12 @@ def _samples_of(
     return mask
 
 
+def _hand_with(run: Run, link: str) -> Run | None:
+    """The run with the arm selected whose gripper has a link; None where none has."""
+    hands = each_hand(run)
+    return next((hand for hand in hands if link in hand_links(gripper_of(hand))), None)
+
+
 def _gripping(run: Run, link: str, name: str) -> BoolArray:
     """Samples at which a gripper link touches an object because it grips it, shape (N,).
 
@@ -147,10 +156,9 @@ def _gripping(run: Run, link: str, name: str) -> BoolArray:
     all finger sides at some time. It lasts while the contact does and the object is attached, or
     all finger sides touch it, or the arm rests. A finger that knocks against an object on its way
     is a collision, whatever the planning scene says of the object, and so is one that drags it
-    along after letting go, or that opens against a wall.
+    along after letting go, or that opens against a wall. The arm of the gripper is selected.
     """
-    gripper = run.robot.gripper
-    hand = frozenset[str]() if gripper is None else hand_links(gripper)
+    hand = hand_links(gripper_of(run))
     if link not in hand:
         return np.zeros(len(run.signals.times), dtype=bool)
     held = held_by_fingers(run, name)
@@ -192,7 +200,7 @@ def _limit_of(run: Run, held: str, contact: _Contact, force: FloatArray) -> Floa
     """
     span = contact.samples
     limit = held_limit(run, held, _samples_of(run, lambda step: step.moves_gripper))[span]
-    return leaving_limit(run, span, force[span], limit) if contact.leaves else limit
+    return leaving_limit(run, held, span, force[span], limit) if contact.leaves else limit
 
 
 def _hits_from_hand(run: Run, held: str, other: str) -> BoolArray:
@@ -232,7 +240,7 @@ def _contacts_in_hand(run: Run, held: str, other: str) -> list[_Contact]:
     They are excused where the object leaves what it touched before, or is put down on it. Along one
     contact the distances of several holds add up: letting go on the way makes no new one.
     """
-    if run.robot.gripper is None:
+    if not each_hand(run):
         return []
     holds = _holds(run, held, other)
     contacts = bridged(run.signals.times, episodes(force_between(run, {held}, {other}) > 0))

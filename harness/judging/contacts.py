@@ -14,37 +14,16 @@ from harness.core.antipodal import least_thickness
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import balls_of
 from harness.judging.facts import fact
+from harness.judging.hands import every_hand_link, gripper_of, own_links
 from harness.judging.poses import present, put_samples
 from harness.judging.temporal import trailing_max, without_gaps
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
-from harness.robot.description import Gripper
 
 TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
 OVERLAP = 0.001  # [m]; what is less deep is rounding: convex hulls are off by as much
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
-
-
-def gripper_of(run: Run) -> Gripper:
-    """The gripper.
-
-    Raises:
-        NotObservable: The robot has none.
-    """
-    if run.robot.gripper is None:
-        raise NotObservable("the robot has no gripper")
-    return run.robot.gripper
-
-
-def finger_links(gripper: Gripper) -> frozenset[str]:
-    """Links of all finger sides."""
-    return frozenset(gripper.links)
-
-
-def hand_links(gripper: Gripper) -> frozenset[str]:
-    """Links of all finger sides, and the palm."""
-    return finger_links(gripper) | ({gripper.palm_link} - {""})
 
 
 def force_between(run: Run, firsts: Collection[str], seconds: Collection[str]) -> FloatArray:
@@ -106,11 +85,11 @@ def finger_gap(run: Run) -> FloatArray:
 
 
 def attached(run: Run, name: str) -> BoolArray:
-    """Samples at which the planning scene holds an object, or its stand-in, shape (N,)."""
-    times = run.signals.times
+    """Samples at which an arm holds an object, or its stand-in, in the planning scene, (N,)."""
+    times, links = run.signals.times, own_links(run.robot)
     mask = np.zeros(len(times), dtype=bool)
     for record in run.attachments:
-        if name in (record.object, record.represents):
+        if name in (record.object, record.represents) and record.link in links:
             mask |= (times >= record.start_time) & (times < record.end_time)
     return mask
 
@@ -128,7 +107,7 @@ def welded(run: Run, name: str) -> BoolArray:
 
 def robot_contact(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
     """Debounced force of all links on an object [N], and 1 where it is attached, (N,) each."""
-    links = set(run.robot.link_names)
+    links = own_links(run.robot)
     force = np.zeros(len(run.signals.times))
     for link in touched(run, name):
         if link in links:
@@ -154,8 +133,8 @@ def bodies(run: Run, word: str) -> frozenset[str]:
     match word:
         case "robot":
             return links
-        case "gripper" if robot.gripper is not None:
-            return hand_links(robot.gripper)
+        case "gripper" if robot.grippers:
+            return every_hand_link(run)
         case "any":
             return links | objects | {name for pair in run.signals.contact_forces for name in pair}
         case _ if word in links or word in objects:

@@ -23,8 +23,9 @@ import numpy as np
 from harness.core.pose_arrays import relative
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import middles
-from harness.judging.contacts import force_between, gripper_of
-from harness.judging.hold import recent_mean, weight_of
+from harness.judging.contacts import force_between
+from harness.judging.hands import each_hand, gripper_of
+from harness.judging.hold import held_by_fingers, recent_mean, weight_of
 from harness.judging.poses import object_poses, put_samples
 from harness.judging.support import riders
 from harness.judging.window import NotObservable, object_record
@@ -70,6 +71,16 @@ def grip_force(run: Run) -> FloatArray:
     return recent_mean(run, force[:, None], SPAN)[:, 0]
 
 
+def holding_force(run: Run, name: str) -> FloatArray:
+    """Largest force of a finger side of the grippers that hold an object [N], shape (N,).
+
+    Of every gripper where none ever holds it with its fingers.
+    """
+    hands = each_hand(run)
+    holding = [hand for hand in hands if held_by_fingers(hand, name).any()]
+    return np.max([grip_force(hand) for hand in holding or hands], axis=0)
+
+
 def hand_limit(run: Run, name: str) -> FloatArray:
     """Largest mean force with which a link of the hand presses what it grips [N], shape (N,)."""
     return FACTOR * (grip_force(run) + load_of(run, name)) + SLACK
@@ -81,21 +92,24 @@ def held_limit(run: Run, name: str, gripper_moves: BoolArray) -> FloatArray:
     Args:
         gripper_moves: Samples of steps that move the gripper, shape (N,).
     """
-    grip = np.where(gripper_moves, grip_force(run), 0.0)
+    grip = np.where(gripper_moves, holding_force(run, name), 0.0)
     return FACTOR * (load_of(run, name) + grip) + SLACK
 
 
-def leaving_limit(run: Run, samples: slice, force: FloatArray, limit: FloatArray) -> FloatArray:
+def leaving_limit(
+    run: Run, name: str, samples: slice, force: FloatArray, limit: FloatArray
+) -> FloatArray:
     """Largest mean force with which a held object presses what it leaves [N].
 
     Args:
+        name: The name of the object.
         samples: The samples of the contact.
         force: The mean force at these samples [N], shape (n,).
         limit: What `held_limit` says of these samples, shape (n,).
     """
     times = run.signals.times[samples]
     spent = np.cumsum(np.where(force > limit, np.diff(times, prepend=times[:1]), 0.0))
-    return limit + np.where(spent <= LEAVE, grip_force(run)[samples], 0.0)
+    return limit + np.where(spent <= LEAVE, holding_force(run, name)[samples], 0.0)
 
 
 def dragged(run: Run, name: str, other: str, start: int, stop: int) -> FloatArray:

@@ -12,6 +12,7 @@ from pydantic import BaseModel, Field
 from harness.cell.scope import At
 from harness.core.amounts import amount
 from harness.core.errors import HarnessError
+from harness.judging.hands import of_arm
 from harness.judging.margins import Margin, MarginSignal, Part, all_of
 from harness.judging.observations import ExpectationError, Observations, merged, restricted
 from harness.judging.poses import present
@@ -49,6 +50,10 @@ class Expectation(ExpectationFields):
         Args:
             at: The robot, the objects and the place in the file.
         """
+
+    def stated_arm(self) -> str | None:
+        """The arm that it names, of a robot with several; None where it names none."""
+        return None
 
     def needs_step(self) -> str:
         """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
@@ -129,13 +134,18 @@ class Predicate(Expectation, PredicateFields):
             ExpectationError: `signal` reads what `observations` does not declare, or goes wrong.
         """
         try:
-            found = self.signal(replace(window, run=self.readable(window.run)))
+            run = of_arm(self.readable(window.run), self.arm_in(window))
+            found = self.signal(replace(window, run=run))
         except (NotReached, NotObservable, HarnessError):
             raise
         except Exception as error:
             reason = f"{type(self).__name__}.signal raised {type(error).__name__}: {error}"
             raise ExpectationError(reason) from error
         return found if isinstance(found, MarginSignal) else self._with_measures(found, window)
+
+    def arm_in(self, window: Window) -> str:  # noqa: ARG002 - subclasses read it
+        """The arm that it is about in a window, of a robot with several; empty for all of them."""
+        return ""
 
     def unchanged(self, window: Window) -> str:  # noqa: ARG002 - subclasses read it
         """Why the run did not have to change anything for it to hold at the end of a window.
@@ -212,6 +222,28 @@ class ObjectPredicate(Predicate):
             present=here,
             applies=here if found.applies is None else found.applies & here,
         )
+
+
+class ArmPredicate(Predicate):
+    """A predicate of one arm: the one named, else that of the window's step, else the default."""
+
+    word: ClassVar[str] = ""
+
+    by: Name | None = Field(
+        default=None,
+        description="The arm that it is about, of a robot with several; the default is the arm of "
+        "its step.",
+    )
+
+    def stated_arm(self) -> str | None:
+        return self.by
+
+    def arm_in(self, window: Window) -> str:
+        of_step = "" if window.step is None else window.step.arm
+        return self.by or of_step or window.run.robot.default_arm
+
+    def names(self) -> frozenset[str]:
+        return super().names() - {self.by or ""}
 
 
 def _texts(value: Any) -> Iterator[str]:

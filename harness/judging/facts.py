@@ -43,7 +43,7 @@ def fact(function: Callable[Concatenate[Run, P], T]) -> Callable[Concatenate[Run
         facts = _facts.get()
         if facts is None:
             return function(run, *args, **kwargs)
-        key = function, args, tuple(kwargs.items())
+        key = function, run.robot.selected_arm, args, tuple(kwargs.items())
         if key not in facts:
             facts[key] = function(run, *args, **kwargs)
         return facts[key]

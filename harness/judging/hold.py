@@ -26,13 +26,12 @@ from harness.judging.body_motion import lowest_points, middle_of
 from harness.judging.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
-    gripper_of,
-    hand_links,
     side_forces,
     welded,
 )
 from harness.judging.facts import fact
-from harness.judging.poses import object_poses
+from harness.judging.hands import each_hand, gripper_of, hand_links
+from harness.judging.poses import object_poses, tcp_poses
 from harness.judging.temporal import bridged, episodes, first_within
 from harness.judging.window import NotObservable, object_record
 from harness.recording.faults import faults_of
@@ -61,7 +60,13 @@ Contacts nearer to the joints of turning fingers, or farther, have another lever
 
 @fact
 def held_by_fingers(run: Run, name: str, min_force: float = TOUCH_FORCE) -> BoolArray:
-    """Samples at which every finger side touches an object that is between them, shape (N,)."""
+    """Samples at which every finger side touches an object that is between them, shape (N,).
+
+    Of several grippers any may hold it, unless an arm is selected.
+    """
+    if run.robot.needs_arm:
+        held = [held_by_fingers(hand, name, min_force) for hand in each_hand(run)]
+        return np.any([np.zeros(len(run.signals.times), dtype=bool), *held], axis=0)
     forces = list(side_forces(run, name).values())
     if not forces:
         raise NotObservable("the gripper has no finger sides")
@@ -271,7 +276,7 @@ def _poses_in_hand(run: Run, name: str) -> tuple[FloatArray, FloatArray]:
         pressed = np.all([side[:, 3:].any(axis=1) for side in sides], axis=0)
         offset = np.mean([side[:, :3] for side in sides], axis=0) - poses[:, :3]
         points = np.where(pressed[:, None], rotate(conjugate(poses[:, 3:]), offset), middle)
-    return relative(run.signals.tcp_pose, poses), points
+    return relative(tcp_poses(run), poses), points
 
 
 def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
@@ -280,7 +285,7 @@ def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
     It is that of the object's lowest point if it stood in the hand as it did when the hold began.
     Gaps shorter than `BRIDGE` do not end a hold.
     """
-    poses, tcp = object_poses(run, name), run.signals.tcp_pose
+    poses, tcp = object_poses(run, name), tcp_poses(run)
     record = object_record(run, name)
     raised = np.zeros(len(poses))
     for start, stop in bridged(run.signals.times, episodes(held)):
@@ -298,4 +303,4 @@ def weld_note(run: Run, name: str) -> str:
 def gripped(run: Run, name: str) -> BoolArray:
     """Samples at which the hand holds an object in the physics, by fingers or weld, shape (N,)."""
     mask = welded(run, name)
-    return mask if run.robot.gripper is None else mask | held_by_fingers(run, name)
+    return mask | held_by_fingers(run, name) if each_hand(run) else mask

@@ -60,12 +60,13 @@ def joint_column(run: Run, name: str) -> tuple[int, Joint]:
 
 
 def gripper_joints(run: Run) -> frozenset[str]:
-    """Joints of the gripper's group, and those that follow them."""
-    hand = run.robot.gripper
-    if hand is None:
+    """Joints of the grippers' groups, and those that follow them."""
+    robot = run.robot
+    if not robot.grippers:
         return frozenset()
-    mimics = {joint.name for joint in run.robot.movable_joints if joint.is_mimic}
-    return frozenset(run.robot.group_joints(hand.group)) | {hand.joint} | mimics
+    mimics = {joint.name for joint in robot.movable_joints if joint.is_mimic}
+    joints = {hand.joint for hand in robot.grippers}
+    return frozenset(mimics | joints).union(*(robot.group_joints(h.group) for h in robot.grippers))
 
 
 def stood_still(run: Run) -> bool:
@@ -88,7 +89,8 @@ def resting_joints(run: Run) -> frozenset[str]:
     }
     if "joint_commands" in run.unrecorded:
         return names
-    others = names | set(run.robot.group_joints(run.robot.arm_group))
+    arms = [arm.name for arm in run.robot.arms] or [run.robot.arm_group]
+    others = names.union(*map(run.robot.group_joints, arms))
     for column, joint in enumerate(run.robot.movable_joints):
         if joint.name in others:
             continue

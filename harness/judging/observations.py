@@ -82,7 +82,8 @@ class UndeclaredObservation(ExpectationError):
 def restricted(run: Run, declared: Observations, predicate: str) -> Run:
     """The run as a predicate may read it: what it does not declare raises UndeclaredObservation.
 
-    Poses of links that objects were attached to may always be read, where they were recorded.
+    Poses of TCPs and of links that objects were attached to may always be read, where they were
+    recorded.
     """
     signals = _DeclaredSignals(run, declared, predicate)
     captures = run.captures
@@ -139,5 +140,6 @@ class _DeclaredFrames(Mapping[str, FloatArray]):
         is_carrier = "attachments" not in self._run.unrecorded and any(
             link == record.link for record in self._run.attachments
         )
-        if not is_fixed and not is_carrier:
+        is_tip = any(link == arm.tcp_link for arm in robot.arms)
+        if not is_fixed and not is_carrier and not is_tip:
             raise UndeclaredObservation(self._predicate, f"the pose of the link '{link}'")

@@ -55,8 +55,15 @@ def as_expectation(spec: ExpectationFields) -> Expectation:
     return spec
 
 
-def check_expectation(spec: Expectation, loc: Loc, scope: Scope) -> None:
-    """Report what is wrong with an expectation; names may be of steps and objects further down."""
+def check_expectation(spec: Expectation, loc: Loc, scope: Scope, step: str = "") -> None:
+    """Report what is wrong with an expectation; names may be of steps and objects further down.
+
+    Args:
+        spec: The expectation to be checked.
+        loc: Its place in the file.
+        scope: Every name of the file.
+        step: The id of the step under which it stands; empty for the whole run.
+    """
     if spec.during is not None and spec.during not in scope.step_ids:
         scope.problems.unknown(
             (*loc, "during"), "step with the id", spec.during, scope.step_ids, needs=()
@@ -64,8 +71,12 @@ def check_expectation(spec: Expectation, loc: Loc, scope: Scope) -> None:
     if loc[0] == "expect" and len(loc) == 2:
         _check_step_is_named(spec, loc, scope)
     for key, inner in spec.predicates().items():
-        check_expectation(inner, (*loc, key), scope)
-    spec.check(At(scope, loc))
+        check_expectation(inner, (*loc, key), scope, spec.during or step)
+    arm = scope.arm_of(spec.stated_arm(), None, loc, "by")
+    if spec.stated_arm() is None:
+        arm = scope.step_ids.get(spec.during or step, "") or arm
+    with scope.with_arm(arm, "by"):
+        spec.check(At(scope, loc))
 
 
 def _check_step_is_named(spec: Expectation, loc: Loc, scope: Scope) -> None:

@@ -25,13 +25,22 @@ def link_poses(run: Run, link: str) -> FloatArray:
     robot, count = run.robot, len(run.signals.times)
     if link == "world":
         return np.broadcast_to(IDENTITY, (count, 7))
-    if link == robot.tcp_link:
+    if link == robot.recorded_tcp:
         return run.signals.tcp_pose
     if link in run.signals.frames:
         return run.signals.frames[link]
     if link in robot.static_link_poses:
         return np.broadcast_to(robot.static_link_poses[link], (count, 7))
     raise NotObservable(f"the pose of link '{link}' was not recorded")
+
+
+def tcp_poses(run: Run) -> FloatArray:
+    """T_world_tcp of the selected arm, shape (N, 7).
+
+    Raises:
+        NotObservable: It was not recorded.
+    """
+    return link_poses(run, run.robot.tcp_link)
 
 
 def object_poses(run: Run, name: str) -> FloatArray:

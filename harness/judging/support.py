@@ -18,10 +18,10 @@ from harness.judging.contacts import (
     TOUCH_FORCE,
     bodies_touching,
     force_between,
-    hand_links,
     touched,
 )
 from harness.judging.facts import fact
+from harness.judging.hands import every_hand_link
 from harness.judging.hold import gripped, weight_of
 from harness.judging.poses import object_poses
 from harness.judging.temporal import without_gaps
@@ -58,7 +58,7 @@ def riders(run: Run, carrier: str) -> dict[str, BoolArray]:
     each other.
     """
     free = {each.name for each in run.objects if not each.is_static and each.in_simulation}
-    hand = frozenset[str]() if run.robot.gripper is None else hand_links(run.robot.gripper)
+    hand = every_hand_link(run)
     group, touching = _connected(run, carrier, free), dict[str, dict[str, BoolArray]]()
     for name in group:
         forces = bodies_touching(run, name, but=hand)

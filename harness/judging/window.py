@@ -45,7 +45,10 @@ class Window:
     @property
     def tcp_position(self) -> FloatArray:
         """Positions of the TCP in the world [m], shape (n, 3)."""
-        return self.cut(self.run.signals.tcp_pose)[:, :3]
+        robot, signals = self.run.robot, self.run.signals
+        is_recorded = robot.tcp_link == robot.recorded_tcp
+        poses = signals.tcp_pose if is_recorded else signals.frames[robot.tcp_link]
+        return self.cut(poses)[:, :3]
 
     def cut(self, values: np.ndarray[Any, D]) -> np.ndarray[Any, D]:
         """The window's part of an array over the run's samples."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, cast
+from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -194,6 +193,9 @@ class RobotSpec(SpecModel):
         return self
 
 
+ArmName = Annotated[Name, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]
+
+
 class Ros2Names(SpecModel):
     """Names on the ROS 2 graph, where they differ from the robot's own."""
 
@@ -239,7 +241,15 @@ class ScenarioContent(SpecModel):
         default=(),
         description="The requirements that this scenario verifies, by their identifiers.",
     )
-    robot: RobotSpec = Field(description="The robot: the name of a model, or its keys.")
+    robot: RobotSpec | None = Field(
+        default=None, description="The robot: the name of a model, or its keys."
+    )
+    robots: Annotated[dict[ArmName, RobotSpec], Field(min_length=2, max_length=8)] | None = Field(
+        default=None,
+        description="The arms by their names, as `left` and `right`, which become one robot, in "
+        "place of `robot`. The name and `_` stand in front of the names of an arm's links, joints "
+        "and groups; its planning group has the name alone.",
+    )
     world: WorldChoice = Field(
         default=WorldChoice(name="empty"),
         description="The world: its name, or its keys. The default `empty` has a floor at z = 0.",
@@ -279,14 +289,22 @@ class ScenarioContent(SpecModel):
         default=(), description="Expectations that are judged over the whole run."
     )
 
+    @property
+    def robot_key(self) -> Literal["robot", "robots"]:
+        """The key that says what the robot is."""
+        return "robot" if self.robots is None else "robots"
+
+    @model_validator(mode="after")
+    def _one_robot(self) -> Self:
+        if self.robot is None and self.robots is None:
+            raise ValueError("`robot` is missing")
+        if self.robot is not None and self.robots is not None:
+            raise ValueError("`robot` is one arm, and `robots` are several: give one of the two")
+        return self
+
 
 class Scenario(CaseKeys, ScenarioContent):
     """A scenario: one test of an arm application."""
-
-    not_yet: ClassVar[Mapping[str, str]] = {
-        "robots": "a scenario has one `robot`; two arms are one description with a group for each,"
-        " which steps name with `group`"
-    }
 
     def expectation_names(self) -> list[str]:
         """The names of the expectations that have one."""

@@ -65,7 +65,8 @@ def _text(schema: Schema) -> str:
 
 def scenario_schema() -> Schema:
     """The scenario file's schema."""
-    return _schema_of(Scenario, "A scenario for a robot arm")
+    one_robot = [{"required": ["robot"]}, {"required": ["robots"]}]
+    return {**_schema_of(Scenario, "A scenario for a robot arm"), "oneOf": one_robot}
 
 
 def world_schema() -> Schema:

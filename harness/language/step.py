@@ -81,6 +81,11 @@ class Step(SpecModel):
     group: Name | None = Field(
         default=None, description="The SRDF planning group that moves; the default is the arm's."
     )
+    robot: Name | None = Field(
+        default=None,
+        description="The arm that carries out the step, of a robot with several; its name is that "
+        "of its planning group. A `group` of one arm says so too.",
+    )
     expect: tuple[AnyExpectation, ...] = Field(
         default=(), description="Expectations that are judged over this step."
     )

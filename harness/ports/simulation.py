@@ -65,8 +65,8 @@ class Faults(Protocol):
         """Change the sliding friction of an object's surface, its other frictions alike."""
         ...
 
-    def weaken_gripper(self, share: float) -> float:
-        """Leave the gripper a share of its effort, (0, 1]."""
+    def weaken_gripper(self, share: float, joint: str = "") -> float:
+        """Leave the gripper with a joint a share of its effort, (0, 1]; by default the only one."""
         ...
 
     def stall_joint(self, joint: str) -> bool:
@@ -138,19 +138,21 @@ class Simulator(Protocol):
         *,
         timeout: float,
         expected: ExpectedGrasp | None = None,
+        joint: str = "",
     ) -> GripperResult:
-        """Drive the gripper's joint under an effort limit until it arrives or stalls.
+        """Drive a gripper's joint under an effort limit until it arrives or stalls.
 
         Args:
             position: The goal of the gripper's joint.
             max_effort: The limit of its effort.
             timeout: The longest time that it may take [s].
             expected: Where the fingers should meet an object; only what has no physics reads it.
+            joint: The gripper's joint; by default that of the only gripper.
         """
         ...
 
-    def start_gripper(self, position: float, max_effort: float) -> None:
-        """Let the gripper set out while time is moved by other calls; `command_gripper` follows."""
+    def start_gripper(self, position: float, max_effort: float, joint: str = "") -> None:
+        """Let a gripper set out while time is moved by other calls; `command_gripper` follows."""
         ...
 
     def hold(self, duration: float) -> None:

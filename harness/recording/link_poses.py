@@ -55,4 +55,17 @@ def planned_tcp_poses(
     start = min(step.start_index, len(run.signals.times) - 1)
     rows = np.tile(run.signals.joint_positions[start], (len(positions), 1))
     rows[:, [columns[name] for name in joint_names]] = positions
-    return replayed_link_poses(run.robot, rows, [run.robot.tcp_link]).get(run.robot.tcp_link)
+    robot = run.robot.of_arm.get(step.arm, run.robot)
+    return replayed_link_poses(robot, rows, [robot.tcp_link]).get(robot.tcp_link)
+
+
+def tcp_tracks(run: Run) -> dict[str, FloatArray]:
+    """T_world_tcp of each arm as recorded, by its name, shape (N, 7); of one arm under ``.
+
+    An arm whose TCP was not recorded is left out.
+    """
+    first, *others = run.robot.arms or (None,)
+    name = "" if first is None else first.name
+    frames = run.signals.frames
+    known = {arm.name: frames[arm.tcp_link] for arm in others if arm and arm.tcp_link in frames}
+    return {name: run.signals.tcp_pose, **known}

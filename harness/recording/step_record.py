@@ -32,6 +32,7 @@ class StepRecord:
         explanation: IK solutions and their results, blocking pairs, nearest pose;
             `harness.recording.explanation` and the records of failures have the parts.
         result: What the step reports; `harness.recording.step_results` has the common parts.
+        arm: The arm that carried it out, of a robot with several.
     """
 
     id: str
@@ -51,6 +52,7 @@ class StepRecord:
     planner: Details = field(default_factory=Details)
     explanation: Details = field(default_factory=Details)
     result: Details = field(default_factory=Details)
+    arm: str = ""
 
 
 def is_nested(inner: str, outer: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -86,7 +86,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         tcp_link = frame.name
         if arm is not None:
             srdf = _joined(arm, gripper, flange, tcp_link)
-    _refuse_clashes(links, joints, source)
+    refuse_clashes(links, joints, source)
     tree_links, tree_joints = in_tree_order(links, joints, source)
     srdf = replace(srdf, disabled=_allowed(srdf, tree_links, tree_joints, source))
     facts = next((part.facts.gripper for part in parts[::-1] if part.facts.gripper), None)
@@ -166,7 +166,12 @@ def _joined(arm: RobotPart, gripper: RobotPart, flange: str, tcp_link: str) -> S
     )
 
 
-def _refuse_clashes(links: list[Link], joints: list[Joint], source: str) -> None:
+def refuse_clashes(links: Sequence[Link], joints: Sequence[Joint], source: str) -> None:
+    """Refuse links or joints of the same name.
+
+    Raises:
+        RobotError: There are some.
+    """
     for kind, names in (
         ("link", [link.name for link in links]),
         ("joint", [joint.name for joint in joints]),

@@ -7,7 +7,7 @@ are built from the same description, and a run stores it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -188,6 +188,23 @@ class Gripper:
         return self.palm_link in self.pads.values()
 
 
+@dataclass(frozen=True, eq=False)
+class Arm:
+    """One of several arms of a robot; its name is that of its planning group.
+
+    Attributes:
+        name: The name of its planning group.
+        tcp_link: The link whose pose is the arm's TCP.
+        base_link: The first link of the arm.
+        gripper: Its gripper; None for an arm without one.
+    """
+
+    name: str
+    tcp_link: str
+    base_link: str
+    gripper: Gripper | None = None
+
+
 @dataclass(frozen=True)
 class TrackingTolerances:
     """Tolerances of a JointTrajectoryController for every joint [rad or m]."""
@@ -230,6 +247,12 @@ class RobotDescription:
         joint_controller: A plug-in of the kind `controller`, which moves the joints in the physics.
         notes: Notes on ignored elements and assumptions.
         rejected_grippers: Why parts that look like grippers are none, a sentence each.
+        arms: The arms of a robot that has several; `arm_group`, `gripper`, `tcp_link` and
+            `base_link` are those of the selected arm, or of the first where none is. A run records
+            the TCP of the first.
+        default_arm: The name of the arm that is selected where none is named; empty where there is
+            no such arm.
+        selected_arm: The name of the arm that `of_arm` selected; empty for the whole robot.
     """
 
     name: str
@@ -254,6 +277,9 @@ class RobotDescription:
     joint_controller: str = "position_servo"
     notes: tuple[str, ...] = ()
     rejected_grippers: tuple[str, ...] = ()
+    arms: tuple[Arm, ...] = ()
+    default_arm: str = ""
+    selected_arm: str = ""
 
     @cached_property
     def movable_joints(self) -> tuple[Joint, ...]:
@@ -321,14 +347,59 @@ class RobotDescription:
         return tuple(name for name in self.link_names if name in bodies - solid)
 
     @property
+    def grippers(self) -> tuple[Gripper, ...]:
+        """Every gripper of the robot."""
+        if not self.arms:
+            return () if self.gripper is None else (self.gripper,)
+        return tuple(arm.gripper for arm in self.arms if arm.gripper is not None)
+
+    @cached_property
+    def of_arm(self) -> Mapping[str, RobotDescription]:
+        """The same robot with each of its arms selected, by the arm's name."""
+        return {
+            arm.name: replace(
+                self,
+                arm_group=arm.name,
+                gripper=arm.gripper,
+                tcp_link=arm.tcp_link,
+                base_link=arm.base_link,
+                selected_arm=arm.name,
+            )
+            for arm in self.arms
+        }
+
+    @property
+    def recorded_tcp(self) -> str:
+        """The link whose pose a run records as the TCP's."""
+        return self.arms[0].tcp_link if self.arms else self.tcp_link
+
+    @property
+    def needs_arm(self) -> bool:
+        """Whether the robot has several arms, and none of them is selected."""
+        return bool(self.arms) and not self.selected_arm
+
+    def arm_of_group(self, group: str) -> str:
+        """The name of the arm that has all joints of a group; empty where none has."""
+        names = set(self.group_joints(group))
+        for arm in self.arms:
+            own = set(self.group_joints(arm.name))
+            if arm.gripper is not None:
+                own |= {*self.group_joints(arm.gripper.group), arm.gripper.joint}
+            if names and names <= own:
+                return arm.name
+        return ""
+
+    @property
     def default_group(self) -> str:
         """Default group of steps: the arm, else the gripper."""
         return self.arm_group or (self.gripper.group if self.gripper else "")
 
     @property
     def arm_joints(self) -> tuple[str, ...]:
-        """Joints of the arm; every movable joint where the robot is a gripper alone."""
-        return self.group_joints(self.arm_group) or self.joint_names
+        """Joints of the arm, or of all arms; every movable joint of a gripper alone."""
+        arms = [arm.name for arm in self.arms] if self.needs_arm else [self.arm_group]
+        joints = tuple(joint for arm in arms for joint in self.group_joints(arm))
+        return joints or self.joint_names
 
     def group_joints(self, group: str) -> tuple[str, ...]:
         """Joints of a group, from base to tip; none where there is no such group."""

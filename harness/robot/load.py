@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from harness.core.errors import RobotOptionError
+from harness.core.errors import RobotError, RobotOptionError
 from harness.core.files import is_dir, is_file
 from harness.core.geometry import CollisionMode
 from harness.core.limits import XML_FILE
@@ -19,7 +19,7 @@ from harness.core.resources import data_folder
 from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.files.yaml_file import read_text
-from harness.language.scenario import RobotSpec
+from harness.language.scenario import RobotSpec, ScenarioContent
 from harness.robot.assumed_limits import with_assumed_limits_listed, with_plausible_efforts
 from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
@@ -37,6 +37,7 @@ from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
+from harness.robot.several_arms import joined_arms
 from harness.robot.srdf.read import read_srdf
 from harness.robot.urdf.urdf import SDF_HINT, parse_urdf
 from harness.robot.xacro.file import arguments_of
@@ -79,19 +80,40 @@ def read_bundled(names: Collection[str]) -> None:
             _bundled(name, ())
 
 
-def load_ahead(spec: RobotSpec, collision: CollisionMode | None) -> None:
-    """Load a robot without files of the user in advance, for this process and its forks.
+def load_ahead(scenario: ScenarioContent) -> None:
+    """Load robots without files of the user in advance, for this process and its forks.
 
     Raises:
         RobotError: An option does not fit the robot.
     """
-    if _is_bundled(spec):
-        load_robot(spec, collision=collision)
+    one = () if scenario.robot is None else (scenario.robot,)
+    for spec in (*one, *(scenario.robots or {}).values()):
+        if _is_bundled(spec):
+            load_robot(spec, collision=scenario.collision)
 
 
 def gripper_names() -> tuple[str, ...]:
     """Names of the grippers that `gripper` accepts: bundled, then installed ones."""
     return tuple(name for name, (_, facts) in _every_model().items() if facts.kind == "gripper")
+
+
+def load_scenario_robot(scenario: ScenarioContent, base_dir: Path) -> RobotDescription:
+    """The robot of a scenario: its `robot`, or the arms of its `robots` as one.
+
+    Raises:
+        RobotError: A robot is unknown, its files cannot be used, or an option does not fit it.
+    """
+    if scenario.robot is not None:
+        return load_robot(scenario.robot, base_dir, scenario.collision)
+    arms: dict[str, RobotDescription] = {}
+    for name, spec in (scenario.robots or {}).items():
+        try:
+            arms[name] = load_robot(spec, base_dir, scenario.collision)
+        except RobotOptionError as error:
+            raise RobotOptionError(f"{name}.{error.key}", error.reason, "robots") from error
+        except RobotError as error:
+            raise RobotOptionError(name, str(error), "robots") from error
+    return joined_arms(arms)
 
 
 def load_robot(

@@ -18,7 +18,7 @@ from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
-from harness.robot.load import load_robot
+from harness.robot.load import load_robot, load_scenario_robot
 from harness.robot.xacro.file import is_xacro
 
 ROBOT_YAML = "robot.yaml"
@@ -125,7 +125,7 @@ def load_source(source: RobotSource) -> RobotDescription:
             if getattr(source, option):
                 raise RobotError(f"'{path}' says its robot itself: {OPTIONS[option]} is for others")
         scenario = load_scenario(path).scenario
-        return load_robot(scenario.robot, path.parent, scenario.collision)
+        return load_scenario_robot(scenario, path.parent)
     return load_robot(RobotSpec.model_validate(source.words()))
 
 

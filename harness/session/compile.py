@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.cell.controllers import controller_names
-from harness.cell.program import Program, ProgramExpectation, ProgramStep
+from harness.cell.program import Program, ProgramExpectation, ProgramStep, with_arm
 from harness.cell.scope import At, Prerequisite, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
@@ -86,7 +86,7 @@ class _Compiler:
         self.step_locs: dict[str, Loc] = {}
         self.object_locs: dict[str, Loc] = {}
         self.expectations: list[ProgramExpectation] = []
-        self.pending: list[tuple[ExpectationFields, Loc]] = []
+        self.pending: list[tuple[ExpectationFields, Loc, str]] = []
 
     def compile(self) -> Program:
         sources, scenario = self.sources, self.sources.loaded.scenario
@@ -103,9 +103,9 @@ class _Compiler:
         steps = self._steps(scenario.steps, ("steps",), "steps")
         for index, expectation in enumerate(scenario.expect):
             self._expectation(expectation, ("expect", index), "")
-        for expectation, loc in self.pending:
+        for expectation, loc, step in self.pending:
             with self._gaps_allowed():
-                check_expectation(as_expectation(expectation), loc, self.scope)
+                check_expectation(as_expectation(expectation), loc, self.scope, step)
         check_cameras(sources.world.world.cameras, scenario.cameras, self.scope)
         videos = check_videos(scenario.videos, self.scope)
         controllers = controller_names(sources.description, scenario.ros2, self.problems)
@@ -303,30 +303,32 @@ class _Compiler:
     # -- steps --------------------------------------------------------------------------------
 
     def _steps(
-        self, specs: Sequence[Step], loc: Loc, path: str, suffix: str = ""
+        self, specs: Sequence[Step], loc: Loc, path: str, suffix: str = "", arm: str = ""
     ) -> tuple[ProgramStep, ...]:
         return tuple(
-            self._step(spec, (*loc, index), f"{path}[{index}]", suffix)
+            self._step(spec, (*loc, index), f"{path}[{index}]", suffix, arm)
             for index, spec in enumerate(specs)
         )
 
-    def _step(self, spec: Step, loc: Loc, path: str, suffix: str) -> ProgramStep:
+    def _step(self, spec: Step, loc: Loc, path: str, suffix: str, arm: str) -> ProgramStep:
         sources = self.sources
         self.step_locs[path] = loc
         step_id = f"{spec.id}{suffix}" if spec.id else path
-        if not self.scope.claim_step_id(step_id):
-            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'", needs=())
         with self._gaps_allowed():
             for keys, obj in spec.new_objects():
                 with self._gaps_allowed(obj.name):
                     self._later_object(obj, (*loc, *keys))
         if spec.group is not None:
             self.scope.check_group(spec.group, (*loc, "group"))
-        with self._gaps_allowed():
+        stated = self.scope.arm_of(spec.robot, spec.group, loc)
+        arm = arm if spec.robot is None and spec.group is None and arm else stated
+        if not self.scope.claim_step_id(step_id, arm):
+            self.problems.add((*loc, "id"), f"another step has the id '{step_id}'", needs=())
+        with self._gaps_allowed(), self.scope.with_arm(arm):
             spec.check(At(self.scope, loc))
         title, options = spec.verb, self._options(None, loc, path)
         with self._gaps_allowed():
-            title = spec.title
+            title = with_arm(arm, spec.title)
         with self._gaps_allowed():
             options = self._options(spec.planning, loc, path)
         line, _ = sources.loaded.lines.line_of(loc)
@@ -337,13 +339,16 @@ class _Compiler:
             summary=title,
             line=line,
             options=options,
-            children=self._children(spec, loc, path, suffix),
+            children=self._children(spec, loc, path, suffix, arm),
+            arm=arm,
         )
         for index, expectation in enumerate(spec.expect):
             self._expectation(expectation, (*loc, "expect", index), step_id)
         return step
 
-    def _children(self, spec: Step, loc: Loc, path: str, suffix: str) -> tuple[ProgramStep, ...]:
+    def _children(
+        self, spec: Step, loc: Loc, path: str, suffix: str, arm: str
+    ) -> tuple[ProgramStep, ...]:
         children: list[ProgramStep] = []
         blocks: Iterable[Block] = ()
         with self._gaps_allowed():
@@ -356,7 +361,8 @@ class _Compiler:
                     needs=(),
                 )
                 break
-            children += self._steps(block.steps, block.loc, block.path, suffix + block.suffix)
+            inner = suffix + block.suffix
+            children += self._steps(block.steps, block.loc, block.path, inner, arm)
         return tuple(children)
 
     def _options(self, planning: Planning | None, loc: Loc, path: str) -> PlanningOptions:
@@ -385,7 +391,7 @@ class _Compiler:
             return name
 
     def _expectation(self, spec: ExpectationFields, loc: Loc, step: str) -> None:
-        self.pending.append((spec, loc))
+        self.pending.append((spec, loc, step))
         line, _ = self.sources.loaded.lines.line_of(loc)
         self.expectations.append(ProgramExpectation(spec, step, line))
 

@@ -32,7 +32,8 @@ class DryFaults:
         del name
         return sliding
 
-    def weaken_gripper(self, share: float) -> float:
+    def weaken_gripper(self, share: float, joint: str = "") -> float:
+        del joint
         return share
 
     def stall_joint(self, joint: str) -> bool:
@@ -107,11 +108,13 @@ class DrySimulator:
         *,
         timeout: float,
         expected: ExpectedGrasp | None = None,
+        joint: str = "",
     ) -> GripperResult:
         del max_effort, timeout
-        gripper = self._description.gripper
-        if gripper is None:
+        grippers = {gripper.joint: gripper for gripper in self._description.grippers}
+        if not grippers:
             raise RuntimeError("the robot has no gripper")
+        gripper = grippers[joint or next(iter(grippers))]
         index = self._description.joint_index[gripper.joint]
         before = self._positions[index]
         span = gripper.closed_position - gripper.open_position
@@ -132,8 +135,8 @@ class DrySimulator:
             between=touched,
         )
 
-    def start_gripper(self, position: float, max_effort: float) -> None:
-        del position, max_effort
+    def start_gripper(self, position: float, max_effort: float, joint: str = "") -> None:
+        del position, max_effort, joint
 
     def hold(self, duration: float) -> None:
         del duration

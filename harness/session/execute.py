@@ -139,7 +139,7 @@ class ProgramExecution:
         self.program = program
         self.ended_early = ""
         self.cell = Cell(
-            description=program.description,
+            robot=program.description,
             scene=ports.scene,
             kinematics=ports.kinematics,
             planner=ports.planner,
@@ -234,6 +234,7 @@ def _not_reached(step: ProgramStep) -> StepRecord:
         line=step.line,
         status="not reached",
         expected_error=step.spec.expect_error or "",
+        arm=step.arm,
     )
 
 

@@ -32,7 +32,7 @@ from harness.ports.planning import PlanningPorts
 from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
 from harness.robot.description import RobotDescription
-from harness.robot.load import load_robot
+from harness.robot.load import load_robot, load_scenario_robot
 from harness.session.compile import Sources, compile_scenario
 from harness.session.observation.findings import about_file
 from harness.world.imported import ImportedWorld
@@ -68,9 +68,11 @@ class Prepared:
 
     @property
     def observed_links(self) -> list[str]:
-        """Links whose poses the expectations read."""
-        links = set(self.program.description.link_names)
-        return [name for name in self.observations.frames if name in links]
+        """Links whose poses the expectations read, and the TCPs of all arms but the first."""
+        robot = self.program.description
+        tips = {arm.tcp_link for arm in robot.arms[1:]}
+        links = set(robot.link_names)
+        return [name for name in self.observations.frames | tips if name in links]
 
 
 def prepare(
@@ -166,13 +168,13 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
 
 def _robot(loaded: LoadedScenario) -> RobotDescription:
     try:
-        scenario = loaded.scenario
-        return load_robot(scenario.robot, loaded.path.parent, scenario.collision)
+        return load_scenario_robot(loaded.scenario, loaded.path.parent)
     except RobotOptionError as error:
-        loc = ("robot", error.key.split(".")[0])
+        loc = (error.below, *error.key.split(".")[: 1 if error.below == "robot" else 2])
         raise SpecError([loaded.lines.problem(loc, str(error))]) from error
     except RobotError as error:
-        raise SpecError([loaded.lines.problem(("robot",), str(error))]) from error
+        loc = (loaded.scenario.robot_key,)
+        raise SpecError([loaded.lines.problem(loc, str(error))]) from error
 
 
 def _world(loaded: LoadedScenario) -> ImportedWorld:

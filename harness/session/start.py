@@ -98,7 +98,7 @@ def start_physics(
     except ModelRefused as refused:
         raise SpecError([_problem(prepared, refused)]) from refused
     except RobotError as error:  # a mesh that cannot be read
-        problem = prepared.loaded.lines.problem(("robot",), str(error))
+        problem = prepared.loaded.lines.problem((prepared.loaded.scenario.robot_key,), str(error))
         raise SpecError([problem]) from error
 
 
@@ -125,4 +125,4 @@ def _problem(prepared: Prepared, refused: ModelRefused) -> Problem:
     loc = program.object_locs.get(name)
     kind = "object" if loc is not None else "link"
     message = f"{kind} '{name}': {refused.reason}" if name else refused.reason
-    return prepared.loaded.lines.problem(loc or ("robot",), message)
+    return prepared.loaded.lines.problem(loc or (prepared.loaded.scenario.robot_key,), message)

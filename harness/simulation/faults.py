@@ -39,7 +39,7 @@ class MujocoFaults:
         self._simulator = simulator
         self._physics = physics
         self._data = data
-        self.grip_share = 1.0
+        self.grip_share: dict[int, float] = {}  # by the actuator of the gripper
         self._stalled: set[str] = set()
         self._deviation = 0.0
         self._latency = 0.0
@@ -68,11 +68,9 @@ class MujocoFaults:
         wake(model, self._data)
         return before
 
-    def weaken_gripper(self, share: float) -> float:
-        """Limit the gripper to a share of its effort, now and for every later command."""
-        before, self.grip_share = self.grip_share, share
-        self._simulator.renew_grip_limit()
-        return before
+    def weaken_gripper(self, share: float, joint: str = "") -> float:
+        """Limit a gripper to a share of its effort, now and for every later command."""
+        return self._simulator.weaken_gripper(joint, share)
 
     def stall_joint(self, joint: str) -> bool:
         """Hold a joint at its position by closing its range; its motor keeps pulling."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.ports.simulation import GripperResult
-from harness.robot.description import RobotDescription
+from harness.robot.description import Gripper, Joint
 from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.recording import Recording
 from harness.simulation.set_points import SetPoints, ramp
@@ -28,22 +28,20 @@ CHECK_EVERY = 10  # Samples between two checks whether the joint reached its goa
 class GripperDrive:
     """The gripper's joint under a force-limited servo; after a stall it keeps squeezing."""
 
-    def __init__(self, simulator: MujocoSimulator, recording: Recording) -> None:
-        gripper = simulator.description.gripper
-        assert gripper is not None
+    def __init__(self, simulator: MujocoSimulator, recording: Recording, gripper: Gripper) -> None:
         self._simulator = simulator
         self._recording = recording
         self._gripper = gripper
         self._joint = simulator.description.joint_index[gripper.joint]
-        self._actuator = int(np.searchsorted(simulator.physics.actuated, self._joint))
+        self.actuator = int(np.searchsorted(simulator.physics.actuated, self._joint))
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
-        simulator.limit_grip(self._actuator, gripper.grip_effort)
+        simulator.limit_grip(self.actuator, gripper.grip_effort)
         self.pending: SetPoints | None = None
 
     def start(self, position: float, max_effort: float) -> None:
         """Start moving to a position; the set points join those of the arm's next motion."""
-        self._simulator.limit_grip(self._actuator, max_effort)
+        self._simulator.limit_grip(self.actuator, max_effort)
         self.pending = self._ramp(position)
 
     def join(self, whole: SetPoints) -> SetPoints:
@@ -60,22 +58,22 @@ class GripperDrive:
             np.concatenate([whole.accelerations, still]),
         )
         for rows, own in zip(vars(joined).values(), vars(points).values(), strict=True):
-            rows[: len(points), self._actuator] = own[:, 0]
-        joined.positions[len(points) :, self._actuator] = points.positions[-1, 0]
+            rows[: len(points), self.actuator] = own[:, 0]
+        joined.positions[len(points) :, self.actuator] = points.positions[-1, 0]
         return joined
 
     def drive(self, position: float, max_effort: float, timeout: float) -> GripperResult:
         """Move to a position under an effort limit until the goal, a stall or the timeout."""
         simulator, timestep = self._simulator, self._recording.timestep
         points = self._ramp(position)
-        whole = simulator.whole(points, np.array([self._actuator]))
+        whole = simulator.whole(points, np.array([self.actuator]))
         controls = simulator.controls(whole)
         first = self._recording.count
         stall_samples = round(STALL_TIME / timestep)
         last = first + max(1, int(timeout / timestep + 1e-6))
         begin, reached, stalled = 0, False, False
         while self._recording.count < last and not (reached or stalled):
-            simulator.limit_grip(self._actuator, max_effort)
+            simulator.limit_grip(self.actuator, max_effort)
             count = min(CHECK_EVERY, last - self._recording.count)
             if begin < len(whole) - 1:
                 end = min(begin + count, len(whole) - 1)
@@ -93,7 +91,7 @@ class GripperDrive:
         reached = self._miss(position) <= GOAL_TOLERANCE * self._range
         return GripperResult(
             position=float(simulator.joint_positions()[self._joint]),
-            effort=float(self._recording.actuator_efforts()[self._actuator]),
+            effort=float(self._recording.actuator_efforts()[self.actuator]),
             stalled=stalled and not reached,
             reached_goal=reached,
             contacts=self._contacts(),
@@ -106,7 +104,8 @@ class GripperDrive:
         measured = float(simulator.joint_positions()[self._joint])
         commanded = float(simulator.commanded_positions()[self._joint])
         timestep = self._recording.timestep
-        return gripper_ramp(simulator.description, measured, commanded, position, timestep)
+        joint = simulator.description.joint_by_name[self._gripper.joint]
+        return gripper_ramp(joint, self._speed, measured, commanded, position, timestep)
 
     def _miss(self, position: float) -> float:
         return abs(float(self._simulator.joint_positions()[self._joint]) - position)
@@ -158,15 +157,12 @@ class GripperDrive:
 
 
 def gripper_ramp(
-    description: RobotDescription, measured: float, commanded: float, goal: float, timestep: float
+    joint: Joint, speed: float, measured: float, commanded: float, goal: float, timestep: float
 ) -> SetPoints:
     """The motion of the gripper's joint to a goal.
 
     It begins at the last command, or at the joint's position where the command is in the other
     direction.
     """
-    gripper = description.gripper
-    assert gripper is not None
-    joint, speed = description.joint_by_name[gripper.joint], joint_speed(description, gripper)
     turns_back = (goal - measured) * (commanded - measured) < 0
     return ramp(measured if turns_back else commanded, goal, speed, joint.acceleration, timestep)

@@ -1,4 +1,4 @@
-"""Drives the motors as the robot's joint controller says, and the gripper's by its own servo."""
+"""Drives motors as the robot's joint controller says, those of grippers by their own servos."""
 
 # pyright: reportAttributeAccessIssue=false
 
@@ -44,9 +44,9 @@ class JointDrive:
         self._coupling = coupling(description)
         self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
         names = [description.joint_names[place] for place in physics.actuated]
-        hand = "" if description.gripper is None else description.gripper.joint
-        self._arm = np.array([i for i, name in enumerate(names) if name != hand], dtype=np.int64)
-        self._hand = np.array([i for i, name in enumerate(names) if name == hand], dtype=np.int64)
+        hands = {gripper.joint for gripper in description.grippers}
+        is_hand = np.array([name in hands for name in names], dtype=bool)
+        self._arm, self._hand = np.flatnonzero(~is_hand), np.flatnonzero(is_hand)
         self._joint_names = tuple(names[index] for index in self._arm)
         kind = registry(JointController.plugin_kind).find(description.joint_controller)
         self.controller: JointController = kind()

@@ -198,11 +198,8 @@ def _add_grasp_contacts(
 
     Explicit pairs have their own friction damping; their other parameters are the usual ones.
     """
-    gripper = description.gripper
-    if gripper is None:
-        return
     damping = FRICTION_DAMPING_PER_STEP / spec.option.timestep
-    for link in gripper.links:
+    for link in (link for gripper in description.grippers for link in gripper.links):
         for obj in (obj for obj in objects if not obj.is_static):
             for finger_geom in spec.body(link).geoms:
                 for object_geom in spec.body(obj.name).geoms:

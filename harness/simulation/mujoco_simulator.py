@@ -103,7 +103,7 @@ class MujocoSimulator:
         self._command = description.start_positions()[self.physics.actuated]
         self._control = self._first_control()
         self._data.ctrl[:] = self._control
-        self._grip: tuple[int, float] | None = None  # actuator, effort limit
+        self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
         self.faults = MujocoFaults(self, self.physics, self._data)
         self._recording = Recording(self.physics, self._data)
         self._surfaces = Surfaces(self.physics, self._data, self._recording)
@@ -112,7 +112,10 @@ class MujocoSimulator:
         self.overlaps_at_start = overlaps(self.physics, self._data)
         self._recording.start(self._command)
         self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
-        self._gripper = None if description.gripper is None else GripperDrive(self, self._recording)
+        self._grippers = {
+            gripper.joint: GripperDrive(self, self._recording, gripper)
+            for gripper in description.grippers
+        }
 
     def limit(self, longest: float) -> None:
         """Let the run take at most this simulated time [s]; a call that exceeds it fails."""
@@ -182,8 +185,8 @@ class MujocoSimulator:
         self._recording.refuse_beyond(int(trajectory.duration / self._timestep))
         points = sample_trajectory(trajectory, self._timestep)
         whole = self.whole(points, columns)
-        if self._gripper is not None:
-            whole = self._gripper.join(whole)
+        for gripper in self._grippers.values():
+            whole = gripper.join(whole)
         controls = self.controls(whole)
         for begin in range(0, len(whole) - 1, CHECK_EVERY):
             end = min(begin + CHECK_EVERY, len(whole) - 1)
@@ -204,18 +207,21 @@ class MujocoSimulator:
         *,
         timeout: float,
         expected: ExpectedGrasp | None = None,
+        joint: str = "",
     ) -> GripperResult:
-        """Drive the gripper's joint under an effort limit until it reaches its goal or stalls."""
+        """Drive a gripper's joint under an effort limit until it reaches its goal or stalls."""
         del expected  # the physics shows what the fingers meet
-        if self._gripper is None:
-            raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
-        return self._gripper.drive(position, max_effort, timeout)
+        return self._gripper(joint).drive(position, max_effort, timeout)
 
-    def start_gripper(self, position: float, max_effort: float) -> None:
-        """Start moving the gripper; its set points join those of the arm's next motion."""
-        if self._gripper is None:
+    def start_gripper(self, position: float, max_effort: float, joint: str = "") -> None:
+        """Start moving a gripper; its set points join those of the arm's next motion."""
+        self._gripper(joint).start(position, max_effort)
+
+    def _gripper(self, joint: str) -> GripperDrive:
+        """The drive of the gripper with a joint; by default that of the robot's first."""
+        if not self._grippers:
             raise StepFailed("INVALID_GROUP_NAME", f"{self.description.name} has no gripper")
-        self._gripper.start(position, max_effort)
+        return self._grippers[joint or next(iter(self._grippers))]
 
     def hold(self, duration: float) -> None:
         """Keep the last commands for a duration in simulation time [s]."""
@@ -291,9 +297,12 @@ class MujocoSimulator:
 
     def snapshot(self) -> PhysicsState:
         """Everything that decides how the run continues."""
-        pending = None if self._gripper is None else self._gripper.pending
         command = SimulatorCommand(
-            self._command.copy(), self._control.copy(), self._grip, pending, self._drive.copy()
+            self._command.copy(),
+            self._control.copy(),
+            dict(self._grips),
+            {joint: gripper.pending for joint, gripper in self._grippers.items()},
+            self._drive.copy(),
         )
         history, faults = self._objects.history, self.faults.state()
         surfaces = self._surfaces.history
@@ -306,10 +315,10 @@ class MujocoSimulator:
         load_state(self._model, self._data, state)
         command = state.command
         self._command, self._control = command.positions.copy(), command.control.copy()
-        self._grip = command.grip
+        self._grips = dict(command.grips)
         self._drive.restore(command.controller)
-        if self._gripper is not None:
-            self._gripper.pending = command.pending
+        for joint, gripper in self._grippers.items():
+            gripper.pending = command.pending[joint]
         self._objects.history = state.history
         self.faults.restore(state.faults)
         self._surfaces.history = state.surfaces
@@ -330,17 +339,17 @@ class MujocoSimulator:
 
     def limit_grip(self, actuator: int, effort: float) -> None:
         """Limit a gripper's effort, in addition to the effort that carries its own weight."""
-        self._grip = actuator, effort
-        effort *= self.faults.grip_share
+        self._grips[actuator] = effort
+        effort *= self.faults.grip_share.get(actuator, 1.0)
         largest = self.physics.servos.effort[actuator]
         weight = self._drive.weight(self.joint_positions())[actuator]
         limits = np.clip([weight - effort, weight + effort], -largest, largest)
         self._model.actuator_forcerange[actuator] = limits
 
     def renew_grip_limit(self) -> None:
-        """Apply the gripper's effort limit again, for its current weight and faults."""
-        if self._grip is not None:
-            self.limit_grip(*self._grip)
+        """Apply the grippers' effort limits again, for their current weight and faults."""
+        for actuator, effort in self._grips.items():
+            self.limit_grip(actuator, effort)
 
     def follow(self, points: SetPoints, controls: FloatArray | None = None) -> None:
         """Advance along set points of all actuated joints.
@@ -381,10 +390,15 @@ class MujocoSimulator:
 
     def limit_gripper(self, effort: float) -> None:
         """Limit the effort of the gripper's joint from now on."""
-        gripper = self.description.gripper
-        if gripper is not None:
-            place = self.description.joint_index[gripper.joint]
-            self.limit_grip(int(np.searchsorted(self.physics.actuated, place)), effort)
+        if self._grippers:
+            self.limit_grip(self._gripper("").actuator, effort)
+
+    def weaken_gripper(self, joint: str, share: float) -> float:
+        """Leave a gripper a share of its effort; returns the share before."""
+        actuator, shares = self._gripper(joint).actuator, self.faults.grip_share
+        before, shares[actuator] = shares.get(actuator, 1.0), share
+        self.renew_grip_limit()
+        return before
 
     def whole(self, points: SetPoints, columns: IntArray) -> SetPoints:
         """Set points of all actuated joints, those outside `columns` held, shape (N, m)."""

@@ -38,9 +38,9 @@ MIMIC_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
 
 def link_friction(description: RobotDescription, link: str) -> Friction:
     """Surface of a link; the gripper's pads have a friction of their own."""
-    gripper = description.gripper
-    if gripper is not None and link in gripper.pads.values():
-        return Friction(sliding=gripper.friction)
+    for gripper in description.grippers:
+        if link in gripper.pads.values():
+            return Friction(sliding=gripper.friction)
     return LINK_FRICTION
 
 

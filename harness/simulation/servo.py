@@ -86,8 +86,7 @@ def design_servos(description: RobotDescription, timestep: float) -> Servos:
     for kind in (slides, ~slides):
         rotor[kind & ~np.isfinite(effort)] = ROTOR_SHARE * inertia[kind].max(initial=0.0)
     frequency = np.full(len(actuated), BANDWIDTH_PER_STEP / timestep)
-    gripper = description.gripper
-    if gripper is not None:
+    for gripper in description.grippers:
         index = [joint.name for joint in actuated].index(gripper.joint)
         play = GRIPPER_SATURATION * abs(gripper.closed_position - gripper.open_position)
         frequency[index] = GRIPPER_BANDWIDTH_PER_STEP / timestep

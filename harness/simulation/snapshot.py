@@ -49,15 +49,15 @@ class SimulatorCommand:
     Attributes:
         positions: Set points of the actuated joints, shape (m,).
         control: Inputs of the servos, shape (m,).
-        grip: The actuator and the effort limit of the gripper.
-        pending: Set points of a gripper that sets out with the next motion.
+        grips: Effort limits of grippers, by actuator.
+        pending: Set points of grippers that set out with the next motion, by joint.
         controller: The joint controller, with its state.
     """
 
     positions: FloatArray
     control: FloatArray
-    grip: tuple[int, float] | None
-    pending: SetPoints | None
+    grips: Mapping[int, float]
+    pending: Mapping[str, SetPoints | None]
     controller: JointController
 
 

@@ -81,7 +81,8 @@ class _GraspInMotion(Grasp):
         miss = expected.inverse().apply(cell.measured_pose(self.object).translation)
         x, y, z = miss.tolist()
         cell.report(Interception(belt, met, (x, y, z)))
-        cell.simulator.start_gripper(self._closed, self.max_effort or cell.gripper.grip_effort)
+        hand = cell.gripper
+        cell.simulator.start_gripper(self._closed, self.max_effort or hand.grip_effort, hand.joint)
         cell.carry_out(self._plan)
         try:
             super().execute(cell)
@@ -148,7 +149,7 @@ def _reach(name: str, ajar: float, search: Search, cell: Cell) -> Meeting:
     for attempt in range(1, MEETINGS + 1):
         began = cell.simulator.time
         meeting = find_meeting(ride_of(name, cell), search, cell)
-        cell.simulator.start_gripper(ajar, cell.gripper.max_effort)
+        cell.simulator.start_gripper(ajar, cell.gripper.max_effort, cell.gripper.joint)
         reach = MoveTo(**meeting.chosen.reach_keys, group=search.group)
         number = "" if attempt == 1 else f"{attempt}"
         cell.run_children([cell.child(f"reach{number}", reach, f"move_to before {name}")])

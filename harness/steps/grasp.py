@@ -84,6 +84,7 @@ class Grasp(Step):
             self.max_effort or hand.grip_effort,
             timeout=self.timeout or DEFAULT_TIMEOUT,
             expected=ExpectedGrasp(position_around(self.object, state, cell), not obstacles),
+            joint=hand.joint,
         )
         outcome = note_result(cell, target, result)
         cell.report(GraspMode(self.mode))
@@ -94,10 +95,7 @@ class Grasp(Step):
             message, failure = f"{missed}; {cause}", GraspFailure(self.mode)
             raise StepFailed("CONTROL_FAILED", message, outcome, failure, *advice)
         cell.sync_scene()
-        cell.attach(self.object, cell.description.tcp_link, hand.links)
-        if self.mode == "weld":
-            cell.weld(self.object, hand.palm_link)
-        cell.held.append(self.object)
+        cell.take_hold(self.object, weld=self.mode == "weld")
 
 
 def check_graspable(name: str, at: At) -> None:

@@ -70,7 +70,7 @@ class Gripper(Step):
         hand = cell.gripper
         target, effort = self.command(cell)
         timeout = self.timeout or DEFAULT_TIMEOUT
-        result = cell.simulator.command_gripper(target, effort, timeout=timeout)
+        result = cell.simulator.command_gripper(target, effort, timeout=timeout, joint=hand.joint)
         note_result(cell, target, result)
         if not (result.reached_goal or result.stalled):
             raise StepFailed(

@@ -108,8 +108,8 @@ class Inject(Step):
         for name, sliding in (self.friction or {}).items():
             note("friction", name, faults.set_friction(name, sliding), sliding)
         if self.gripper_effort is not None:
-            share = self.gripper_effort
-            note("gripper_effort", cell.gripper.joint, faults.weaken_gripper(share), share)
+            share, joint = self.gripper_effort, cell.gripper.joint
+            note("gripper_effort", joint, faults.weaken_gripper(share, joint), share)
         if self.joint_stall is not None:
             note("joint_stall", self.joint_stall, faults.stall_joint(self.joint_stall), True)
         if self.sensor_noise is not None:

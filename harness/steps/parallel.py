@@ -53,7 +53,7 @@ class Parallel(Step):
         """Start the gripper with the arm; then wait until it has arrived or stalled as well."""
         gripper = next(child for child in self.steps if isinstance(child, Gripper))
         target, effort = gripper.command(cell)
-        cell.simulator.start_gripper(target, effort)
+        cell.simulator.start_gripper(target, effort, cell.gripper.joint)
         children = cell.current.children
         motion_first = sorted(children, key=lambda child: isinstance(child.spec, Gripper))
         cell.run_children(motion_first)

@@ -254,8 +254,8 @@ def _can_lift(lift: MoveRelative, state: FloatArray, cell: Cell) -> bool:
 
 def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) -> str:
     """What to do in the keys of a pick."""
-    if cell.held:
-        return f"the gripper still holds '{cell.held[-1]}': `place` or `release` it before this"
+    if held := cell.held_objects:
+        return f"the gripper still holds '{held[-1]}': `place` or `release` it before this"
     if failure.code.startswith("START_STATE"):
         return ""  # the planner's advice is about the start
     if failure.code == "GOAL_IN_COLLISION":

@@ -49,7 +49,7 @@ from harness.steps.pick import (
     with_advice,
     world_pose_spec,
 )
-from harness.steps.release import Release
+from harness.steps.release import Release, refuse_other_holder
 
 REFINEMENTS = 4
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
@@ -132,7 +132,8 @@ class Place(Step):
         Raises:
             StepFailed: INVALID_OBJECT_NAME, when the object is not held.
         """
-        name = self.object or (cell.held[-1] if cell.held else None)
+        held = cell.held_objects
+        name = self.object or (held[-1] if held else None)
         if name is None or name not in cell.scene.attached():
             what = f"'{name}' is not held" if name else "nothing is held"
             raise StepFailed(
@@ -141,6 +142,7 @@ class Place(Step):
                 NotHeldFailure(name),
                 Explanation(advice=f"put a step that takes it before: `- pick: {name or '...'}`"),
             )
+        refuse_other_holder(name, cell)
         backwards = _retreat_direction(cell)
         children = [
             *_lowering(name, self, cell),

@@ -71,19 +71,25 @@ class Release(Step):
                 CONTROL_FAILED, when a finger still touches it.
         """
         hand = cell.gripper
-        name = self.object or (cell.held[-1] if cell.held else None)
+        held = cell.held_objects
+        name = self.object or (held[-1] if held else None)
         if name is None:
             message = "nothing was grasped, so nothing can be released"
             raise StepFailed("INVALID_OBJECT_NAME", message)
+        refuse_other_holder(name, cell)
         target = hand.open_position
         if self.named_target is not None:
             states = cell.description.states_of(hand.group)
             target = states[stated_name(self.named_target, states)].positions[hand.joint]
         elif self.position is not None:
             target = self.position
-        cell.unweld(name)
+        if not cell.is_carried_by_other(name):
+            cell.unweld(name)
         result = cell.simulator.command_gripper(
-            target, hand.max_effort, timeout=self.timeout or DEFAULT_TIMEOUT
+            target,
+            hand.max_effort,
+            timeout=self.timeout or DEFAULT_TIMEOUT,
+            joint=hand.joint,
         )
         note_result(cell, target, result)
         touching = [side for side, names in result.contacts.items() if name in names]
@@ -91,5 +97,17 @@ class Release(Step):
             sides = " and ".join(f"the {side} finger" for side in touching)
             message = f"{sides} still touches '{name}' with the gripper open"
             raise StepFailed("CONTROL_FAILED", message)
-        cell.detach(name)
+        cell.let_go(name)
         cell.report(Released(name))
+
+
+def refuse_other_holder(name: str, cell: Cell) -> None:
+    """Refuse an object that other arms hold, and the step's arm does not.
+
+    Raises:
+        StepFailed: INVALID_OBJECT_NAME.
+    """
+    holders, arm = cell.holders(name), cell.description.selected_arm
+    if holders and arm not in holders:
+        holder = " and ".join(holders)
+        raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is held by {holder}, not by {arm}")

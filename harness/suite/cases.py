@@ -94,7 +94,7 @@ def read_ahead(words: Collection[str], some: Sequence[RunRequest] = ()) -> None:
         with suppress(HarnessError):  # the case itself reports the error
             read = read_scenario(job.file, job.overrides, job.seed, job.text).loaded
             if read is not None:
-                load_ahead(read.scenario.robot, read.scenario.collision)
+                load_ahead(read.scenario)
                 if not is_foreign_world(read.scenario.world.name):
                     load_world(read.scenario.world.name, read.path.parent)
     forget_inputs()

@@ -132,7 +132,8 @@ def described(block):
     content = yaml.safe_load(text)
     if {*content} & {"jobs", "include", "kind", "arm", "assignment"}:
         return None
-    return {"scenario": "x", "robot": "ur3e", "steps": [{"wait": 1}], **content}
+    robot = {} if "robots" in content else {"robot": "ur3e"}
+    return {"scenario": "x", **robot, "steps": [{"wait": 1}], **content}
 
 
 @pytest.mark.parametrize("page", EVERY_PAGE, ids=page_id)

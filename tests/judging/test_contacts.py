@@ -15,7 +15,6 @@ from harness.judging.contacts import (
     debounced,
     finger_gap,
     force_between,
-    gripper_of,
     is_there,
     pairs_of,
     robot_contact,
@@ -23,6 +22,7 @@ from harness.judging.contacts import (
     unseen_contacts,
     was_in_robot,
 )
+from harness.judging.hands import gripper_of
 from harness.judging.window import NotObservable
 from tests.judging.synthetic_run import (
     BOX,

@@ -31,11 +31,11 @@ def test_doors_and_drawers_are_joints(key):
     assert "`joints`" in found[0][1]
 
 
-def test_several_robots_are_not_taken_for_one():
+def test_several_robots_have_names():
     text = "scenario: x\nrobots: [ur3e, ur5e]\nsteps:\n  - settle\n"
     [(message, hint)] = messages(text)
-    assert message == "there is no `robots` yet"
-    assert "`group`" in hint
+    assert message == "`robots` is a mapping of keys and values, not a list"
+    assert "`{NAME: ur3e, ...}`" in hint
 
 
 @pytest.mark.parametrize(

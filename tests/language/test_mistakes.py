@@ -147,8 +147,8 @@ def test_what_is_missing_at_the_top_is_at_the_files_start():
     found = problems("description: nothing else\n")
     assert [(p.line, p.column, p.message) for p in found] == [
         (1, 1, "`scenario` is missing"),
-        (1, 1, "`robot` is missing"),
         (1, 1, "`steps` is missing"),
+        (1, 1, "`robot` is missing"),
     ]
 
 

@@ -27,7 +27,7 @@ class Hand:
     joint_index = {"arm": 0, "finger": 1, "mimic": 2}  # noqa: RUF012
 
     def __init__(self, gripper=GRIPPER):
-        self.gripper = gripper
+        self.grippers = (gripper,) if gripper else ()
 
     def start_positions(self):
         return np.array([0.1, 0.02, 0.04])

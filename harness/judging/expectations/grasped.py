@@ -10,7 +10,7 @@ from pydantic import Field
 from harness.cell.scope import At
 from harness.core.amounts import amount, amounts
 from harness.judging.contacts import TOUCH_FORCE, attached, side_forces
-from harness.judging.expectation import ObjectPredicate
+from harness.judging.expectation import ArmPredicate, ObjectPredicate
 from harness.judging.hold import (
     HOLD_TIME,
     between_fingers,
@@ -39,7 +39,7 @@ SLIP = Quantity("slip in the hand", "m", "between the fingers at most `max_slip`
 TURN = Quantity("turn in the hand", "rad", "at most `max_rotation`", "slip")
 
 
-class Grasped(ObjectPredicate):
+class Grasped(ArmPredicate, ObjectPredicate):
     """Both finger sides hold the object between them and it moves with the gripper.
 
     It is between the fingers where two sides press it from opposite directions, more than 90

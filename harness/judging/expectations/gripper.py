@@ -10,8 +10,9 @@ from pydantic import Field
 from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.state_words import stated_name
-from harness.judging.contacts import finger_gap, gripper_of
-from harness.judging.expectation import Predicate
+from harness.judging.contacts import finger_gap
+from harness.judging.expectation import ArmPredicate
+from harness.judging.hands import gripper_of
 from harness.judging.joints import POSITION_ERROR, SLIDING_TOLERANCE, check_tolerance, near
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, NotReached, Window, refuse_unrecorded_steps
@@ -24,7 +25,7 @@ GAP = Quantity("gap error", "m", "with `width`: at most `tolerance`, 2 mm if not
 STALLED = Quantity("stalled", "1", "as `stalled` says")
 
 
-class GripperState(Predicate):
+class GripperState(ArmPredicate):
     """The gripper stands at a named state, a position or a width, or is stalled."""
 
     word = "gripper"
@@ -102,7 +103,8 @@ def _stalled(expected: bool, window: Window) -> MarginSignal:
     reported = np.full(len(run.signals.times), np.nan)
     for step in run.steps:
         outcome = step.result.find(GripperOutcome)
-        if step.status != "not reached" and outcome is not None:
+        is_of_arm = run.robot.selected_arm in ("", step.arm)
+        if step.status != "not reached" and outcome is not None and is_of_arm:
             reported[max(step.end_index - 1, 0) :] = float(outcome.stalled)
     reported = window.cut(reported)
     if np.isnan(reported).all():

@@ -12,11 +12,10 @@ from harness.judging.body_motion import lowest_points
 from harness.judging.contacts import (
     TOUCH_FORCE,
     bodies_touching,
-    gripper_of,
-    hand_links,
     side_forces,
 )
-from harness.judging.expectation import ObjectPredicate
+from harness.judging.expectation import ArmPredicate, ObjectPredicate
+from harness.judging.hands import gripper_of, hand_links
 from harness.judging.hold import (
     CARRIED_SHARE,
     HOLD_TIME,
@@ -55,7 +54,7 @@ CARRIED = Quantity("weight carried", "N", "by the hand, friction included: at le
 MOTION = Quantity("motion in the hand", "m", "within 0.1 s at most 5 mm, and 0.1 rad of turn")
 
 
-class Lifted(ObjectPredicate):
+class Lifted(ArmPredicate, ObjectPredicate):
     """The gripper has raised the object, and nothing but the gripper holds it up.
 
     A lift is a hold in the balance of forces: both finger sides have pressed the object from

@@ -33,6 +33,8 @@ class NamedTarget(Predicate):
     )
 
     def check(self, at: At) -> None:
+        if self.group is None:
+            at.scope.check_arm(at.loc, "group")
         group = at.scope.check_group(self.group, at.key("group"))
         at.scope.check_state(group, self.state, at.key("state"))
         states = at.scope.description.states_of(group)

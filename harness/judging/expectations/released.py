@@ -6,23 +6,31 @@ from harness.cell.scope import At
 from harness.core.amounts import amount
 from harness.judging.at_rest import ATTACHED, CONTACT, released_parts
 from harness.judging.contacts import was_in_robot
-from harness.judging.expectation import ObjectPredicate
+from harness.judging.expectation import ArmPredicate, ObjectPredicate
 from harness.judging.margins import MarginSignal, all_of
 from harness.judging.poses import present
 from harness.judging.window import Window
 from harness.recording.verdict import Measure
 
 
-class Released(ObjectPredicate):
-    """No part of the gripper touches the object, and it is not attached."""
+class Released(ArmPredicate, ObjectPredicate):
+    """No part of the gripper touches the object, and it is not attached.
+
+    With `by`, no part of this arm touches it; by default none of any arm.
+    """
 
     sentence = "{object} is released"
     quantities = (CONTACT, ATTACHED)
     opposite = "grasped"
 
     def check(self, at: At) -> None:
-        at.scope.check_gripper(at.loc, "`released`")
+        if not at.scope.description.needs_arm:
+            at.scope.check_gripper(at.loc, "`released`")
         super().check(at)
+
+    def arm_in(self, window: Window) -> str:
+        del window
+        return self.by or ""
 
     def signal(self, window: Window) -> MarginSignal:
         """No contact with any link of the robot, and not attached in the planning scene."""

@@ -9,7 +9,7 @@ from harness.cell.scope import At
 from harness.core.amounts import amounts, percentages
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
-from harness.judging.expectation import Predicate
+from harness.judging.expectation import ArmPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses, link_poses
@@ -42,7 +42,7 @@ class Arc(SpecModel):
     end: Pose = Field(description="The end of the arc, of which only the position counts.")
 
 
-class TcpPath(Predicate):
+class TcpPath(ArmPredicate):
     """The TCP follows a line or an arc: it stays near it and travels it from start to end.
 
     Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
@@ -86,6 +86,7 @@ class TcpPath(Predicate):
         ]
 
     def check(self, at: At) -> None:
+        at.scope.check_arm(at.loc)
         for keys, pose in self.corners():
             at.scope.check_frame(pose.frame, at.key(*keys, "frame"))
 

@@ -10,7 +10,7 @@ from pydantic import Field
 from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
-from harness.judging.expectation import Predicate
+from harness.judging.expectation import ArmPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses, frame_present, link_poses
@@ -26,7 +26,7 @@ ORIENTATION = Quantity(
 )
 
 
-class TcpPose(Predicate):
+class TcpPose(ArmPredicate):
     """The TCP, or another link, stands at a pose."""
 
     sentence = "[{link}|TCP] is at {pose}"
@@ -46,6 +46,8 @@ class TcpPose(Predicate):
 
     def check(self, at: At) -> None:
         at.scope.check_link(self.link, at.key("link"))
+        if self.link is None:
+            at.scope.check_arm(at.loc)
         link = self.link or at.scope.description.tcp_link
         at.scope.check_frame(self.pose.frame, at.key("pose", "frame"), of=link)
 
@@ -71,7 +73,7 @@ class TcpPose(Predicate):
         tolerance = self.tolerance
         points = (target[:, :3], actual[:, :3])
         position, orientation = self.quantities
-        if link != run.robot.tcp_link:  # no plot shows other links
+        if link != run.robot.recorded_tcp:  # no plot shows other links
             position, orientation = (replace(each, plot="") for each in self.quantities)
         name = f"{what} {position.name}"
         parts = [

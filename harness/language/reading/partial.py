@@ -66,7 +66,7 @@ class PartialReader:
             if rest is not ABSENT:
                 values[key] = _read(_annotation(Scenario.model_fields[key]), rest)
         values = {"scenario": "untitled", "steps": (), **values}
-        if values.get("robot", ABSENT) is ABSENT:
+        if all(values.get(key, ABSENT) in (ABSENT, None) for key in ("robot", "robots")):
             self.missing.add("robot")
             values["robot"] = RobotSpec(model=STAND_IN_ROBOT)
         values = {name: value for name, value in values.items() if value is not ABSENT}
@@ -75,7 +75,7 @@ class PartialReader:
     def _without(self, data: dict[str, Any], key: str, parts: set[str]) -> Any:
         """The value of a key without its broken parts; `ABSENT` where little would be left."""
         value: Any = data.get(key, ABSENT)
-        if isinstance(value, dict) and parts and key != "world":
+        if isinstance(value, dict) and parts and key not in ("world", "robots"):
             mapping = cast("dict[str, Any]", value)
             if parts <= mapping.keys() and (key != "robot" or parts <= {*ROBOT_DETAILS}):
                 for part in parts:

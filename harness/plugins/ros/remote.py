@@ -18,6 +18,7 @@ from harness.plugins.ros.control.goals import Code
 from harness.plugins.ros.interfaces import COMMAND, FOLLOW, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
 from harness.plugins.ros.names import actions
+from harness.plugins.ros.one_arm import refuse_several_arms
 from harness.plugins.ros.prefix import Prefix
 from harness.plugins.ros.rtps.graph import Graph
 from harness.ports.simulation import ExpectedGrasp, Faults, GripperResult
@@ -57,6 +58,7 @@ def run_on_robot(
 
     def start(request: RunRequest, _: Clock) -> Start[RemoteArm]:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
+        refuse_several_arms(prepared)
         return Start(prepared, connect(prepared))
 
     return run_case(request, notify, start=start)
@@ -152,9 +154,10 @@ class RemoteArm:
         *,
         timeout: float,
         expected: ExpectedGrasp | None = None,
+        joint: str = "",
     ) -> GripperResult:
         """Send a GripperCommand; what it holds is not measured, a stall is taken for an object."""
-        del expected
+        del expected, joint  # robots of several arms are refused
         client, gripper = self._gripper, self.description.gripper
         if client is None or gripper is None or not self._wait(lambda: client.is_ready, PATIENCE):
             _unreachable("no server of GripperCommand answers in this domain")

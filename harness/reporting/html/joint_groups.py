@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -103,20 +103,33 @@ def tracking(run: Run) -> Group:
 
 def gripper(run: Run) -> Group | None:
     """The gap between the pads where it is known, else the joint's position."""
-    hand = run.robot.gripper
-    if hand is None or hand.joint not in run.robot.joint_index:
-        return None
-    column = run.robot.joint_index[hand.joint]
-    actual = run.signals.joint_positions[:, column]
-    command = run.signals.joint_commands[:, column]
-    if not len(hand.widths):
-        factor = _factor(run.robot.movable_joints[column])
-        unit = "mm" if run.robot.movable_joints[column].kind == "prismatic" else "°"
-        series = {"measured": factor * actual, "commanded": factor * command}
-        return Group("gripper", "gripper", unit, series)
-    opening, commanded = _opening(hand, actual), _opening(hand, command)
-    series = {"opening": opening, "commanded": np.where(np.isnan(command), np.nan, commanded)}
-    return Group("gripper", "gripper opening", "mm", series)
+    group, series = None, dict[str, FloatArray]()
+    for arm, hand in _hands(run):
+        column = run.robot.joint_index[hand.joint]
+        actual = run.signals.joint_positions[:, column]
+        command = run.signals.joint_commands[:, column]
+        joint = run.robot.movable_joints[column]
+        if len(hand.widths):
+            opening, commanded = _opening(hand, actual), _opening(hand, command)
+            names = "opening", "commanded"
+            rows = opening, np.where(np.isnan(command), np.nan, commanded)
+            title, unit = "gripper opening", "mm"
+        else:
+            names, rows = (
+                ("measured", "commanded"),
+                (_factor(joint) * actual, _factor(joint) * command),
+            )
+            title, unit = "gripper", "mm" if joint.kind == "prismatic" else "°"
+        series |= {f"{arm} {name}".strip(): row for name, row in zip(names, rows, strict=True)}
+        group = Group("gripper", title, unit, series)
+    return group
+
+
+def _hands(run: Run) -> Iterator[tuple[str, Gripper]]:
+    """Every gripper with the name of its arm; empty for the only one."""
+    robot = run.robot
+    hands = [(arm.name, arm.gripper) for arm in robot.arms] or [("", robot.gripper)]
+    yield from ((arm, hand) for arm, hand in hands if hand and hand.joint in robot.joint_index)
 
 
 def _opening(hand: Gripper, positions: FloatArray) -> FloatArray:
@@ -125,21 +138,19 @@ def _opening(hand: Gripper, positions: FloatArray) -> FloatArray:
 
 
 def gripper_effort(run: Run) -> Group | None:
-    """Effort of the gripper's joint, against its limit if it has one."""
-    hand = run.robot.gripper
-    joints = [
-        joint
-        for joint in enumerate(run.robot.movable_joints)
-        if hand and joint[1].name == hand.joint
-    ]
+    """Efforts of the grippers' joints, against their limits if they have some."""
+    joints = [run.robot.joint_by_name[hand.joint] for _, hand in _hands(run)]
     if not joints:
         return None
-    column, joint = joints[0]
-    is_limited = 0 < joint.effort < math.inf
-    effort = run.signals.joint_efforts[:, column] * (100 / joint.effort if is_limited else 1.0)
+    is_limited = all(0 < joint.effort < math.inf for joint in joints)
+    series = {
+        joint.name: run.signals.joint_efforts[:, run.robot.joint_index[joint.name]]
+        * (100 / joint.effort if is_limited else 1.0)
+        for joint in joints
+    }
     unit = "% of limit" if is_limited else "N m or N"
     limits = [Limit(-100.0), Limit(100.0)] if is_limited else []
-    return Group("gripper_effort", "gripper effort", unit, {joint.name: effort}, limits)
+    return Group("gripper_effort", "gripper effort", unit, series, limits)
 
 
 def velocity_errors(run: Run) -> Group:

@@ -186,6 +186,7 @@ def _joint(run: Run, joint: Joint, column: int) -> dict[str, Any]:
 def environment(stored: StoredRun) -> list[tuple[str, str]]:
     """Everything one needs to run it again and get the same."""
     run = stored.run
+    tips = [arm.tcp_link for arm in run.robot.arms]
     rows = [
         ("scenario", run.scenario),
         ("file", run.file),
@@ -193,8 +194,8 @@ def environment(stored: StoredRun) -> list[tuple[str, str]]:
         ("seed", str(run.seed)),
         ("digest", stored.digest),
         ("robot", run.robot.name),
-        ("gripper group", run.robot.gripper.group if run.robot.gripper else ""),
-        ("tool frame", run.robot.tcp_link),
+        ("gripper group", ", ".join(hand.group for hand in run.robot.grippers)),
+        ("tool frame", ", ".join(tips or [run.robot.tcp_link])),
         ("planners", ", ".join(_planners(run))),
         ("physics step", f"{1e3 * run.timestep:g} ms"),
         ("gravity", f"{', '.join(f'{value:g}' for value in run.gravity)} m/s²"),

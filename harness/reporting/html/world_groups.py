@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.pose_arrays import compose, turn_between
 from harness.core.types import FloatArray, Pair
-from harness.recording.link_poses import replayed_link_poses
+from harness.recording.link_poses import replayed_link_poses, tcp_tracks
 from harness.recording.run import Run
 from harness.reporting.html.plot_group import MOST_SERIES, Group
 
@@ -80,7 +80,11 @@ def slip(run: Run) -> Group:
 
 def tcp_position(run: Run) -> Group:
     """Where the tool was."""
-    series = {axis: 1e3 * run.signals.tcp_pose[:, i] for i, axis in enumerate("xyz")}
+    series = {
+        f"{arm} {axis}".strip(): 1e3 * poses[:, i]
+        for arm, poses in tcp_tracks(run).items()
+        for i, axis in enumerate("xyz")
+    }
     return Group("tcp", "TCP position in world", "mm", series)
 
 
@@ -89,8 +93,12 @@ def tcp_speed(run: Run) -> Group | None:
     times = run.signals.times
     if len(times) < 3:
         return None
-    speed = np.linalg.norm(np.gradient(run.signals.tcp_pose[:, :3], times, axis=0), axis=1)
-    return Group("tcp_speed", "TCP speed", "mm/s", {"speed": 1e3 * speed})
+    series = {
+        f"{arm} speed".strip(): 1e3
+        * np.linalg.norm(np.gradient(poses[:, :3], times, axis=0), axis=1)
+        for arm, poses in tcp_tracks(run).items()
+    }
+    return Group("tcp_speed", "TCP speed", "mm/s", series)
 
 
 def _moving(run: Run) -> dict[str, FloatArray]:
@@ -130,8 +138,10 @@ def _first(poses: FloatArray) -> FloatArray:
 
 def tcp_turn(run: Run) -> Group:
     """How far the tool has turned from its orientation at the begin."""
-    quats = run.signals.tcp_pose[:, 3:]
-    series = {"turn": _turned(quats, quats[0])}
+    series = {
+        f"{arm} turn".strip(): _turned(poses[:, 3:], poses[0, 3:])
+        for arm, poses in tcp_tracks(run).items()
+    }
     return Group("tcp_turn", "TCP orientation, turned from the start", "°", series)
 
 

@@ -10,6 +10,7 @@ import yaml
 from harness.core.pose_arrays import IDENTITY
 from harness.recording.run import Run
 from harness.reporting.rosbag.frames import WORLD
+from harness.reporting.rosbag.plans import tcp_path_topics
 from harness.reporting.rosbag.topics import (
     DISPLAY_PLANNED_PATH,
     EVENTS,
@@ -17,7 +18,6 @@ from harness.reporting.rosbag.topics import (
     ROBOT_DESCRIPTION,
     ROSOUT,
     SCENE_MARKERS,
-    TCP_PATH,
     Topic,
     camera_topics,
 )
@@ -79,7 +79,8 @@ def _scene(run: Run) -> dict[str, Any]:
         "scene": {"enableStats": False, "transforms": {"showLabel": False, "axisScale": 0.3}},
         "transforms": {},
         "topics": {
-            topic.name: {"visible": True} for topic in (ROBOT_DESCRIPTION, SCENE_MARKERS, TCP_PATH)
+            topic.name: {"visible": True}
+            for topic in (ROBOT_DESCRIPTION, SCENE_MARKERS, *tcp_path_topics(run).values())
         },
         "layers": {"grid": {"layerId": "foxglove.Grid", "visible": True, "frameLocked": True}},
         "imageMode": {},
@@ -123,7 +124,10 @@ def rviz_configuration(run: Run) -> str:
             {"Description Source": "Topic", "Description Topic": _topic(ROBOT_DESCRIPTION)},
         ),
         _display("MarkerArray", "Scene", {"Topic": _topic(SCENE_MARKERS)}),
-        _display("Path", "TCP path", {"Topic": _topic(TCP_PATH), "Line Width": 0.005}),
+        *(
+            _display("Path", f"{arm} TCP path".strip(), {"Topic": _topic(t), "Line Width": 0.005})
+            for arm, t in tcp_path_topics(run).items()
+        ),
         _display("TF", "TF", {"Show Names": True, "Marker Scale": 0.3}, is_shown=False),
         # of MoveIt's RViz plugin: where that is not installed it stays off and does no harm
         {

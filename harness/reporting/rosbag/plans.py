@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.recording.link_poses import tcp_tracks
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.rosbag.frames import WORLD
@@ -19,7 +21,12 @@ from harness.reporting.rosbag.messages import (
     trajectory_message,
 )
 from harness.reporting.rosbag.samples import Message, samples_at
-from harness.reporting.rosbag.topics import DISPLAY_PLANNED_PATH, PLANNED_TRAJECTORY, TCP_PATH
+from harness.reporting.rosbag.topics import (
+    DISPLAY_PLANNED_PATH,
+    PLANNED_TRAJECTORY,
+    TCP_PATH,
+    Topic,
+)
 
 PATH_RATE = 5.0
 """How often the course's trajectory server looks where the TCP is, as its UR launch sets it [Hz]
@@ -37,7 +44,21 @@ def planned(run: Run) -> Iterator[Message]:
             yield Message(step.start_time, DISPLAY_PLANNED_PATH, _display(run, step, trajectory))
 
 
-def tcp_path(run: Run) -> Iterator[Message]:
+def tcp_paths(run: Run) -> list[Iterator[Message]]:
+    """The path of each arm's TCP, in order of time each."""
+    tracks = tcp_tracks(run)
+    return [_tcp_path(run, tracks[arm], topic) for arm, topic in tcp_path_topics(run).items()]
+
+
+def tcp_path_topics(run: Run) -> dict[str, Topic]:
+    """`/tcp_path` of one arm, under ``; of several arms `/ARM/tcp_path`, by their names."""
+    return {
+        arm: replace(TCP_PATH, name=f"/{arm}{TCP_PATH.name}") if arm else TCP_PATH
+        for arm in tcp_tracks(run)
+    }
+
+
+def _tcp_path(run: Run, poses: FloatArray, topic: Topic) -> Iterator[Message]:
     """The path so far, again and again, as the course's trajectory server publishes it.
 
     A pose is kept when it is `PATH_SPACING` or more from the last one kept; the path's frame is the
@@ -48,7 +69,7 @@ def tcp_path(run: Run) -> Iterator[Message]:
     published = 0
     indices = samples_at(run.signals.times, PATH_RATE)
     for number, index in enumerate(indices):
-        time, pose = float(run.signals.times[index]), run.signals.tcp_pose[index]
+        time, pose = float(run.signals.times[index]), poses[index]
         if np.isnan(pose).any():
             continue
         if last is None or np.linalg.norm(pose[:3] - last[:3]) >= PATH_SPACING:
@@ -59,8 +80,8 @@ def tcp_path(run: Run) -> Iterator[Message]:
         waits = 1 + len(kept) // LONGEST_PUBLISHED
         if number - published >= waits or number in (0, len(indices) - 1):
             published = number
-            path = message(TCP_PATH.msgtype, header=header(time, WORLD), poses=list(kept))
-            yield Message(time, TCP_PATH, path)
+            path = message(topic.msgtype, header=header(time, WORLD), poses=list(kept))
+            yield Message(time, topic, path)
 
 
 def _display(run: Run, step: StepRecord, trajectory: Any) -> Any:

@@ -24,7 +24,7 @@ from harness.reporting.rosbag.frames import moving_tf, static_tf
 from harness.reporting.rosbag.layouts import foxglove_layout, rviz_configuration
 from harness.reporting.rosbag.markers import scene_markers
 from harness.reporting.rosbag.messages import TYPESTORE, joint_state, message, nanoseconds, stamp
-from harness.reporting.rosbag.plans import planned, tcp_path
+from harness.reporting.rosbag.plans import planned, tcp_paths
 from harness.reporting.rosbag.samples import Message, samples_at
 from harness.reporting.rosbag.topics import (
     CLOCK,
@@ -135,7 +135,7 @@ def _messages(stored: StoredRun, options: BagOptions) -> Iterator[Message]:
         scene_markers(run),
         cameras.captures(run),
         *(cameras.video_frames(run, video, is_raw=options.has_raw_images) for video in run.videos),
-        tcp_path(run),
+        *tcp_paths(run),
         event_messages(stored),
     ]
     return heapq.merge(*streams, key=attrgetter("time"))

@@ -53,7 +53,7 @@ class GripperMotion:
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._target, self._timestep, self._begin = target, servos.timestep, command.time
         here = float(servos.joint_positions()[description.joint_index[joint.name]])
-        points = gripper_ramp(description, here, commanded, target, servos.timestep)
+        points = gripper_ramp(joint, self._speed, here, commanded, target, servos.timestep)
         self._rows: Rows = np.array([points.positions, points.velocities, points.accelerations])
         self._recent: list[float] = []
 

@@ -1,0 +1,150 @@
+"""Steps of a robot with several arms: which arm, which gripper, and what both hold."""
+
+from pathlib import Path
+
+import pytest
+
+from harness.judging.expectations.grasped import Grasped
+from harness.judging.expectations.lifted import Lifted
+from harness.judging.expectations.released import Released
+from harness.recording.read_run import read_run
+from harness.session.check import check_file
+
+PAIR = """\
+robots:
+  left: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0.3, 0]}}
+  right: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, -0.3, 0]}}
+"""
+
+
+def box(name, x, y):
+    shape = "box: {size: [0.05, 0.05, 0.08]}, mass: 0.1"
+    return f"  - {{name: {name}, {shape}, pose: {{xyz: [{x}, {y}, 0.04]}}}}\n"
+
+
+PICKS = f"""
+scenario: each arm picks
+{PAIR}
+objects:
+{box("a", 0.3, 0.3)}{box("b", 0.3, -0.3)}
+steps:
+  - pick: a
+    robot: left
+    expect: [grasped: a, lifted: a]
+  - pick: b
+    group: right
+    expect: [grasped: b]
+  - move_to: {{named_target: up}}
+    group: arms
+expect:
+  - grasped: {{object: a, by: left}}
+  - grasped: {{object: b, by: right}}
+  - gripper: {{stalled: true, by: right}}
+  - never: collision
+"""
+
+
+def test_either_hand_picks_and_both_arms_move_together(recorded_run):
+    stored = read_run(recorded_run(PICKS) / "run")
+    steps = {step.path: step for step in stored.run.steps}
+    assert (steps["steps[0]"].arm, steps["steps[1].grasp"].arm) == ("left", "right")
+    assert steps["steps[2]"].arm == ""
+    assert len(steps["steps[2]"].trajectory.joint_names) == 12
+    assert all(verdict.status == "passed" for verdict in stored.verdicts)
+
+
+def test_only_the_hand_that_holds_an_object_has_grasped_it(recorded_run):
+    recorded = read_run(recorded_run(PICKS) / "run").run
+    for name, arm, other in (("a", "left", "right"), ("b", "right", "left")):
+        assert Grasped(object=name, by=arm).verdict(recorded, "").status == "passed"
+        assert Grasped(object=name, by=other).verdict(recorded, "").status == "failed"
+        assert Lifted(object=name, by=other).verdict(recorded, "").status == "failed"
+        assert Released(object=name, by=other).verdict(recorded, "").status == "passed"
+        assert Released(object=name, by=arm).verdict(recorded, "").status == "failed"
+        assert Released(object=name).verdict(recorded, "").status == "failed"
+
+
+HAND_OVER = Path("scenarios/cells/hand_over.scenario.yaml")
+
+
+def test_an_object_goes_from_hand_to_hand(recorded_run):
+    stored = read_run(recorded_run(HAND_OVER) / "run")
+    assert [verdict.status for verdict in stored.verdicts] == ["passed"] * len(stored.verdicts)
+    links = [record.link for record in stored.run.attachments]
+    assert links == ["left_end_effector_link", "right_end_effector_link"]
+
+
+def test_while_both_hands_hold_neither_has_released(recorded_run):
+    """A check that looks for one hand that holds would call this a finished hand-over."""
+    recorded = read_run(recorded_run(HAND_OVER) / "run").run
+    for arm in ("left", "right"):
+        assert Grasped(object="rod", by=arm).verdict(recorded, "both_hold").status == "passed"
+        assert Released(object="rod", by=arm).verdict(recorded, "both_hold").status == "failed"
+    refused = next(step for step in recorded.steps if step.id == "too_early")
+    assert "'rod' is held by left and right" in refused.message
+
+
+def found(folder, steps, robot=PAIR, rest=""):
+    path = folder / "a.scenario.yaml"
+    path.write_text(f"scenario: a test\n{robot}steps:\n{steps}{rest}", encoding="utf-8")
+    return [(each.line, each.message, each.hint) for each in check_file(path).problems]
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "move_to: up",
+        "gripper: open",
+        "move_relative: {direction: {xyz: [0, 0, 1]}, distance: 1 cm}",
+    ],
+)
+def test_a_step_that_names_no_arm_is_reported_with_the_names(step, tmp_path):
+    [(line, message, hint)] = found(tmp_path, f"  - {step}\n")
+    assert (line, message) == (
+        6,
+        "the robot has several arms: left, right; this does not say which",
+    )
+    assert hint == "add `robot: left` or another one's name"
+
+
+def test_an_arm_that_does_not_exist(tmp_path):
+    [(_, message, hint)] = found(tmp_path, "  - move_to: up\n    robot: middle\n")
+    assert (message, hint) == ("there is no arm 'middle'", "known: left, right")
+    expected = "expect:\n  - grasped: {object: ground_plane, by: both}\n"
+    problems = found(tmp_path, "  - move_to: up\n    robot: left\n", rest=expected)
+    assert "there is no arm 'both'" in [message for _, message, _ in problems]
+
+
+def test_a_group_of_another_arm(tmp_path):
+    step = "  - move_to: up\n    robot: left\n    group: right\n"
+    assert [each[1] for each in found(tmp_path, step)] == [
+        "'right' is not a group of the arm 'left'"
+    ]
+
+
+def test_one_arm_needs_no_name(tmp_path):
+    step = "  - move_to: up\n    robot: left\n"
+    [(_, message, hint)] = found(tmp_path, step, robot="robot: ur3e\n")
+    assert message == "the robot has one arm, and 'left' selects one of several"
+    assert "leave out `robot`" in hint
+
+
+@pytest.mark.parametrize("key", ["by: left", "by: right"])
+def test_an_expectation_names_its_arm(key, tmp_path):
+    steps = "  - gripper: open\n    robot: left\n"
+    rest = "expect:\n  - gripper: {named_target: open}\n"
+    [(line, _, hint)] = found(tmp_path, steps, rest=rest)
+    assert (line, hint) == (9, "add `by: left` or another one's name")
+    assert not found(tmp_path, steps, rest=rest.replace("open}", f"open, {key}}}"))
+
+
+def test_a_mistake_under_an_arm_is_there(tmp_path):
+    robot = PAIR.replace("{model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, -0.3, 0]}}", "urx")
+    [(line, message, _)] = found(tmp_path, "  - wait: 1\n", robot=robot)
+    assert line == 4
+    assert message.startswith("robots.right.model: 'urx' is not known")
+
+
+def test_one_arm_or_several(tmp_path):
+    [(_, message, _)] = found(tmp_path, "  - wait: 1\n", robot=f"robot: ur3e\n{PAIR}")
+    assert message == "`robot` is one arm, and `robots` are several: give one of the two"
