@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rosbags.typesys import get_types_from_msg
+from rosbags.typesys.store import Typestore
 
 from harness.reporting.rosbag.messages import TYPESTORE, message, time_message
 
@@ -82,20 +83,47 @@ def register_move_group() -> None:
     _register(_table())
 
 
-def encoded(content: Any, kind: str) -> bytes:
-    """A message as it is sent."""
-    return bytes(TYPESTORE.serialize_cdr(content, kind))
+LATER_THAN_HUMBLE = {
+    "moveit_msgs/msg/MoveItErrorCodes": ("message", "source"),
+    "moveit_msgs/action/ExecuteTrajectory_Goal": ("controller_names",),
+    "moveit_msgs/srv/GetCartesianPath_Request": (
+        "max_velocity_scaling_factor", "max_acceleration_scaling_factor",
+        "cartesian_speed_limited_link", "max_cartesian_speed",
+    ),
+}  # fmt: skip
+"""The fields that messages of ROS 2 Humble do not have yet."""
 
 
-def decoded(payload: bytes, kind: str) -> Any:
+@cache
+def _humble() -> Typestore:
+    """The message types of ROS 2 Humble, as far as they differ in what is sent."""
+    store, known = Typestore(), dict(TYPESTORE.fielddefs)
+    for kind, later in LATER_THAN_HUMBLE.items():
+        constants, fields = known[kind]
+        known[kind] = constants, [field for field in fields if field[0] not in later]
+    store.register(known)
+    return store
+
+
+def encoded(content: Any, kind: str, *, for_humble: bool = False) -> bytes:
+    """A message as it is sent, to a node of ROS 2 Humble or of a later one."""
+    is_other = for_humble and kind.startswith("moveit_msgs/")
+    return bytes((_humble() if is_other else TYPESTORE).serialize_cdr(content, kind))
+
+
+def decoded(payload: bytes, kind: str, *, of_humble: bool = False) -> Any:
     """The message of a serialised one; None where the bytes of another program are no such one.
 
     Bytes after the message do not count: rclpy's serialisation leaves some for each list element.
     """
-    known = TYPESTORE.get_msgdef(kind)
+    is_other = of_humble and kind.startswith("moveit_msgs/")
+    store = _humble() if is_other else TYPESTORE
+    known = store.get_msgdef(kind)
     readers = {b"\0\0": known.deserialize_cdr_be, b"\0\1": known.deserialize_cdr_le}
     with suppress(Exception):  # no kind of error is certain
-        return readers[payload[:2]](payload[4:], 0, known.cls, TYPESTORE)[0]
+        found = readers[payload[:2]](payload[4:], 0, known.cls, store)[0]
+        names = [name for name, _ in known.fields]
+        return message(kind, **{n: getattr(found, n) for n in names}) if is_other else found
     return None
 
 

@@ -32,6 +32,7 @@ class Endpoint:
     Attributes:
         topic: The name of its topic in DDS, such as `rt/joint_states`.
         addresses: Where it is reached; empty for its participant's addresses.
+        has_type_hash: Whether it says of which definition its type is, as all ROS 2 since Iron.
     """
 
     guid: bytes
@@ -39,6 +40,7 @@ class Endpoint:
     type_name: str
     qos: Qos
     addresses: Sequence[Address] = ()
+    has_type_hash: bool = False
 
     @property
     def is_writer(self) -> bool:
@@ -71,6 +73,7 @@ class Endpoint:
             wire.text_of(known[wire.PID_TYPE][0]),
             Qos(reliability == 2, _number(known, wire.PID_DURABILITY, 0) >= 1),
             _addresses(known, wire.PID_UNICAST),
+            any(b"typehash=" in each for each in known.get(wire.PID_USER_DATA, ())),
         )
 
     def payload(self) -> bytes:

@@ -32,6 +32,10 @@ Convert = Callable[[Any], Any]
 SERVICE_QOS = Qos(depth=100)
 DISCOVERY = "ros_discovery_info"
 INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+Take = Callable[[Any, bytes, bool], object]
+"""Takes a message, the identity of its request, and whether it is of ROS 2 Humble."""
+
+FAST_DDS = b"\x01\x0f"  # its vendor, at the start of a GUID
 CYCLONE = b"\x01\x10"
 """Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
 content, between the encapsulation header and the message of requests and responses."""
@@ -94,15 +98,16 @@ class Graph:
 
     def subscribe(self, topic: str, kind: str, on_message: OnMessage, qos: Qos = DEFAULT) -> None:
         """Receive the messages of a topic; what cannot be read is ignored."""
-        self._reader(f"rt{topic}", kind, lambda content, _: on_message(content), qos)
+        self._reader(f"rt{topic}", kind, lambda content, *_: on_message(content), qos)
 
     def serve(self, name: str, kind: str, on_request: Callable[[Any, Reply], None]) -> None:
         """Answer requests of a service; `kind` is its type, such as action_msgs/srv/CancelGoal."""
         writer = self._writer(f"rr{name}Reply", f"{kind}_Response", SERVICE_QOS)
 
-        def take(request: Any, identity: bytes) -> None:
+        def take(request: Any, identity: bytes, is_humble: bool) -> None:
             def answer(response: Any) -> None:
-                payload = encoded(self.outward(response), f"{kind}_Response")
+                sent = self.outward(response)
+                payload = encoded(sent, f"{kind}_Response", for_humble=is_humble)
                 writer.write(*_framed(payload, identity))
 
             on_request(request, answer)
@@ -113,7 +118,7 @@ class Graph:
         """A client of a service."""
         waiting: dict[bytes, OnMessage] = {}
 
-        def take(response: Any, identity: bytes) -> None:
+        def take(response: Any, identity: bytes, _: bool) -> None:
             waiting.pop(identity, lambda _: None)(response)
 
         def call(request: Any, on_response: OnMessage) -> None:
@@ -140,19 +145,25 @@ class Graph:
         self._introduce()
         return made
 
-    def _reader(
-        self, topic: str, kind: str, take: Callable[[Any, bytes], object], qos: Qos = SERVICE_QOS
-    ) -> Reader:
+    def _reader(self, topic: str, kind: str, take: Take, qos: Qos = SERVICE_QOS) -> Reader:
         def deliver(sample: Sample) -> None:
             payload, identity = _unframed(sample, topic)
-            content = decoded(payload, kind)
+            is_humble = self._is_of_humble(sample.writer)
+            content = decoded(payload, kind, of_humble=is_humble)
             if content is not None:
-                take(self.inward(content), identity)
+                take(self.inward(content), identity, is_humble)
 
         prepare(kind)
         made = self.participant.reader(topic, dds_type(kind), qos, deliver)
         self._introduce()
         return made
+
+    def _is_of_humble(self, guid: bytes) -> bool:
+        """Whether a writer is of ROS 2 Humble: one of Fast DDS that has no type hash."""
+        if not guid.startswith(FAST_DDS):
+            return False
+        endpoint = self.participant.known_endpoint(guid)
+        return endpoint is not None and not endpoint.has_type_hash
 
     def _introduce(self) -> None:
         """Say which endpoints belong to the node: `ros2 node info` reads it."""

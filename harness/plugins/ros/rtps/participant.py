@@ -76,6 +76,11 @@ class Participant:
         """The writers and readers of all peers."""
         return [each for peer in self._peers.values() for each in peer.endpoints.values()]
 
+    def known_endpoint(self, guid: bytes) -> Endpoint | None:
+        """A writer or reader of a peer; None where it is not known (any more)."""
+        peer = self._peers.get(guid[:12])
+        return peer.endpoints.get(guid) if peer is not None else None
+
     def spin(self, until: float) -> None:
         """Receive, answer and announce until a moment of `time.monotonic`; at least once."""
         while True:
