@@ -19,15 +19,43 @@ from harness.core.geometry import (
 )
 from harness.robot.mesh_file import hull_points
 
-CONTACT_SOLREF = (0.002, 1.0)
-"""Time constant [s] and damping ratio of a contact: two steps of 1 ms, critically damped.
+CONTACT_SOLREF = (0.002, 16.0)
+"""Time constant [s] and damping ratio of a contact.
 
-MuJoCo raises it to two steps where those are longer. An object carried on a curve creeps by half
-this constant times its centripetal acceleration, except between fingers and free objects.
+MuJoCo raises the time constant to two steps where those are longer. The friction of a contact has
+the time constant alone: an object carried on a curve creeps by half of it times its centripetal
+acceleration, except between fingers and free objects.
 """
 
-CONTACT_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
-"""Impedance of a contact: at touch, when pressed, width of the change [m], its shape."""
+CONTACT_SOLIMP = (0.0, 0.999, 0.0001, 0.5, 2.0)
+"""Impedance d of a contact: at touch, when pressed, width of the change [m], its shape.
+
+MuJoCo's friction is the convex relaxation of Coulomb's: a contact that slides with velocity v is
+also pushed apart, with mu b v for b = 2 / time constant. Only its compliance (1 - d) / d times the
+force balances that. With a nearly rigid contact, d = 0.99 at touch, a box that slides faster than
+0.25 mm/s hops instead: it leaves the ground for some milliseconds, is free of friction meanwhile,
+and strikes the ground and the finger that pushes it. A contact that begins soft finds its balance
+within the width, at any speed; one narrower than 0.1 mm is too steep for a step of 1 ms. The large
+damping ratio keeps d near 1 at rest: without it, d is 0.3 there, cylinders rock by 0.01 rad/s and
+what stands on a slope creeps by 0.25 mm/s. A box of 2 kg that is pushed across the ground, mu 0.4
+(friction needs 7.84 N), by a finger at 0.1 m/s:
+
+    d at touch, damping ratio   finger [N]       ground [N]      creep at 0.91 of the cone
+    0.99, width 1 mm, 1         0 to 55.9        0 to 172        0.002 mm/s
+    0, 0.1 mm, 1                7.80 to 8.72     19.5 to 21.1    0.18 mm/s
+    0, 0.1 mm, 16               7.68 to 9.14     19.2 to 22.4    0.003 mm/s
+
+An object sinks 0.09 mm into what it stands on.
+"""
+
+GRASP_SOLREF = (0.002, 1.0)
+GRASP_SOLIMP = (0.97, 0.999, 1e-5, 0.5, 2.0)
+"""The same of a contact between a finger and a free object.
+
+Such contacts stick and are pressed by a motor instead of a weight: they are stiffer, so that what
+is held creeps less. At 0.95 of Coulomb's limit a cylinder of 0.1 kg creeps by 0.01 mm in 3 s;
+with the values of other contacts by 1.6 mm.
+"""
 
 CONTACT_DIMENSIONS = 6
 """Normal force, two sliding, one torsional and two rolling friction directions."""

@@ -17,8 +17,8 @@ from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model, refuse_unusable_masses
 from harness.simulation.geoms import (
     CONTACT_DIMENSIONS,
-    CONTACT_SOLIMP,
-    CONTACT_SOLREF,
+    GRASP_SOLIMP,
+    GRASP_SOLREF,
     roughness,
     set_smaller_frictions,
 )
@@ -196,7 +196,7 @@ def _add_grasp_contacts(
 ) -> None:
     """Add an explicit contact pair for each geom of the fingers and of the free objects.
 
-    Explicit pairs have their own friction damping; their other parameters are the usual ones.
+    Explicit pairs have their own friction damping, and are stiffer than other contacts.
     """
     damping = FRICTION_DAMPING_PER_STEP / spec.option.timestep
     for link in (link for gripper in description.grippers for link in gripper.links):
@@ -205,7 +205,7 @@ def _add_grasp_contacts(
                 for object_geom in spec.body(obj.name).geoms:
                     pair = spec.add_pair(geomname1=finger_geom.name, geomname2=object_geom.name)
                     pair.condim = CONTACT_DIMENSIONS
-                    pair.solref, pair.solimp = CONTACT_SOLREF, CONTACT_SOLIMP
+                    pair.solref, pair.solimp = GRASP_SOLREF, GRASP_SOLIMP
                     pair.solreffriction = -1.0, -damping
 
 

@@ -30,17 +30,6 @@ CUP_IN_BIN = """
       - {box: {size: [0.07, 0.004, 0.08]}, pose: {xyz: [0, -0.033, 0]}}
 """
 PILLAR = "  - {name: %s, static: true, box: {size: [0.1, 0.1, 0.1]}, pose: {xyz: [%s, 0, 0.05]}}\n"
-BAR = (
-    "objects:\n"
-    "  - {name: bar, box: {size: [0.3, 0.03, 0.03]}, mass: 100 g, friction: 0.005, "
-    "pose: {xyz: [0.4, 0.4, 0.015]}}\n"
-    "  - {name: left, box: {size: [0.03, 0.03, 0.03]}, mass: 100 g, friction: 0.005, "
-    "pose: {xyz: [0.54, 0.36, 0.015]}}\n"
-    "  - {name: right, box: {size: [0.03, 0.03, 0.03]}, mass: 100 g, friction: 0.005, "
-    "pose: {xyz: [0.26, 0.44, 0.015]}}\n"
-    "steps:\n  - inject: {push: {left: [0, 0.1, 0], right: [0, -0.1, 0]}}\n"
-    "  - {wait: 0.3 s, id: turning}\n"
-)
 KNOCKS = (
     "objects:\n" + CUBE
     + "steps:\n  - wait: 60 ms\n"
@@ -192,18 +181,6 @@ FIXTURE_SCENES = (
             "placed: {object: cube, pose: {xyz: [0.3, 0.3, 0.02]}}",
         ),
         ("in_contact: {between: [cube, jaws]}",),
-    ),
-    Scene(
-        "boxes that rub along a bar",
-        "two boxes turn a bar; each of them parts from it for some milliseconds again and again",
-        BAR,
-        "at no time do they touch it for 50 ms at every sample",
-        lambda run: max(longest_touch(run, "bar", name) for name in ("left", "right")) < 0.05,
-        (
-            "never: {in_contact: {between: [bar, left]}, for: 50 ms}",
-            "never: {in_contact: {between: [bar, right]}, for: 50 ms}",
-        ),
-        ("always: {in_contact: {between: [left, ground_plane]}, during: turning}",),
     ),
     Scene(
         "finger that rubs along a stand",
