@@ -23,6 +23,10 @@ from harness.recording.verdict import VerdictWarning
 
 TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
 OVERLAP = 0.001  # [m]; what is less deep is rounding: convex hulls are off by as much
+FORCE_WINDOW = 0.010
+"""Time over which a force is averaged before it is compared with a limit [s], unless a file says
+otherwise: longer than the vibrations of a stiff contact, shorter than a motion or a person's push.
+"""
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 

@@ -33,6 +33,15 @@ from harness.judging.facts import fact
 from harness.judging.hands import each_hand, gripper_of, hand_links
 from harness.judging.poses import object_poses, tcp_poses
 from harness.judging.temporal import bridged, episodes, first_within
+from harness.judging.poses import object_poses
+from harness.judging.temporal import (
+    TIME_RESOLUTION,
+    bridged,
+    episodes,
+    first_within,
+    trailing_max,
+)
+from harness.judging.text import amount
 from harness.judging.window import NotObservable, object_record
 from harness.recording.faults import faults_of
 from harness.recording.run import Run
@@ -140,6 +149,16 @@ def recent_mean(run: Run, rows: FloatArray, span: float) -> FloatArray:
     summed = np.concatenate([np.zeros((1, rows.shape[1])), np.cumsum(rows, axis=0)])
     counts = np.arange(1, len(times) + 1) - first
     return (summed[1:] - summed[first]) / counts[:, None]
+
+
+def averaged_force(run: Run, force: FloatArray, span: float) -> FloatArray:
+    """Mean of a force over the last `span` seconds, one sample at least [N], shape (N,).
+
+    It is exactly 0 where the force was 0 all that time.
+    """
+    shorter = max(span - 2 * TIME_RESOLUTION, 0.0)
+    was_there = trailing_max(force, run.signals.times, shorter) > 0
+    return np.where(was_there, recent_mean(run, force[:, None], shorter)[:, 0], 0.0)
 
 
 def weight_of(run: Run, name: str) -> float:

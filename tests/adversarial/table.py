@@ -107,9 +107,9 @@ LIMITS = """
   too, although a person sees it through the body; nothing is refracted or mirrored.
 - **"Below" and "up"** are along the world's z axis. Under gravity in another direction `on`,
   `placed`, `upright` and `lifted` keep that meaning.
-- **`force` in formulas** is the normal force of single steps of the physics, and not averaged: a
-  contact that bounces has peaks of many times its mean, and gaps. A verdict that such a force
-  decides says so; require a time (`always[0, 50 ms]`), or leave room.
+- **`force` in formulas, and `min_force` of `in_contact`**, are the normal force as its mean over
+  the last 10 ms, or over `force_window`. A blow of 1 ms counts with a tenth of its peak; its
+  impulse is right, the peak is that of the contact's stiffness, which no file states.
 - **`on` on slopes**: forces are counted by their upward part; on a slope steeper than 45 degrees
   less than half of the weight may be carried as normal force, and friction is not counted.
 - **Distances of the robot to itself** leave out links that a joint connects, that touch with every

@@ -348,12 +348,42 @@ def test_a_verdict_says_which_way_the_deciding_comparison_went(
     assert abs(measure.value - measure.limit) == pytest.approx(abs(answer.margin))
 
 
-def test_a_verdict_that_forces_decide_says_that_they_are_not_averaged():
-    said = "; forces are those of single steps of the physics and not averaged"
+def test_a_verdict_that_forces_decide_says_over_which_time_they_are_averaged():
+    said = "; forces are means over 0.01 s"
     for text in ("always force(Table, box) < 2 N", "2 * force(Table, box) > 9"):
         assert said in verdict(lift_run(), Formula(formula=text)).reason
     other = "always (z(box) > 7 cm implies force(Table, box) < 1 N)"
     assert said not in verdict(lift_run(), Formula(formula=other)).reason
+
+
+def pressing(force):
+    """A run of samples of 1 ms in which the table presses a box."""
+    poses, times = {"box": at(len(force))}, np.arange(len(force)) * 1e-3
+    forces = {("Table", "box"): force}
+    return make_run(len(force), times=times, contact_forces=forces, object_poses=poses)
+
+
+@pytest.mark.parametrize(
+    ("window", "limit", "status"),
+    [(0.0, 11, "failed"), (0.01, 3, "passed"), (0.01, 0.8, "failed"), (0.05, 0.5, "passed")],
+)
+def test_a_force_is_the_mean_over_its_window(window, limit, status):
+    """A blow of 12 N for one sample of 1 ms, between samples without contact."""
+    blow = np.zeros(200)
+    blow[100] = 12.0
+    run = pressing(blow)
+    formula = Formula(formula=f"always force(Table, box) < {limit}", force_window=window)
+    answer = verdict(run, formula)
+    assert answer.status == status
+    assert ("single steps" if window == 0 else f"means over {window:g} s") in answer.reason
+
+
+def test_a_force_that_ended_is_exactly_zero():
+    """What is left of sums of other forces is no contact."""
+    rattling = np.where(np.arange(200) < 100, 0.1 + np.arange(200) % 3 / 7, 0.0)
+    run = pressing(rattling)
+    formula = Formula(formula="always[0.12, 0.19] force(Table, box) <= 0")
+    assert verdict(run, formula).status == "passed"
 
 
 def test_a_formula_of_every_kind_of_signal():

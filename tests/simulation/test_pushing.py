@@ -59,7 +59,8 @@ PUSHES = {
         "robot": "{model: open_manipulator_x, base: {xyz: [0, 0, 0.02]}}",
         "size": "[0.1, 0.2, 0.1]",
         "at": "[0.31, 0, 0.05]",
-        "steps": "  - gripper: close\n  - move_to: {position: {xyz: [0.2, 0, 0.07]}, pitch: 10 deg}",
+        "steps": "  - gripper: close\n"
+        "  - move_to: {position: {xyz: [0.2, 0, 0.07]}, pitch: 10 deg}",
         "goal": "position: {xyz: [0.3, 0, 0.07]}, pitch: 10 deg",
     },
     "gantry": {

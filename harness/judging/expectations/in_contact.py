@@ -13,6 +13,7 @@ from harness.cell.scope import At
 from harness.core.amounts import amount
 from harness.judging.contacts import (
     DEBOUNCE,
+    FORCE_WINDOW,
     TOUCH_FORCE,
     bodies,
     could_touch,
@@ -22,11 +23,12 @@ from harness.judging.contacts import (
     unseen_contacts,
 )
 from harness.judging.expectation import SPECIAL_BODIES, Predicate
+from harness.judging.hold import averaged_force
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.temporal import without_gaps
 from harness.judging.window import Window, lasting
-from harness.language.base import Force, Name
+from harness.language.base import Duration, Force, Name
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
@@ -38,7 +40,8 @@ class InContact(Predicate):
 
     A contact lasts through gaps of at most 10 ms: stiff bodies that rub or rattle part for some
     samples again and again. It is judged while both are in the physics: with an object that only
-    the planner knows it is not observable, before an object is there it is not reached.
+    the planner knows it is not observable, before an object is there it is not reached. A contact
+    without `min_force` lasts for a single sample at least; a force is averaged over `force_window`.
     """
 
     short = "between"
@@ -52,6 +55,11 @@ class InContact(Predicate):
     )
     min_force: Annotated[Force, Field(ge=0)] = Field(
         default=0.0, description="The smallest force that counts as a contact [N]."
+    )
+    force_window: Duration = Field(
+        default=FORCE_WINDOW,
+        description="With `min_force`, the force is the mean over this time before each sample; "
+        "with 0 the samples of the physics count [s].",
     )
 
     def check(self, at: At) -> None:
@@ -73,6 +81,8 @@ class InContact(Predicate):
         firsts, seconds = bodies(run, first), bodies(run, second)
         pairs = pairs_of(firsts, seconds)
         every = force_between(run, firsts, seconds)
+        if self.min_force > 0:
+            every = averaged_force(run, every, self.force_window)
         force = window.cut(every)
         unbroken = without_gaps(every, run.signals.times, DEBOUNCE)
         limit = max(self.min_force, TOUCH_FORCE)

@@ -9,8 +9,15 @@ import numpy as np
 from harness.core.pose_arrays import angle_between, rotate
 from harness.core.types import FloatArray
 from harness.judging.body_motion import frame_speeds
-from harness.judging.contacts import bodies, could_touch, force_between, pairs_of
+from harness.judging.contacts import (
+    FORCE_WINDOW,
+    bodies,
+    could_touch,
+    force_between,
+    pairs_of,
+)
 from harness.judging.distances import recorded_distances
+from harness.judging.hold import averaged_force
 from harness.judging.joints import joint_column
 from harness.judging.poses import UP, frame_poses, frame_present, physical_poses
 from harness.judging.window import NotObservable, Window
@@ -26,7 +33,9 @@ class Values:
     unit: str
 
 
-def values_of(node: Number, window: Window, *, are_far: bool = False) -> Values:
+def values_of(
+    node: Number, window: Window, *, are_far: bool = False, force_window: float = FORCE_WINDOW
+) -> Values:
     """A number of a formula at each sample of a window; NaN where it is not known.
 
     Args:
@@ -34,6 +43,7 @@ def values_of(node: Number, window: Window, *, are_far: bool = False) -> Values:
         window: The samples that it is calculated at.
         are_far: Whether distances at the cutoff of the recording, which are at least as much, are
             taken for infinite.
+        force_window: Time over which forces are averaged [s].
 
     Raises:
         NotObservable: The run did not record it.
@@ -42,13 +52,16 @@ def values_of(node: Number, window: Window, *, are_far: bool = False) -> Values:
         case Const(value=value, unit=unit):
             return Values(np.full(len(window.times), value), unit)
         case Signal():
-            found = _recorded(node, window)
+            found = _recorded(node, window, force_window)
             values = np.where(np.isfinite(found.values), found.values, np.nan)
             if are_far and node.name == "distance":
                 values[values >= window.run.signals.clearance_cutoff] = np.inf
             return Values(values, found.unit)
         case Arithmetic(operator=operator, operands=operands):
-            numbers = [values_of(each, window, are_far=are_far) for each in operands]
+            numbers = [
+                values_of(each, window, are_far=are_far, force_window=force_window)
+                for each in operands
+            ]
             return _calculated(operator, numbers)
 
 
@@ -76,7 +89,7 @@ def _calculated(operator: str, operands: list[Values]) -> Values:
     return Values(values, unit)
 
 
-def _recorded(node: Signal, window: Window) -> Values:
+def _recorded(node: Signal, window: Window, force_window: float) -> Values:
     match node.name, node.arguments:
         case "time", _:
             return Values(window.times - window.times[0], "s")
@@ -94,8 +107,8 @@ def _recorded(node: Signal, window: Window) -> Values:
             run = window.run
             firsts, seconds = bodies(run, first), bodies(run, second)
             together = could_touch(run, pairs_of(firsts, seconds))
-            force = np.where(together, force_between(run, firsts, seconds), np.nan)
-            return Values(window.cut(force), "N")
+            force = averaged_force(run, force_between(run, firsts, seconds), force_window)
+            return Values(window.cut(np.where(together, force, np.nan)), "N")
         case "distance", (first, second):
             rows = recorded_distances(window.run, first, second)
             stack = np.stack([window.cut(values) for values in rows.values()])

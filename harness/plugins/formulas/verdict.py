@@ -30,6 +30,7 @@ import numpy as np
 
 from harness.core.amounts import amount, amounts
 from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.judging.contacts import FORCE_WINDOW
 from harness.judging.temporal import TIME_RESOLUTION, range_min
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.judging.words import ALREADY_TRUE
@@ -38,6 +39,7 @@ from harness.plugins.formulas.language.formula import (
     Interval,
     Logic,
     Node,
+    Number,
     Signal,
     Temporal,
     comparisons_of,
@@ -46,7 +48,7 @@ from harness.plugins.formulas.language.formula import (
     text_of,
 )
 from harness.plugins.formulas.language.parser import parse_formula
-from harness.plugins.formulas.signals import values_of
+from harness.plugins.formulas.signals import Values, values_of
 from harness.recording.verdict import Measure, Observed, Verdict, VerdictStatus, VerdictWarning
 
 PLOTS = {
@@ -74,14 +76,14 @@ class Bounds:
         return Bounds(-self.high, -self.low)
 
 
-def formula_verdict(text: str, window: Window) -> Verdict:
+def formula_verdict(text: str, window: Window, force_window: float = FORCE_WINDOW) -> Verdict:
     """The verdict of a formula at the first sample of a window, without its place in the file.
 
     Raises:
         NotReached: The window ended before the formula was decided.
         NotObservable: A signal was not recorded, or is not known where it would have decided.
     """
-    evaluation = Evaluation(window)
+    evaluation = Evaluation(window, force_window)
     root = parse_formula(text)
     if not signals_of(root):
         raise NotObservable("the formula reads no signal of the run")
@@ -91,7 +93,7 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         missing = evaluation.first_unknown(root)
         if missing:
             raise NotObservable(missing)
-        near = Evaluation(window, is_near=True).bounds(root)
+        near = Evaluation(window, force_window, is_near=True).bounds(root)
         if near.low[0] > 0 or near.high[0] < 0:
             cutoff = amount(window.run.signals.clearance_cutoff, "m")
             raise NotObservable(f"distances were recorded up to {cutoff} only")
@@ -101,13 +103,13 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         raise NotReached("the time it is judged over ended before it was decided")
     holds = low > 0
     is_open = bool(window.cut_short) and not holds
-    if is_open and Evaluation(window, is_open=True).bounds(root).high[0] > 0:
+    if is_open and Evaluation(window, force_window, is_open=True).bounds(root).high[0] > 0:
         raise NotReached(window.cut_short)
     value = low if holds else high
     comparison, index, sign = evaluation.decider(root, 0, at_least=holds)
     time = window.time(index)
-    left = values_of(comparison.left, window)
-    right = values_of(comparison.right, window)
+    left = evaluation.values(comparison.left)
+    right = evaluation.values(comparison.right)
     unit = left.unit or right.unit or "1"
     actual, limit = float(left.values[index]), float(right.values[index])
     way = "holds" if holds == (sign > 0) else "does not hold"
@@ -129,21 +131,20 @@ def formula_verdict(text: str, window: Window) -> Verdict:
         0.0 if abs(value) <= TINY else value,
         unit,
         time,
-        reason=f"{reason} at t={time:.3f} s{_about_forces(comparison)}",
+        reason=f"{reason} at t={time:.3f} s{_about_forces(comparison, force_window)}",
         measures=(measure,),
         observed=evaluation.observed(root),
         warnings=evaluation.warnings(root) if holds else (),
     )
 
 
-def _about_forces(comparison: Comparison) -> str:
-    """What must be known of the forces that decided; empty where none did."""
+def _about_forces(comparison: Comparison, span: float) -> str:
+    """Over which time forces that decided are averaged; empty where none did."""
     if all(each.name != "force" for each in signals_of(comparison)):
         return ""
-    return (
-        "; forces are those of single steps of the physics and not averaged: a contact that"
-        " bounces has peaks and gaps"
-    )
+    if span == 0:
+        return "; forces are those of single steps of the physics: a contact that bounces has peaks"
+    return f"; forces are means over {amount(span, 's')}"
 
 
 class Evaluation:
@@ -151,16 +152,29 @@ class Evaluation:
 
     Args:
         window: The samples of the window.
+        force_window: Time over which forces are averaged [s].
         is_open: Whether the window continues after its last sample in an unknown way.
         is_near: Whether distances at the cutoff of the recording are no larger than it.
     """
 
-    def __init__(self, window: Window, *, is_open: bool = False, is_near: bool = False) -> None:
+    def __init__(
+        self,
+        window: Window,
+        force_window: float = FORCE_WINDOW,
+        *,
+        is_open: bool = False,
+        is_near: bool = False,
+    ) -> None:
         self.window = window
+        self.force_window = force_window
         self.is_open = is_open
         self.is_near = is_near
         self.times = window.times
         self._known: dict[int, tuple[Node, Bounds]] = {}
+
+    def values(self, node: Number, *, are_far: bool = False) -> Values:
+        """A number of the formula at every sample."""
+        return values_of(node, self.window, are_far=are_far, force_window=self.force_window)
 
     def bounds(self, node: Node) -> Bounds:
         """The bounds of a part of the formula, at every sample."""
@@ -194,8 +208,8 @@ class Evaluation:
                 return self._until(first, second, node.interval)
 
     def _margin(self, node: Comparison, *, are_far: bool) -> FloatArray:
-        left = values_of(node.left, self.window, are_far=are_far)
-        right = values_of(node.right, self.window, are_far=are_far)
+        left = self.values(node.left, are_far=are_far)
+        right = self.values(node.right, are_far=are_far)
         with np.errstate(invalid="ignore"):
             margin = left.values - right.values
         margin = margin if node.operator.startswith(">") else -margin
@@ -293,7 +307,7 @@ class Evaluation:
         """Samples at which every signal is known, and at which the premises hold."""
         unknown = np.zeros(len(self.times), dtype=bool)
         for node in signals_of(root):
-            unknown |= np.isnan(values_of(node, self.window).values)
+            unknown |= np.isnan(self.values(node).values)
         premises = [self._times_true(premise) for premise in premises_of(root)]
         known = int((~unknown).sum())
         return Observed(known, int(unknown.sum()), premises=min(premises, default=None))
@@ -322,7 +336,7 @@ class Evaluation:
     def first_unknown(self, root: Node) -> str:
         """The first sample at which a signal of the formula is not known; empty if all are."""
         for node in signals_of(root):
-            unknown = np.isnan(values_of(node, self.window).values)
+            unknown = np.isnan(self.values(node).values)
             if unknown.any():
                 time = self.window.time(int(np.argmax(unknown)))
                 return f"{node} is not known, or not there, at t={time:.3f} s"

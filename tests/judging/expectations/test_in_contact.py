@@ -71,3 +71,20 @@ EVIDENCE = Evidence(
         ),
     ),
 )
+
+
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [
+        ({}, "passed"),
+        ({"min_force": 1.0}, "passed"),
+        ({"min_force": 3.0}, "failed"),
+        ({"min_force": 3.0, "force_window": 0.0}, "passed"),
+        ({"min_force": 0.5, "force_window": 0.1}, "failed"),
+    ],
+)
+def test_a_required_force_is_a_mean_and_a_touch_is_a_sample(words, status):
+    """200 samples of 1 ms: a blow of 20 N in one of them."""
+    run = make_run(contact_forces={("arm_link", "box"): force(200, (100, 101), value=20.0)})
+    run = changed(run, times=np.arange(200) * 0.001)
+    assert verdict(run, InContact(between=("robot", "box"), **words)).status == status

@@ -10,10 +10,12 @@ from pydantic import AfterValidator, Field
 
 from harness.cell.possible_contacts import HINT, why_never_in_contact
 from harness.cell.scope import At
+from harness.judging.contacts import FORCE_WINDOW
 from harness.judging.distances import MEASURED_WORDS
 from harness.judging.expectation import SPECIAL_BODIES, Expectation
 from harness.judging.observations import CLEARANCE_ROOM, Observations
 from harness.judging.window import window_of
+from harness.language.base import Duration
 from harness.plugins.formulas.language.formula import (
     SIGNALS,
     Comparison,
@@ -52,6 +54,11 @@ class Formula(Expectation):
     formula: Annotated[str, AfterValidator(readable)] = Field(
         description="The formula, such as `always (z(box) > 5 cm implies force(robot, box) > 0.1"
         " N)`."
+    )
+    force_window: Duration = Field(
+        default=FORCE_WINDOW,
+        description="`force` is the mean over this time before each sample; with 0 the samples of "
+        "the physics count [s].",
     )
 
     def check(self, at: At) -> None:
@@ -96,7 +103,8 @@ class Formula(Expectation):
         return Observations(frozenset(frames_of(root) - {"tcp"}), _furthest(root))
 
     def verdict(self, run: Run, step: str) -> Verdict:
-        return formula_verdict(self.formula, window_of(run, self.during or step))
+        window = window_of(run, self.during or step)
+        return formula_verdict(self.formula, window, self.force_window)
 
 
 def _unbreakable(comparison: Comparison, robot: RobotDescription) -> tuple[str, str] | None:

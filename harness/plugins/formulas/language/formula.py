@@ -34,7 +34,8 @@ SIGNALS: dict[str, tuple[tuple[Kind, ...], str, str]] = {
     "force": (
         ("body", "body"),
         "N",
-        "sum of the normal forces between two of: link, object, `robot`, ...",
+        "sum of the normal forces between two of: link, object, `robot`, ..., mean over "
+        "`force_window`",
     ),
     "distance": (
         ("body", "body"),
