@@ -41,7 +41,6 @@ from harness.judging.temporal import (
     first_within,
     trailing_max,
 )
-from harness.judging.text import amount
 from harness.judging.window import NotObservable, object_record
 from harness.recording.faults import faults_of
 from harness.recording.run import Run

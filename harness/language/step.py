@@ -51,6 +51,7 @@ class Step(SpecModel):
         synonyms: What other programs call the step; an error suggests the verb for them.
         moves_arm: Whether the step is one motion of the arm, which `parallel` can combine with a
             `gripper` step.
+        has_corners: Whether that motion passes several points or goals.
         is_arc: Whether that motion is an arc, which three of its points determine.
         moves_gripper: Whether the step commands the gripper while the arm keeps its place.
         keeps_arm_still: Whether the arm keeps its place during the step.
@@ -64,6 +65,7 @@ class Step(SpecModel):
     verb: ClassVar[str] = ""
     synonyms: ClassVar[tuple[str, ...]] = ()
     moves_arm: ClassVar[bool] = False
+    has_corners: ClassVar[bool] = False
     is_arc: ClassVar[bool] = False
     moves_gripper: ClassVar[bool] = False
     keeps_arm_still: ClassVar[bool] = False

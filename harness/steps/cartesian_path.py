@@ -46,6 +46,7 @@ class CartesianPath(Step):
 
     verb: ClassVar[str] = "cartesian_path"
     moves_arm: ClassVar[bool] = True
+    has_corners: ClassVar[bool] = True
 
     waypoints: Annotated[tuple[Waypoint, ...], Field(min_length=1, max_length=1000)] = Field(
         description="The link passes through these poses in order; without a rotation it keeps its "

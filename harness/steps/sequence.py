@@ -69,6 +69,7 @@ class Sequence(Step):
 
     verb: ClassVar[str] = "sequence"
     moves_arm: ClassVar[bool] = True
+    has_corners: ClassVar[bool] = True
 
     items: Annotated[tuple[SequenceItemSpec, ...], Field(min_length=1, max_length=1000)] = Field(
         description="The motions, in order."

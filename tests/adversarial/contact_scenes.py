@@ -138,8 +138,8 @@ CONTACT_SCENES = (
         + "  - move_to: {position: {xyz: [0.25, 0.1, 0.12]}, pitch: 0}\n"
         "  - lin: {position: {xyz: [0.25, 0.1, 0.0625]}}\n  - release: red_box\n"
         "  - wait: 0.3 s\n",
-        "a contact of the box exceeds ten times its weight: too strict",
-        lambda run: bool(touches(run, "ground_plane", "red_box").max() > 10 * 0.49),
+        "a contact of the box exceeds eight times its weight: too strict",
+        lambda run: bool(touches(run, "ground_plane", "red_box").max() > 8 * 0.49),
         (),
         ("never: collision", "placed: red_box"),
         truth=lambda run: bool(np.abs(acceleration(run, "red_box")[-200:]).max() < 0.5),

@@ -191,7 +191,7 @@ TRICK_SCENES = (
         + "".join(
             "  - move_object: {object: table, pose: {xyz: [0.3, 0.2, %.4f]}}\n  - wait: 10 ms\n"
             % (0.05 + 0.0005 * k) for k in range(1, 41)
-        ) + "  - wait: 0.2 s\n",
+        ) + "  - wait: 1 s\n",
         "it rose by 1 cm, is released, and stands on the table",
         lambda run: rose(run, "cube", 0.01) and not touched(run, "cube"),
         ("lifted: {object: cube, above: 1 cm}",),

@@ -64,7 +64,7 @@ def test_contacts_of_what_is_asleep_are_recorded(gripper_over_table):
         assert force[-500:] == pytest.approx(second.support_forces[pair][-500:], rel=2e-3)
     assert first.contact_forces["board", "lower"][-1] == pytest.approx(0.3 * 9.8, rel=1e-3)
     for name, poses in first.object_poses.items():
-        assert poses == pytest.approx(second.object_poses[name], abs=1e-5)
+        assert poses == pytest.approx(second.object_poses[name], abs=3e-5)  # cylinders rock
 
 
 @pytest.mark.parametrize("missing", ["board", "lower"])

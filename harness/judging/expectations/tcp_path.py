@@ -1,6 +1,8 @@
-"""tcp_path: how far the TCP strays from a line or an arc, and how much of it it travels."""
+"""tcp_path: how far the TCP strays from a line, an arc or its command, and how far it goes."""
 
 from __future__ import annotations
+
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -8,22 +10,34 @@ from pydantic import Field, model_validator
 from harness.cell.scope import At
 from harness.core.amounts import amounts, percentages
 from harness.core.pose_arrays import compose
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.judging.expectation import ArmPredicate
+from harness.judging.commanded_path import SHORTEST, followed_path
+from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses, link_poses
 from harness.judging.window import NotObservable, NotReached, Window
-from harness.language.base import Fraction, PositiveLength, SpecModel
+from harness.language.base import (
+    AngleBetween,
+    Fraction,
+    LinearVelocity,
+    PositiveLength,
+    SpecModel,
+)
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose
 from harness.language.step import step_class
 from harness.recording.link_poses import planned_tcp_poses
+from harness.recording.step_record import StepRecord
 from harness.recording.verdict import Measure
 
-SHORTEST = 1e-6  # points nearer than this are one [m]
-
 DEVIATION = Quantity("deviation", "m", "at most `max_deviation`")
+TURN = Quantity("turn from the commanded orientation", "rad", "at most `max_rotation`, if given")
+SPEED = Quantity(
+    "difference from the commanded speed", "m/s", "at most `max_speed_error`, if given"
+)
 SHARE = Quantity("share travelled forwards", "1", "at least `min_fraction`, in the whole window")
 
 
@@ -44,14 +58,18 @@ class Arc(SpecModel):
 
 class TcpPath(ArmPredicate):
     """The TCP follows a line or an arc: it stays near it and travels it from start to end.
+class TcpPath(Predicate):
+    """The TCP follows a line, an arc or a path: it stays near it and travels it from start to end.
 
     Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
-    the arc.
+    the arc; of a `cartesian_path` or `sequence` the path that was commanded, corners and blends
+    included, of which the TCP may be up to 0.1 s behind. Orientation and speed are compared with
+    those that were commanded at the same place of the path.
     """
 
     judged = "always"
     sentence = "TCP path is followed[ along the line {line}][ along the arc {arc}]"
-    quantities = (DEVIATION, SHARE)
+    quantities = (DEVIATION, SHARE, TURN, SPEED)
 
     line: Line | None = Field(
         default=None, description="The line that the TCP follows, instead of the step's own path."
@@ -60,11 +78,23 @@ class TcpPath(ArmPredicate):
         default=None, description="The arc that the TCP follows, instead of the step's own path."
     )
     max_deviation: PositiveLength = Field(
-        default=0.001, description="The largest distance to the line or arc [m]."
+        default=0.001, description="The largest distance to the line, arc or path [m]."
     )
     min_fraction: Fraction = Field(
         default=0.95,
-        description="The share of the line or arc that must be travelled forwards in the window.",
+        description="The share of the line, arc or path that must be travelled forwards in the "
+        "window.",
+    )
+
+    max_rotation: Annotated[AngleBetween, Field(gt=0)] | None = Field(
+        default=None,
+        description="The largest angle from the commanded orientation; by default it is free "
+        "[rad].",
+    )
+    max_speed_error: Annotated[LinearVelocity, Field(gt=0)] | None = Field(
+        default=None,
+        description="The largest difference of the TCP's speed from the commanded one, each over "
+        "10 ms; by default it is free [m/s].",
     )
 
     @model_validator(mode="after")
@@ -106,28 +136,59 @@ class TcpPath(ArmPredicate):
         The share is of the whole window, so a TCP that stands on the line has not followed it, and
         neither has one that goes from its end to its start.
         """
-        limit = self.max_deviation
-        tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
-        points = [_point(window, pose) for _, pose in self.corners()] or _planned(window)
-        curve = "line" if len(points) == 2 else "arc"
-        deviation, places = along_line(tcp, *points) if curve == "line" else along_arc(tcp, *points)
+        curve, deviation, places = self._compared(window)
         share = forward_share(places)
-        if window.cut_short and share < self.min_fraction and not (deviation > limit).any():
+        strayed = bool((deviation > self.max_deviation).any())
+        if window.cut_short and share < self.min_fraction and not strayed:
             raise NotReached(window.cut_short)
-        off, shares = f"deviation from the {curve}", np.full(len(tcp), share)
+        off, shares = f"deviation from the {curve}", np.full(len(places), share)
         parts = [
-            Part(DEVIATION, deviation, limit, "<=", measured_name=off),
+            Part(DEVIATION, deviation, self.max_deviation, "<=", measured_name=off),
             Part(SHARE, shares, self.min_fraction, ">=", ceiling=1.0),
+            *self._against_commands(window),
         ]
 
         def text(_: int, measure: Measure) -> str:
-            if measure.unit == "1":
-                travelled, required = percentages(share, self.min_fraction)
-                return f"the TCP travelled {travelled} of the {curve} forwards, {required} required"
-            away, allowed = amounts(measure.value, limit, "m")
-            return f"the TCP is {away} from the {curve}, {allowed} allowed"
+            away, allowed = amounts(measure.value, measure.limit, measure.unit)
+            match measure.unit:
+                case "1":
+                    travelled, required = percentages(share, self.min_fraction)
+                    way = f"{travelled} of the {curve} forwards"
+                    return f"the TCP travelled {way}, {required} required"
+                case "m":
+                    return f"the TCP is {away} from the {curve}, {allowed} allowed"
+                case "rad":
+                    return f"the TCP is turned by {away} from its command, {allowed} allowed"
+                case _:
+                    return f"the TCP's speed is {away} from the commanded one, {allowed} allowed"
 
         return all_of(window, parts, text)
+
+    def _compared(self, window: Window) -> tuple[str, FloatArray, FloatArray]:
+        """What the TCP follows, its distance from it [m], and the place on it, shape (n,) each."""
+        own = not self.corners()
+        if own and window.step is not None and step_class(window.step.verb).has_corners:
+            _motion_of(window, window.step)
+            path = followed_path(window)
+            return "commanded path", path.deviation, path.places
+        tcp = window.cut(link_poses(window.run, window.run.robot.tcp_link))[:, :3]
+        points = _planned(window) if own else [_point(window, pose) for _, pose in self.corners()]
+        if len(points) == 2:
+            return "line", *along_line(tcp, *points)
+        return "arc", *along_arc(tcp, *points)
+
+    def _against_commands(self, window: Window) -> list[Part]:
+        """Orientation and speed against those commanded, where the file limits them."""
+        limits = (self.max_rotation, self.max_speed_error)
+        if limits == (None, None):
+            return []
+        path = followed_path(window)
+        compared = ((TURN, path.turn), (SPEED, path.speed_error))
+        return [
+            Part(quantity, values, limit, "<=")
+            for (quantity, values), limit in zip(compared, limits, strict=True)
+            if limit is not None
+        ]
 
 
 def forward_share(places: FloatArray) -> float:
@@ -157,16 +218,22 @@ def _planned(window: Window) -> list[FloatArray]:
     run, step = window.run, window.step
     if step is None:
         raise NotObservable("the whole run has no start and goal: name a step, a line or an arc")
+    trajectory = _motion_of(window, step)
+    planned = trajectory.positions
+    rows = [0, len(planned) // 2, -1] if step_class(step.verb).is_arc else [0, -1]
+    tcp = planned_tcp_poses(run, step, trajectory.joint_names, planned[rows])
+    if tcp is None:
+        raise NotObservable(f"how '{run.robot.tcp_link}' moves with the joints was not recorded")
+    return [np.broadcast_to(point, (len(window.times), 3)) for point in tcp[:, :3]]
+
+
+def _motion_of(window: Window, step: StepRecord) -> JointTrajectory:
+    """The motion of the window's step."""
     if step.trajectory is None:
         if window.cut_short:
             raise NotReached(window.cut_short)
         raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
-    planned = step.trajectory.positions
-    rows = [0, len(planned) // 2, -1] if step_class(step.verb).is_arc else [0, -1]
-    tcp = planned_tcp_poses(run, step, step.trajectory.joint_names, planned[rows])
-    if tcp is None:
-        raise NotObservable(f"how '{run.robot.tcp_link}' moves with the joints was not recorded")
-    return [np.broadcast_to(point, (len(window.times), 3)) for point in tcp[:, :3]]
+    return step.trajectory
 
 
 def along_line(
