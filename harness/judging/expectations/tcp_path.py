@@ -63,7 +63,7 @@ class TcpPath(Predicate):
 
     Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
     the arc; of a `cartesian_path` or `sequence` the path that was commanded, corners and blends
-    included, of which the TCP may be up to 0.1 s behind. Orientation and speed are compared with
+    included, which the TCP may follow up to 0.1 s late. Orientation and speed are compared with
     those that were commanded at the same place of the path.
     """
 
