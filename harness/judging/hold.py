@@ -32,8 +32,6 @@ from harness.judging.contacts import (
 from harness.judging.facts import fact
 from harness.judging.hands import each_hand, gripper_of, hand_links
 from harness.judging.poses import object_poses, tcp_poses
-from harness.judging.temporal import bridged, episodes, first_within
-from harness.judging.poses import object_poses
 from harness.judging.temporal import (
     TIME_RESOLUTION,
     bridged,

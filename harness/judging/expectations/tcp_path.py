@@ -12,9 +12,8 @@ from harness.core.amounts import amounts, percentages
 from harness.core.pose_arrays import compose
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.judging.expectation import ArmPredicate
 from harness.judging.commanded_path import SHORTEST, followed_path
-from harness.judging.expectation import Predicate
+from harness.judging.expectation import ArmPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses, link_poses
@@ -57,8 +56,6 @@ class Arc(SpecModel):
 
 
 class TcpPath(ArmPredicate):
-    """The TCP follows a line or an arc: it stays near it and travels it from start to end.
-class TcpPath(Predicate):
     """The TCP follows a line, an arc or a path: it stays near it and travels it from start to end.
 
     Without `line` and `arc` it is the line from where the step starts to its goal; of a `circ` step
