@@ -41,7 +41,7 @@ def _short(value: float, more_digits: int, finest: float = 1e-3) -> str:
         return str(value)
     if more_digits:
         return f"{value:#.{3 + more_digits}g}"
-    if 1e-3 <= abs(value) < 1:
+    if 1e-3 <= abs(value) < 0.995:
         return f"{value:.2g}"
     if finest <= abs(value) < 1e-3:
         return f"{value:.4f}"

@@ -5,31 +5,12 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Iterable
-from statistics import NormalDist
 
+from harness.core.proportion import wilson_interval
 from harness.recording.run import Outcome
 from harness.reporting.sampled import RateVerdict, SampledRate, SuccessRate
 from harness.suite.plan import PlannedCase
 from harness.suite.variation import Variation
-
-
-def wilson_interval(passed: int, total: int, confidence: float) -> tuple[float, float]:
-    """Two-sided interval of a proportion that stays sensible at 0 and at 1 [1].
-
-    References:
-        [1] E. B. Wilson, "Probable Inference, the Law of Succession, and Statistical Inference",
-            Journal of the American Statistical Association 22(158), 1927.
-    """
-    if not total:
-        return 0.0, 1.0
-    z = NormalDist().inv_cdf(0.5 + confidence / 2)
-    share = passed / total
-    middle = share + z * z / (2 * total)
-    reach = z * math.sqrt(share * (1 - share) / total + z * z / (4 * total * total))
-    scale = 1 + z * z / total
-    low = 0.0 if passed == 0 else (middle - reach) / scale
-    high = 1.0 if passed == total else (middle + reach) / scale
-    return low, high
 
 
 def log_evidence_against(passed: int, total: int, rate: float) -> float:

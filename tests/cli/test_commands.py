@@ -172,7 +172,7 @@ def test_judge_counts_the_lines_of_the_file_that_ran(lines_run, folder, capsys):
     other = LINES.replace("robot: ur3e\n", "robot: ur3e\n\n")
     (folder / "other.scenario.yaml").write_text(other)
     assert main(["judge", str(lines_run), "--with", "other.scenario.yaml"]) == 0
-    assert "line 13: tcp_path" in capsys.readouterr().out
+    assert "line 13: TCP path" in capsys.readouterr().out
 
 
 def test_explain_prints_where_the_tcp_is_at_the_start_and_end_of_each_step(lines_run, capsys):

@@ -2,12 +2,15 @@
 
 import random
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from harness.core.proportion import wilson_interval
 from harness.reporting.suite.campaign import campaign_of
 from harness.reporting.suite.columns import Columns
+from harness.reporting.suite.curves import curve_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.sensitivity import sensitivities
 from harness.reporting.suite.write import write_suite_page
@@ -46,6 +49,7 @@ FIND = """
 words => {
   const canvas = document.querySelector("#map canvas");
   const said = document.querySelector("#map output");
+  canvas.scrollIntoView({ block: "center" });
   const box = canvas.getBoundingClientRect();
   for (let x = box.left + 60; x < box.right - 10; x += 9) {
     for (let y = box.top + 24; y < box.bottom - 34; y += 9) {
@@ -69,7 +73,7 @@ def place_of(page, words):
 def test_a_failed_run_on_the_map_is_described_and_opens_with_a_click(page_file, visit):
     page = visit(page_file).page
     assert page.locator("#map select[name=x] option").all_inner_texts() == [
-        "friction", "x [cm]", "color", "worst margin (share of its limit)",
+        "friction", "color", "x [cm]", "worst margin (share of its limit)",
     ]  # fmt: skip
     x, y = place_of(page, "failed: lifted cube; friction 0.")
     page.mouse.click(x, y)
@@ -89,7 +93,7 @@ def test_a_passed_run_without_a_report_is_found_in_the_table(page_file, visit):
 def test_the_failure_rate_is_shown_for_each_cell(page_file, visit):
     page = visit(page_file).page
     page.select_option("#map select[name=kind]", "rate")
-    page.select_option("#map select[name=y]", "2")
+    page.select_option("#map select[name=y]", label="color")
     place_of(page, "runs failed")
 
 
@@ -138,6 +142,53 @@ def test_the_parameter_that_decides_is_named_alone():
     }  # fmt: skip
     assert found.effects[0].share == pytest.approx(1)
     assert found.conclusion == "friction (lower in failed runs) explains these failures."
+
+
+def test_the_map_begins_with_what_explains_most():
+    cases = [
+        replace(
+            each, values={"x": each.values["x"], "objects.cube.friction": each.values["friction"]}
+        )
+        for each in campaign(200)
+    ]
+    shown = campaign_of(Columns(cases), cases, Path())
+    assert [each["name"] for each in shown.map["parameters"]] == ["friction of cube", "x"]
+    assert shown.names["x"] == "x [cm]"
+
+
+def test_a_curve_has_the_success_rate_and_its_interval_over_a_parameter():
+    """Runs fail below a friction of a third, whatever the colour."""
+    columns = Columns(campaign(160))
+    friction, _, color = columns.parameters
+    every = np.arange(160)
+    curve = curve_of(friction, every, columns.is_good)
+    rates = [1 - point.y / curve.height for point in curve.points]
+    assert len(curve.points) == 8
+    assert rates[:2] == [0.0, 0.0]
+    assert rates[-4:] == [1.0] * 4
+    assert [point.x for point in curve.points] == sorted(point.x for point in curve.points)
+    for point in curve.points:
+        assert point.top <= point.y <= point.bottom
+    low, high = wilson_interval(20, 20, 0.95)
+    assert 1 - curve.points[-1].bottom / curve.height == pytest.approx(low)
+    assert curve.points[-1].text.endswith(
+        f"20 of 20 passed ({low:.0%} to {high:.0%} at 95% confidence)"
+    )
+    words = curve_of(color, every, columns.is_good)
+    assert {point.label for point in words.points} == {"red", "green"}
+    assert not words.is_line
+
+
+def test_where_no_run_failed_the_curve_is_of_the_worst_margin():
+    cases = [SuiteCase(passed(i, 0.06 + 0.01 * (i // 10)), {"x": i // 10}) for i in range(40)]
+    columns = Columns(cases)
+    (x,) = columns.parameters
+    curve = curve_of(x, np.arange(40), columns.is_good, np.array(columns.shares))
+    heights = [point.y for point in curve.points]
+    assert heights == sorted(heights, reverse=True), "margins grow with x"
+    assert curve.title == "Worst margin over x"
+    same = curve_of(x, np.arange(10), columns.is_good, np.array(columns.shares))
+    assert same is None, "these runs do not differ in it"
 
 
 def lowest(count, path):
@@ -240,6 +291,7 @@ def test_too_few_runs_of_a_file_are_no_share_of_zero(tmp_path, visit):
     )
     assert "Too few runs, fewer than 8 of a file: a.yaml (7)" in section.inner_text()
     assert section.locator("li").count() == 3
+    assert section.locator("svg.curve").count() == 3
 
 
 def test_what_cannot_be_known_has_a_reason_and_no_share():
@@ -284,9 +336,9 @@ def test_failures_that_are_all_alike_have_a_panel_in_their_unit(tmp_path, visit,
     cases = [grasped(i, -0.05, "N") for i in range(8)]
     cases += [grasped(i, 0.001 + 1e-5 * i, "m") for i in range(8, 8 + slips)]
     texts = margins(tmp_path, visit, cases)
-    assert texts[0].startswith("grasped\n8 margins from -0.05 to -0.05 N")
+    assert texts[0].startswith("grasped\n8 margins from -0.05 N to -0.05 N")
     assert "8 below zero" in texts[0]
-    assert any(f"{slips} margins from 0.00108 to 0.001" in each for each in texts) == (slips > 1)
+    assert any(f"{slips} margins from 1.1 mm to 1.1 mm" in each for each in texts) == (slips > 1)
 
 
 def test_the_panels_of_an_expectation_stand_next_to_each_other(tmp_path, visit):
@@ -330,7 +382,7 @@ def test_hostile_words_stay_text(tmp_path, visit):
     page = write_suite_page(tmp_path, SuiteRecord("failed", campaign(20, words)))
     seen = visit(page)
     assert "taken over" not in seen.page.title()
-    seen.page.select_option("#map select[name=y]", "2")
+    seen.page.select_option("#map select[name=y]", label="color")
     assert seen.complaints == []
 
 

@@ -263,7 +263,7 @@ def test_without_scripts_the_summary_is_there_to_read(visit, failed_run):
     opened = visit(failed_run / "report.html", scripts=False)
     assert not opened.page.locator("#app").is_visible()
     text = opened.text("#summary")
-    for said in ("FAILED", "ptp", "duration", "failed by", "seed", "digest", "tracking_error"):
+    for said in ("FAILED", "ptp", "duration", "failed by", "seed", "digest", "tracking error"):
         assert said in text
     assert "- duration: {at_most: 0.2}" in text, "the line of the file that does not hold"
     assert opened.page.locator("#summary .pictures img").count() >= 2

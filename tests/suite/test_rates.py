@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from harness.core.proportion import wilson_interval
 from harness.reporting.sampled import SampledRate, missed, rate_line, rate_text
-from harness.suite.sampling import Tally, decided, wilson_interval
+from harness.suite.sampling import Tally, decided
 from tests.suite.samples import rate_of
 
 

@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.types import FloatArray
 from harness.reporting.suite.columns import PASSED, Columns, VariedQuantity
+from harness.reporting.suite.curves import Curve, curve_of
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.suite.sensitivity import (
     FEWEST_RUNS,
@@ -20,6 +22,7 @@ from harness.reporting.suite.sensitivity import (
     evenly,
     sensitivities,
 )
+from harness.reporting.suite.tables import one_run_lines
 
 MOST_POINTS = 10_000  # on the map; of more, an even choice of the passed and of the failed
 
@@ -62,6 +65,9 @@ class Campaign:
         count: How many runs are drawn, in words.
         remarks: What the histograms leave out, a sentence each.
         sensitivities: The files with enough runs.
+        curves: File and path of a parameter -> how its runs depend on it.
+        names: Path of a parameter -> its name in words, with its unit.
+        one_run: A sentence for each file whose runs are all one and the same.
         too_few: The other files, in words; empty where there is none.
         fewest: The number of runs that are enough.
         has_files: Whether the runs are of several files.
@@ -74,6 +80,9 @@ class Campaign:
     sensitivities: Sequence[FileSensitivity]
     too_few: str
     has_files: bool
+    curves: Mapping[tuple[str, str], Curve]
+    names: Mapping[str, str]
+    one_run: Sequence[str]
     fewest: int = FEWEST_RUNS
 
 
@@ -86,14 +95,36 @@ def campaign_of(columns: Columns, cases: Sequence[SuiteCase], folder: Path) -> C
     parameters = [each for each in columns.parameters if each.is_varying]
     if len(columns.numbers) < FEWEST_RUNS or not parameters:
         return None
+    found = list(sensitivities(columns))
+    ranked = [effect.path for each in found for effect in each.effects if effect.share is not None]
+    parameters.sort(
+        key=lambda each: ranked.index(each.path) if each.path in ranked else len(ranked)
+    )
     drawn, count = _map(columns, parameters, cases, folder)
     histograms, remarks = _margins(columns)
-    found = list(sensitivities(columns))
     few = [f"{each.file} ({each.runs})" for each in found if each.runs < FEWEST_RUNS]
     names = ", ".join(few[:MOST_FILES])
     names += f" and {len(few) - MOST_FILES} more files" if len(few) > MOST_FILES else ""
     shown = [each for each in found if each.effects]
-    return Campaign(drawn, count, histograms, remarks, shown, names, len(columns.files) > 1)
+    return Campaign(
+        drawn, count, histograms, remarks, shown, names, len(columns.files) > 1,
+        dict(_curves(columns, parameters, shown)), {each.path: each.axis for each in parameters},
+        list(one_run_lines(columns)),
+    )  # fmt: skip
+
+
+def _curves(
+    columns: Columns, parameters: Sequence[VariedQuantity], found: Sequence[FileSensitivity]
+) -> Iterator[tuple[tuple[str, str], Curve]]:
+    """The curve of each parameter among the runs of each file."""
+    files, is_good = np.array(columns.file_numbers), columns.is_good
+    for each in found:
+        chosen = np.flatnonzero(files == columns.files.index(each.file))
+        shares = None if each.measured == "outcome" else np.array(columns.shares)
+        for parameter in parameters:
+            curve = curve_of(parameter, chosen, is_good, shares)
+            if curve is not None:
+                yield (each.file, parameter.path), curve
 
 
 def _map(
@@ -111,7 +142,8 @@ def _map(
     places = {group: place for place, group in enumerate(common)} | {PASSED: PASSED}
     data = {
         "parameters": [
-            {"name": each.path, "unit": each.unit, "words": each.words} for each in parameters
+            {"name": each.words_of_path, "unit": each.unit, "words": each.words}
+            for each in parameters
         ],
         "causes": [names[group] for group in common],
         "weights": [
@@ -164,14 +196,13 @@ def _first(keys: Iterable[tuple[str, str]], expectation: str) -> int:
 
 def _histogram(expectation: str, unit: str, values: FloatArray) -> Histogram:
     low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
-    suffix = "" if unit == "1" else f" {unit}"
     failed = int((values < 0).sum())
     text = (
-        f"{len(values)} margins from {values.min():.3g} to {values.max():.3g}{suffix}, median"
-        f" {np.median(values):.3g}{suffix}; {failed} below zero"
+        f"{len(values)} margins from {amount(values.min(), unit)} to {amount(values.max(), unit)},"
+        f" median {amount(float(np.median(values)), unit)}; {failed} below zero"
     )
     bars, zero = list(_bars(values, low, high)), WIDTH * -low / (high - low)
-    return Histogram(expectation, text, bars, zero, f"{low:.3g}", f"{high:.3g}{suffix}")
+    return Histogram(expectation, text, bars, zero, amount(low, unit), amount(high, unit))
 
 
 def _bars(values: FloatArray, low: float, high: float) -> Iterator[tuple[str, float, float]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from pathlib import Path
 
 from harness.reporting.html import bundle
@@ -10,15 +11,14 @@ from harness.reporting.sampled import missed, rate_text
 from harness.reporting.suite.campaign import campaign_of
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.history import History
-from harness.reporting.suite.record import SuiteRecord
-from harness.reporting.suite.rows import row_facts
-from harness.reporting.suite.tables import table_lines
-from harness.reporting.terminal import OUTCOMES, Style
+from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.rows import deciding_picture, row_facts
+from harness.reporting.terminal import OUTCOMES, failure_place
 
 FOLDER = Path(__file__).with_name("page")
-SIGNS = Style(has_signs=True)
 MOST_ROWS = 10_000
 MOST_PLAIN_ROWS = 200  # where scripts are blocked
+REPLAY_WIDTH = 480  # [pixels]
 
 
 def suite_html(
@@ -43,7 +43,11 @@ def suite_html(
         script=bundle.script(FOLDER / "suite.js"),
         style=bundle.theme() + _read("suite.css"),
         record=record,
-        title="; ".join(filter(None, (passed, missed(record.rates)))),
+        title=record.title or "; ".join(filter(None, (passed, missed(record.rates)))),
+        failing_changes=[
+            (each, [_replay(*replay, folder) for replay in each.replays])
+            for each in record.failing_changes
+        ],
         outcomes=[(name, outcomes[name]) for name in reversed(OUTCOMES) if outcomes[name]],
         causes=columns.causes.most_common(),
         rates=[
@@ -51,7 +55,6 @@ def suite_html(
             for each in sorted(record.rates, key=lambda each: each.outcome == "passed")
         ],
         campaign=campaign_of(columns, record.cases, folder),
-        varied=_varied(columns),
         is_campaign=len(columns.numbers) + outcomes["invalid"] == total,
         plain=[(case, case.link(folder)) for _, case in urgent[:MOST_PLAIN_ROWS]],
         data=packer.text({"rows": [rows[i] for i, _ in listed], "history": bool(history)}),
@@ -61,6 +64,14 @@ def suite_html(
     )
 
 
+def _replay(name: str, case: SuiteCase, folder: Path) -> dict[str, str]:
+    """A run next to another one: its name, its page at the deciding moment, and a picture."""
+    picture = deciding_picture(case.result, REPLAY_WIDTH)
+    link = case.link(folder) + (failure_place(case.result) if case.result.page else "")
+    encoded = base64.b64encode(picture).decode() if picture else ""
+    return {"name": name, "outcome": case.result.outcome, "link": link, "picture": encoded}
+
+
 def duration_text(seconds: float) -> str:
     """A wall time: `8.2 s`, `3 min 20 s`, `1 h 05 min`; empty where none is known."""
     if seconds < 60:
@@ -68,17 +79,6 @@ def duration_text(seconds: float) -> str:
     if seconds < 3600:
         return f"{seconds // 60:.0f} min {seconds % 60:.0f} s"
     return f"{seconds // 3600:.0f} h {seconds % 3600 // 60:02.0f} min"
-
-
-def _varied(columns: Columns) -> list[str]:
-    """A block of lines for each quantity that varies; they flow side by side."""
-    blocks: list[str] = []
-    for line in table_lines(columns, SIGNS):
-        if line.startswith(" "):
-            blocks[-1] += f"\n{line}"
-        else:
-            blocks.append(line)
-    return blocks
 
 
 def _read(name: str) -> str:

@@ -64,6 +64,23 @@ class SuiteCase:
 
 
 @dataclass(frozen=True)
+class FailingChange:
+    """A change of a scenario with which it fails.
+
+    Attributes:
+        changes: Path, value in the file and value with which it fails, of each parameter.
+        cause: Why it fails, in a line.
+        runs: How many runs failed in this way.
+        replays: What each run is, and its case: the file as it is, and the changed one.
+    """
+
+    changes: Sequence[tuple[str, Any, Any]]
+    cause: str
+    runs: int
+    replays: Sequence[tuple[str, SuiteCase]]
+
+
+@dataclass(frozen=True)
 class SuiteRecord:
     """Everything that a suite's files are written from.
 
@@ -73,6 +90,8 @@ class SuiteRecord:
         rates: The rates of samples.
         is_interrupted: Whether Ctrl-C ended it early.
         missing_parts: Why a suite that was merged from parts is incomplete, one sentence each.
+        title: What the page is called instead of the number of cases that passed.
+        failing_changes: What a search found, the smallest change first.
         progress: The number of runs that are done while the suite runs; empty when it has ended.
     """
 
@@ -81,6 +100,8 @@ class SuiteRecord:
     rates: Sequence[SampledRate] = ()
     is_interrupted: bool = False
     missing_parts: Sequence[str] = ()
+    title: str = ""
+    failing_changes: Sequence[FailingChange] = ()
     progress: str = ""
 
 

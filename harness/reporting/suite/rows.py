@@ -68,17 +68,21 @@ def row_facts(
 
 def _picture(result: CaseResult, number: int, packer: Packer) -> str:
     """The name of the buffer with a picture of the deciding moment; empty without one."""
-    if result.outcome != "failed" or not result.report_dir or len(packer.names) >= MOST_PICTURES:
+    if result.outcome != "failed" or len(packer.names) >= MOST_PICTURES:
         return ""
-    stills = Path(result.report_dir, "images")
+    picture = deciding_picture(result, PICTURE_WIDTH)
+    return packer.add(f"case.{number}", picture) if picture else ""
+
+
+def deciding_picture(result: CaseResult, width: int) -> bytes | None:
+    """The moment that decided a failure, else the end, as WebP of a width [pixels]."""
     step = _deciding_step(result)
-    files = sorted(stills.glob(f"{step:02d}-*.jpg"))  # the one that explains a failure is last
-    if not files:
-        return ""
+    files = sorted(Path(result.report_dir, "images").glob(f"{step:02d}-*.jpg"))
+    if not result.report_dir or not files:
+        return None
     from harness.reporting.html.still import small_still  # loads OpenCV
 
-    picture = small_still(files[-1], PICTURE_WIDTH)
-    return packer.add(f"case.{number}", picture) if picture else ""
+    return small_still(files[-1], width)  # the last one explains a failure
 
 
 def _deciding_step(result: CaseResult) -> int:

@@ -33,6 +33,11 @@ def table_lines(columns: Columns, style: Style = PLAIN) -> Iterator[str]:
             yield f"  {mark} {label:<{width}}  {passed:>4} of {total:<4} {passed / total:7.1%}"
         if len(rows) > MOST_ROWS:
             yield f"  ... {len(rows) - MOST_ROWS} more"
+    yield from one_run_lines(columns)
+
+
+def one_run_lines(columns: Columns) -> Iterator[str]:
+    """A sentence for each file of which all runs are one and the same."""
     for file, count in columns.one_run:
         yield f"{file}: its {count} runs have equal digests: nothing that varies matters in them"
 

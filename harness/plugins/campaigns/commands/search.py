@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from collections.abc import Sequence
 from contextlib import closing
 from importlib import import_module
 from pathlib import Path
@@ -27,7 +26,7 @@ from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
     from harness.plugins.campaigns.failure_search.search import SearchResult
-    from harness.plugins.campaigns.failure_search.write import WrittenFailure
+    from harness.plugins.campaigns.failure_search.write import Written, WrittenFailure
     from harness.reporting.result import CaseResult
 
 
@@ -84,7 +83,7 @@ class SearchCommand(Command):
         return code
 
 
-def _search(arguments: argparse.Namespace) -> tuple[SearchResult, list[WrittenFailure], int]:
+def _search(arguments: argparse.Namespace) -> tuple[SearchResult, Written, int]:
     file = one_scenario(arguments.file)
     from harness.suite.warm import WarmServer
 
@@ -150,9 +149,7 @@ class _Progress:
         self._bar(self._stage, self._done, max(self._runs, self._done), failed)
 
 
-def _show(
-    arguments: argparse.Namespace, found: SearchResult, written: Sequence[WrittenFailure]
-) -> None:
+def _show(arguments: argparse.Namespace, found: SearchResult, written: Written) -> None:
     from harness.plugins.campaigns.failure_search.write import search_folder
     from harness.reporting.suite.cause import cause_of
     from harness.reporting.suite.write import PAGE
@@ -177,11 +174,11 @@ def _show(
         )
     if found.uncounted:
         say(f"{found.uncounted} runs are invalid or begin with an overlap, and do not count")
-    if not written:
+    if not written.failures:
         say(f"{style.mark(True)} no failure was found")
     elif exploration.first_failure:
         say(f"the first failure was run {exploration.first_failure}")
-    for each in written:
+    for each in written.failures:
         _show_failure(each, found, report_link(each.result, style))
     page = search_folder(Path(arguments.report_dir), found.request.file) / PAGE
     say("", f"all runs: {style.link(str(page), page.resolve().as_uri())}")

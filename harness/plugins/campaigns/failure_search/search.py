@@ -206,9 +206,7 @@ def _shrunk(
     def fails(points: Sequence[Point]) -> list[bool]:
         return [failure_kind(each.result) == kind for each in evaluate(points)]
 
-    def size(sample: Sample) -> tuple[int, float]:
-        return len(space.changed(sample.point)), space.distance(sample.point)
-
-    nearest = shrink(space, min(samples, key=size).point, fails)
+    smallest = min((each.point for each in samples), key=space.size)
+    nearest = shrink(space, smallest, fails)
     [sample] = evaluate([nearest])
     return Failure(kind, samples, sample, len(evaluate.samples) - before)

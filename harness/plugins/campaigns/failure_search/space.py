@@ -109,6 +109,10 @@ class SearchSpace:
             if each.change(value) > 0
         )
 
+    def size(self, point: Point) -> tuple[int, float]:
+        """How large a change is: the number of changed parameters, then the distance."""
+        return len(self.changed(point)), self.distance(point)
+
     def distance(self, point: Point) -> float:
         """Length of the change from the nominal point, in shares of the ranges."""
         pairs = zip(self.parameters, point, strict=True)

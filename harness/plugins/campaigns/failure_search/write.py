@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from harness.core.files import replaced, writing
-from harness.core.printable import printable
+from harness.core.printable import counted, printable
 from harness.language.reading.load import load_scenario
 from harness.language.reading.resolve import resolved_text
 from harness.plugins.campaigns.failure_search.evaluator import Sample
@@ -17,7 +18,7 @@ from harness.reporting.json_text import json_text
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, SuccessRate
 from harness.reporting.suite.cause import cause_of
-from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.record import FailingChange, SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite_page
 from harness.session.run_request import RunRequest
 from harness.suite.cases import run_isolated
@@ -29,6 +30,19 @@ from harness.suite.warm import WarmServer
 FORMAT = "armharness-search/1"
 FOLDER = "search"
 NUMBERS = "search.json"
+
+
+@dataclass(frozen=True)
+class Written:
+    """The runs of a search that have a report.
+
+    Attributes:
+        failures: The shrunk failures, those with the smallest changes first.
+        nominal: The run of the file as it is; without a report where nothing failed.
+    """
+
+    failures: Sequence[WrittenFailure]
+    nominal: CaseResult
 
 
 @dataclass(frozen=True)
@@ -54,25 +68,34 @@ def search_folder(root: Path, file: Path) -> Path:
     return root / FOLDER / place_of(file)
 
 
-def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> list[WrittenFailure]:
+def write_failures(found: SearchResult, folder: Path, server: WarmServer) -> Written:
     """Write each shrunk failure as a scenario file, run that file, and report the run.
+
+    The file as it is runs once more, with a report to compare the failures with.
 
     Raises:
         HarnessError: A file cannot be written.
     """
-    files = [folder / f"failure{i}{SUFFIX}" for i in range(1, len(found.failures) + 1)]
+    failures = sorted(found.failures, key=lambda each: found.space.size(each.nearest.point))
+    files = [folder / f"failure{i}{SUFFIX}" for i in range(1, len(failures) + 1)]
     with writing(folder):
         for stale in folder.glob(f"failure*{SUFFIX}"):
             stale.unlink()
-        for file, failure in zip(files, found.failures, strict=True):
+        for file, failure in zip(files, failures, strict=True):
             file.write_text(scenario_text(found, failure, folder), encoding="utf-8")
+    if not failures:
+        return Written((), found.nominal.result)
     jobs = [RunRequest(file, report_dir=folder / file.name.removesuffix(SUFFIX)) for file in files]
+    overrides = {**found.overrides, **found.space.overrides(found.nominal.point)}
+    seed = found.request.settings.seed
+    jobs.append(RunRequest(found.request.file, overrides, seed=seed, report_dir=folder / "nominal"))
     cap = found.request.hard_cap
     results = dict(run_isolated(jobs, server, workers=found.request.workers, hard_cap=cap))
-    return [
+    written = [
         WrittenFailure(failure, file, results[index])
-        for index, (failure, file) in enumerate(zip(found.failures, files, strict=True))
+        for index, (failure, file) in enumerate(zip(failures, files, strict=True))
     ]
+    return Written(written, results[len(files)])
 
 
 def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
@@ -90,16 +113,21 @@ def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
     return comments + resolved_text(loaded, folder=folder)
 
 
-def changes(found: SearchResult, sample: Sample) -> list[str]:
-    """`friction: 1.0 -> 0.42` for each parameter that is not nominal."""
+def changed(found: SearchResult, sample: Sample) -> list[tuple[str, Any, Any]]:
+    """Path, nominal value and value of each parameter that is not nominal."""
     space = found.space
     return [
-        f"{space.parameters[i].path}: {space.parameters[i].nominal} -> {sample.point[i]}"
+        (space.parameters[i].path, space.parameters[i].nominal, sample.point[i])
         for i in space.changed(sample.point)
     ]
 
 
-def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder: Path) -> Path:
+def changes(found: SearchResult, sample: Sample) -> list[str]:
+    """`friction: 1.0 -> 0.42` for each parameter that is not nominal."""
+    return [f"{path}: {nominal} -> {value}" for path, nominal, value in changed(found, sample)]
+
+
+def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
     """Write the page and the numbers of a search.
 
     Returns:
@@ -108,18 +136,39 @@ def write_search(found: SearchResult, written: Sequence[WrittenFailure], folder:
     Raises:
         HarnessError: A file cannot be written.
     """
-    runs = [
-        (replace(found.nominal.result, case="nominal"), found.nominal.point),
-        *((each.result, each.point) for each in found.exploration.samples),
-        *((_reported(each), each.failure.nearest.point) for each in written),
+    values, nominal = found.space.values, replace(written.nominal, case="nominal")
+    unchanged = SuiteCase(nominal, values(found.nominal.point))
+    failing = [
+        SuiteCase(_reported(each), values(each.failure.nearest.point)) for each in written.failures
     ]
-    cases = [SuiteCase(result, found.space.values(point)) for result, point in runs]
+    runs = [SuiteCase(each.result, values(each.point)) for each in found.exploration.samples]
+    cases = [unchanged, *runs, *failing]
+    changes = [
+        FailingChange(
+            changed(found, each.failure.nearest),
+            cause.text if (cause := cause_of(each.result)) else each.failure.kind,
+            len(each.failure.samples),
+            (("the file as it is", unchanged), ("with the change", case)),
+        )
+        for each, case in zip(written.failures, failing, strict=True)
+    ]
     outcome = "failed" if is_failing(found) else "passed"
     rate = found.exploration.rate
     rates = [] if rate is None else [_sampled(found, rate)]
     with writing(folder), replaced(folder / NUMBERS) as file:
         file.write(json_text(search_document(found, written)).encode())
-    return write_suite_page(folder, SuiteRecord(outcome, cases, rates))
+    record = SuiteRecord(outcome, cases, rates, title=_title(found), failing_changes=changes)
+    return write_suite_page(folder, record)
+
+
+def _title(found: SearchResult) -> str:
+    """What the search found, in a few words."""
+    name, runs = found.request.file.name.removesuffix(SUFFIX), len(found.exploration.samples)
+    if found.nominal.result.outcome != "passed":
+        return f"{name} fails unchanged"
+    if not found.failures:
+        return f"{name}: no failure in {counted(runs, 'run')}"
+    return f"{name}: {counted(len(found.failures), 'way')} to fail in {counted(runs, 'run')}"
 
 
 def is_failing(found: SearchResult) -> bool:
@@ -161,7 +210,7 @@ def _sampled(found: SearchResult, rate: FailureRate) -> SampledRate:
     )
 
 
-def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> dict[str, object]:
+def search_document(found: SearchResult, written: Written) -> dict[str, object]:
     """The content of `search.json` and `--json`."""
     exploration = found.exploration
     return {
@@ -194,6 +243,6 @@ def search_document(found: SearchResult, written: Sequence[WrittenFailure]) -> d
                 "digest": each.result.digest,
                 "is_same_digest": each.is_same,
             }
-            for each in written
+            for each in written.failures
         ],
     }

@@ -13,8 +13,11 @@ export function drawCampaign() {
   let placed = [], marked = null;
 
   for (const select of [across, up]) {
-    axes.forEach((axis, index) => select.add(new Option(axis.unit ? `${axis.name} [${axis.unit}]` : axis.name, index)));
+    axes.forEach((axis, index) => select.add(new Option(label(axis), index)));
   }
+  /** An axis in words, with its unit. */
+  function label({ name, unit }) { return unit ? `${name} [${unit}]` : name; }
+
   const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   /** The colour of a cause; red tones first, none of them the green of what passed. */
   const causeColor = (cause) => color(["--s1", "--s3", "--s4", "--s0", "--s6", "--s9", "--s5", "--s8"][cause % 8]);
@@ -71,9 +74,9 @@ export function drawCampaign() {
       pen.fillText(text(y, value).slice(0, 9), LEFT - 5, py(value));
     }
     pen.textAlign = "center"; pen.textBaseline = "bottom";
-    pen.fillText(`${axes[x].name} →`, (width + LEFT) / 2, height - 2);
+    pen.fillText(`${label(axes[x])} →`, (width + LEFT) / 2, height - 2);
     pen.textAlign = "left"; pen.textBaseline = "top";
-    pen.fillText(`↑ ${axes[y].name}`, LEFT - 5, 2);
+    pen.fillText(`↑ ${label(axes[y])}`, LEFT - 5, 2);
   }
 
   function ticks(axis, low, high, most) {

@@ -1,6 +1,7 @@
 """`harness search`: a thin failing region is found, and shrunk to its boundary."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -90,6 +91,15 @@ def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_pat
     assert set(causes) == {("x",), ("y",)}
     assert causes[("x",)]["x"] == pytest.approx(0.3, abs=0.005)
     assert causes[("y",)]["y"] == pytest.approx(-0.4, abs=0.005)
+    [page] = (tmp_path / "reports").rglob("index.html")
+    shown = re.findall(r"<article.*?</article>", page.read_text(), re.DOTALL)
+    changed = [re.search("<code>(.)</code>", each)[1] for each in shown]
+    distances = {tuple(each["changed"]): each["distance"] for each in found["failures"]}
+    assert changed == sorted(changed, key=lambda path: distances[path,]), "the smallest first"
+    for each in shown:
+        replays = re.findall('href="(.*?)[#"]', each)
+        assert len(replays) == 2, "as the file is, and changed"
+        assert all((page.parent / replay).is_file() for replay in replays)
 
 
 @pytest.mark.nightly
