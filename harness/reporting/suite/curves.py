@@ -23,7 +23,7 @@ class CurvePoint:
     """A part of a parameter's range, or one of its values.
 
     Attributes:
-        x: Its place [pixels].
+        x: The place along the axis of the parameter [pixels].
         y: The place of the measured value; 0 is the top [pixels].
         top: The place of the upper end of the interval [pixels].
         bottom: The place of its lower end [pixels].
@@ -45,7 +45,7 @@ class Curve:
 
     Attributes:
         title: What is drawn, in words.
-        points: From the lowest value to the highest one; words in their order.
+        points: The points from the lowest value to the highest one; those of words in their order.
         is_line: Whether the points are of numbers, which a line joins.
         ends: The ends of the parameter's axis in words; empty of words.
         scale: The ends of the vertical axis in words, the upper one first.
