@@ -56,7 +56,7 @@ RESULTS_LINE = 16 * MB
 
 SUBMISSION_FILES = 5000  # a ROS workspace with its build folder has a few thousand
 
-STUDIO_MESSAGE = MIB
+STUDIO_MESSAGE = 4 * MIB  # a scenario as JSON
 STUDIO_PAGES = 32
 STUDIO_REQUESTS = 200  # that wait for the cell
 
@@ -64,6 +64,10 @@ MCP_TEXT = 200_000  # characters of an answer or a written file: what a model re
 
 RTPS_SAMPLE = 64 * MIB
 RTPS_WAITING = 4096  # samples of one writer that wait for an earlier one
+RTPS_PARTIAL = 4  # samples of one writer of which fragments are missing
+RTPS_MEMORY = 4 * RTPS_SAMPLE  # of the samples of one writer that wait
+RTPS_PEERS = 120  # as many as a domain has ports for
+RTPS_ENDPOINTS = 2000  # of one peer; a robot with MoveIt has 300
 
 
 @dataclass(frozen=True)
@@ -145,7 +149,8 @@ READERS = (
     Reader(
         "ROS 2 messages on the network (RTPS)",
         _of(RTPS_SAMPLE),
-        f"{RTPS_WAITING:,} samples of a writer that wait",
+        f"{RTPS_WAITING:,} samples of a writer that wait, {RTPS_PARTIAL} of them in fragments;"
+        f" {RTPS_PEERS} participants",
     ),
 )
 """What `docs/explanation/reliability.md` shows."""

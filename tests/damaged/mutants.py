@@ -41,9 +41,9 @@ def damaged_bytes(data: bytes, rng: random.Random) -> bytes:
 def damaged_text(text: str, rng: random.Random) -> bytes:
     """A text with a word removed, doubled, or replaced by a number, a name or no UTF-8."""
     data = text.encode()
-    if rng.random() < 0.3:
-        return damaged_bytes(data, rng)
     words = [m for m in _words(text) if m[1] > m[0]]
+    if not words or rng.random() < 0.3:
+        return damaged_bytes(data, rng)
     begin, end = rng.choice(words)
     numbers = ("1e308", "-1e308", "1e999", "nan", "-1", "0", "5e-324", "1 2", "x", "", "1,5")
     with_names = rng.choice(words)

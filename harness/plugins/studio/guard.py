@@ -79,11 +79,13 @@ class Guard:
 
     def refusal(self, request: Request, port: int) -> str:
         """Why a request is refused; empty where it may be answered."""
-        host = request.headers.get("Host", "")
+        hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
+        if len(hosts) != 1 or len(origins) > 1:
+            return "a request has one Host, and at most one Origin"
+        [host] = hosts
         if not self.is_open and host not in {f"{name}:{port}" for name in LOOPBACK}:
             return "this Host is not the studio's"
-        origin = request.headers.get("Origin")
-        if origin is not None and origin != f"http://{host}":
+        if any(origin != f"http://{host}" for origin in origins):
             return "a page of another origin may not use the studio"
         if self.token and not self._has_token(request):
             return "the address has no token, or a wrong one: open the one that the terminal shows"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import io
+import logging
 import socket
 from collections.abc import Awaitable, Callable
 from importlib.resources import files
@@ -15,9 +16,11 @@ import viser
 import websockets.asyncio.server
 from viser._messages import ShareUrlDisconnect, ShareUrlRequest
 from websockets.asyncio.server import ServerConnection
+from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from harness.core.errors import HarnessError
+from harness.core.limits import STUDIO_MESSAGE, STUDIO_PAGES
 from harness.plugins.studio.guard import PAGE_POLICY, SCENE_POLICY, SOCKET_PATH, Asset, Guard
 
 EDITOR_FILES = (
@@ -76,18 +79,29 @@ def start_server(host: str, port: int, guard: Guard, handler: Handler) -> viser.
         PortInUseError: Another program listens on the port.
     """
     _refuse_used_port(host, port)
+    logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # not each bad request
     serve = websockets.asyncio.server.serve
 
     def guarded(viser_handler: Handler, *arguments: Any, **options: Any) -> Any:
         def process(connection: ServerConnection, request: Request) -> Response | None:
             return guard.response(request, connection.local_address[1])
 
+        open_sockets: set[ServerConnection] = set()
+
         async def handle(connection: ServerConnection) -> None:
             request = connection.request
             is_page = request is not None and request.path.partition("?")[0] == SOCKET_PATH
-            await (handler if is_page else viser_handler)(connection)
+            if len(open_sockets) >= 2 * STUDIO_PAGES:  # a page has one of its own and one of viser
+                await connection.close(CloseCode.TRY_AGAIN_LATER, "too many pages are open")
+                return
+            open_sockets.add(connection)
+            try:
+                await (handler if is_page else viser_handler)(connection)
+            finally:
+                open_sockets.discard(connection)
 
-        return serve(handle, *arguments, **{**options, "process_request": process})
+        bounds = {"process_request": process, "max_size": STUDIO_MESSAGE}
+        return serve(handle, *arguments, **{**options, **bounds})
 
     websockets.asyncio.server.serve = guarded
     try:

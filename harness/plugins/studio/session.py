@@ -18,12 +18,13 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from harness.core.errors import HarnessError, SpecError
+from harness.core.limits import STUDIO_REQUESTS
 from harness.core.printable import printable
 from harness.core.untrusted_json import parse_json
 
 FRAME = 1 / 30  # time between two pictures of the scene [s]
 PANEL_PERIOD = 0.1  # time between two updates of the numbers on the page [s]
-MOST_MESSAGES = 500  # messages that wait for a slow page; older ones of the state are dropped
+MOST_MESSAGES = 500  # messages of the state that wait for a slow page; of all twice as many
 
 Message = dict[str, Any]
 
@@ -49,7 +50,8 @@ class Viewer:
         text = json.dumps(message, default=float)
 
         def put() -> None:
-            if self.outbox.qsize() < MOST_MESSAGES or message["type"] != "state":
+            most = MOST_MESSAGES if message["type"] == "state" else 2 * MOST_MESSAGES
+            if self.outbox.qsize() < most:
                 self.outbox.put_nowait(text)
 
         self.loop.call_soon_threadsafe(put)
@@ -190,6 +192,9 @@ class Session:
             return reply({"error": "another page controls the cell; request control first"})
         if name in self.at_once:
             return reply(guarded(lambda: self.at_once[name](message)))
+
+        if self._jobs.qsize() >= STUDIO_REQUESTS:
+            return reply({"error": "too many requests wait; send this one again later"})
 
         def job() -> None:
             try:

@@ -12,13 +12,17 @@ import numpy as np
 import pytest
 import rosless
 
+from harness.core.limits import RTPS_MEMORY, RTPS_PARTIAL, RTPS_PEERS, RTPS_SAMPLE
 from harness.plugins.ros.actions import Status
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.endpoints import DEFAULT, LATCHED, Qos
 from harness.plugins.ros.interfaces import decoded, encoded
 from harness.plugins.ros.rtps import wire
+from harness.plugins.ros.rtps.discovery import Endpoint, announcement
 from harness.plugins.ros.rtps.participant import Participant
+from harness.plugins.ros.rtps.reader import Reader
 from harness.plugins.ros.rtps.sockets import Sockets
+from harness.plugins.ros.rtps.wire import Sample
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.nodes import ARM, Node, follow, point
 from tests.waiting import HANG
@@ -165,3 +169,36 @@ def test_a_node_that_comes_later_gets_what_is_latched(tmp_path):
     fixed = {each.child_frame_id: each.header.frame_id for each in static[0].transforms}
     assert fixed["2nd view_optical_frame"] == "world"
     assert {fixed[name] for name in fixed} <= {"world", *fixed, *edges}, "one tree"
+
+
+def test_participants_beyond_the_ports_of_a_domain_are_not_kept():
+    """Programs that announce themselves under a new name each time fill no memory."""
+    with free_domain() as domain:
+        participant = Participant(domain, name="watched")
+        for number in range(3 * RTPS_PEERS):
+            prefix = wire.VENDOR + number.to_bytes(10, "big")
+            said = announcement(prefix + wire.PARTICIPANT, domain, "x", [("127.0.0.1", 9)])
+            participant._receive(wire.header(prefix) + said)  # noqa: SLF001 - as from the network
+        assert len(participant._peers) == RTPS_PEERS  # noqa: SLF001 - what is bounded
+        participant.close()
+
+
+def test_samples_that_wait_for_others_are_bounded_in_bytes_and_fragments():
+    """A writer that never sends the first sample, and fragments of many samples."""
+    heard = []
+    own = Endpoint(bytes(15) + b"\x04", "rt/x", "t", DEFAULT)
+    guid = bytes(15) + b"\x03"
+    reader = Reader(own, lambda *_: None, heard.append)
+    reader.match(Endpoint(guid, "rt/x", "t", DEFAULT), ("127.0.0.1", 9))
+    whole = bytes(2**20)
+    for number in range(2, 2 * RTPS_MEMORY // 2**20):
+        reader.take(Sample(own.guid[12:], guid, number, {}, whole))
+    [proxy] = reader.matched.values()
+    assert proxy.bytes_waiting() <= RTPS_MEMORY
+    for number in range(10**6, 10**6 + 100):
+        part = Sample(own.guid[12:], guid, number, {}, bytes(8), 1, 8, RTPS_SAMPLE)
+        reader.take(part)
+    assert len(proxy.partial) == RTPS_PARTIAL
+    reader.take(Sample(own.guid[12:], guid, 1, {}, b"first"))
+    reader.heartbeat(guid, 1, 1, is_final=True)
+    assert heard[0].payload == b"first", "what was sent in order is delivered"

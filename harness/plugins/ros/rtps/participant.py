@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 
+from harness.core.limits import RTPS_ENDPOINTS, RTPS_PEERS
 from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import Endpoint, Peer, announcement, farewell, is_gone
@@ -188,6 +189,8 @@ class Participant:
         known = Peer.parsed(sample.payload, self._sockets.reachable)
         if known is None or known.domain not in (None, self.domain):
             return
+        if source not in self._peers and len(self._peers) >= RTPS_PEERS:
+            return
         peer = self._peers.setdefault(source, known)
         if not peer.knows_us:  # it may not have listened yet when the last announcement came
             self._announce(peer.meta)
@@ -204,7 +207,7 @@ class Participant:
             return
         endpoint = Endpoint.parsed(sample.payload)
         peer = self._peers.get(endpoint.guid[:12])
-        if peer is not None:
+        if peer is not None and len(peer.endpoints) < RTPS_ENDPOINTS:
             peer.endpoints[endpoint.guid] = endpoint
             for mine in self._all():
                 self._match(mine, endpoint, peer)

@@ -6,7 +6,7 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from harness.core.limits import RTPS_SAMPLE, RTPS_WAITING
+from harness.core.limits import RTPS_MEMORY, RTPS_PARTIAL, RTPS_SAMPLE, RTPS_WAITING
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.wire import Address, Sample
@@ -32,6 +32,10 @@ class _Writer:
     waiting: dict[int, Sample] = field(default_factory=dict[int, Sample])
     partial: dict[int, dict[int, bytes]] = field(default_factory=dict[int, dict[int, bytes]])
     count: int = 0
+
+    def bytes_waiting(self) -> int:
+        """The bytes of whole samples that wait."""
+        return sum(len(sample.payload) for sample in self.waiting.values())
 
 
 class Reader:
@@ -62,9 +66,10 @@ class Reader:
             proxy.expected = sample.number
         elif not proxy.expected:  # whether there is one before it, a heartbeat says
             self._request_heartbeat(sample.writer, proxy)
-        if len(proxy.waiting) < RTPS_WAITING:
-            proxy.waiting[sample.number] = whole
-            self._drain(proxy)
+        proxy.waiting[sample.number] = whole
+        while len(proxy.waiting) > RTPS_WAITING or proxy.bytes_waiting() > RTPS_MEMORY:
+            del proxy.waiting[max(proxy.waiting)]  # it is requested again
+        self._drain(proxy)
 
     def heartbeat(self, guid: bytes, first: int, last: int, *, is_final: bool) -> None:
         """A writer has samples `first` to `last`; request what is missing."""
@@ -115,6 +120,8 @@ def _assembled(proxy: _Writer, sample: Sample) -> Sample | None:
     if size > RTPS_SAMPLE or step == 0:
         return None
     count = -(-size // step)
+    if sample.number not in proxy.partial and len(proxy.partial) >= RTPS_PARTIAL:
+        return None  # it is sent again when those before it are whole
     parts = proxy.partial.setdefault(sample.number, {})
     for place, begin in enumerate(range(0, len(sample.payload), step), sample.first):
         if place <= count:
