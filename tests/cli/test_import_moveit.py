@@ -197,7 +197,8 @@ def test_an_orientation_makes_a_pose_and_several_goals_are_alternatives(folder):
         ("robot_model_name", "model", "x"),
         ("      primitive_poses:", "      primitive_poses: [{}, {}, {}]\n      x:", "3 poses"),
         ("[0.2, 0.3, 0.04]", "[0.2, -0.3, 0.04]", "box.size.1: Input should be greater than 0"),
-        ("[1.2, 0.1, 0.3]", "[1.2, 0.1, 1e300]", "is too large"),
+        ("[1.2, 0.1, 0.3]", "[1.2, 0.1, 1e300]", "1e+300 is too large"),
+        ("orientation: [0, 0, 0, 1]", "orientation: [0, 1e308, 0, 1]", "1e+308 is too large"),
         ("id: shelf", f"id: {'x' * 500}", "name: String should have at most"),
     ],
 )

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pydantic import ValidationError
 
 from harness.core.spatial import SE3, wxyz_from_xyzw
+from harness.language.base import LARGEST_NUMBER
 from harness.language.files.source import Located
 from harness.plugins.formats.plain_values import first_mistake
 from harness.robot.yaml_data import number, refuse
@@ -47,7 +48,11 @@ def numbers(item: Located | None, names: str) -> list[float] | None:
         parts = item.items() if isinstance(item.value, list) else []
     if len(parts) != len(names):
         refuse(item, f"expected {len(names)} numbers: {', '.join(names)}")
-    return [number(part) for part in parts]
+    found = [number(part) for part in parts]
+    for part, value in zip(parts, found, strict=True):
+        if abs(value) > LARGEST_NUMBER:
+            refuse(part, f"{value:g} is too large; at most {LARGEST_NUMBER:g}")
+    return found
 
 
 @contextmanager

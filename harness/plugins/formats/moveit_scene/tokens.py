@@ -6,6 +6,7 @@ import math
 import re
 
 from harness.core.errors import SpecError
+from harness.language.base import LARGEST_NUMBER
 from harness.language.files.source import Place, Source
 
 WORD = re.compile(r"\S+")
@@ -60,7 +61,7 @@ class TokenReader:
         """The next word as a number.
 
         Raises:
-            SpecError: It is not a finite number.
+            SpecError: It is not a finite number, or beyond `LARGEST_NUMBER`.
         """
         word, place = self.next()
         try:
@@ -70,6 +71,9 @@ class TokenReader:
         if not math.isfinite(value):
             found = f"`{word[:40]}`" if word else "the end of the file"
             raise SpecError([place.problem(f"expected a finite number, found {found}")])
+        if abs(value) > LARGEST_NUMBER:
+            message = f"{value:g} is too large; at most {LARGEST_NUMBER:g}"
+            raise SpecError([place.problem(message)])
         return value
 
     def count(self, what: str, most: int) -> int:

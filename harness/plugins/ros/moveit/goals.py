@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NoReturn
 
 import numpy as np
@@ -10,7 +11,8 @@ from harness.cell.cell import Cell
 from harness.core.errors import ErrorCode, StepFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.plugins.ros.moveit.values import frame_of, link_of, pose_of
+from harness.language.base import LARGEST_NUMBER
+from harness.plugins.ros.moveit.values import SMALLEST_NORM, frame_of, link_of, pose_of
 from harness.ports.goals import (
     AnyGoal,
     Goal,
@@ -174,7 +176,7 @@ def _rotation(cell: Cell, constraint: Any) -> FloatArray:
     frame = frame_of(cell, str(constraint.header.frame_id))
     turn = constraint.orientation
     values = np.array([turn.w, turn.x, turn.y, turn.z], dtype=float)
-    if not np.isfinite(values).all() or not values.any():
+    if not SMALLEST_NORM <= math.hypot(*values) <= LARGEST_NUMBER:
         _refuse("INVALID_GOAL_CONSTRAINTS", "an orientation is no quaternion")
     return (frame @ SE3.from_xyz_quat((0, 0, 0), values)).rotation
 

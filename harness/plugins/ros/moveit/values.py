@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,10 +13,12 @@ from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.language.base import LARGEST_NUMBER
 from harness.plugins.ros.interfaces import header
 from harness.reporting.rosbag.messages import message, trajectory_message
 
 SUCCESS = 1
+SMALLEST_NORM = 1e-9  # of a quaternion; a smaller one is that of an empty message
 NUMBERS: Mapping[str, int] = {
     "FAILURE": 99999,
     "PLANNING_FAILED": -1,
@@ -62,15 +65,16 @@ def pose_of(pose: Any) -> SE3:
     """The pose of a geometry_msgs/Pose; one without a rotation is not turned.
 
     Raises:
-        StepFailed: A number of it is not finite.
+        StepFailed: A number of it is not finite, or beyond `LARGEST_NUMBER`.
     """
     position, turn = pose.position, pose.orientation
     quaternion = np.array([turn.w, turn.x, turn.y, turn.z], dtype=float)
     xyz = np.array([position.x, position.y, position.z], dtype=float)
-    if not (np.isfinite(quaternion).all() and np.isfinite(xyz).all()):
-        raise StepFailed("INVALID_GOAL_CONSTRAINTS", "a pose has numbers that are not finite")
-    if not quaternion.any():
-        quaternion[0] = 1.0
+    if not (np.abs([*quaternion, *xyz]) <= LARGEST_NUMBER).all():  # which NaN is not
+        reason = f"a pose has numbers that are not finite, or beyond {LARGEST_NUMBER:g}"
+        raise StepFailed("INVALID_GOAL_CONSTRAINTS", reason)
+    if math.hypot(*quaternion) < SMALLEST_NORM:
+        quaternion = np.array([1.0, 0.0, 0.0, 0.0])
     return SE3.from_xyz_quat(xyz, quaternion)
 
 
