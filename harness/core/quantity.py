@@ -27,7 +27,10 @@ def split_quantity(value: object) -> tuple[float, str]:
         ValueError: It is neither a number nor one with a unit.
     """
     if isinstance(value, int | float) and not isinstance(value, bool):
-        return float(value), ""
+        try:
+            return float(value), ""
+        except OverflowError as error:
+            raise ValueError("the number has more than 308 digits") from error
     constant = constant_of(value) if isinstance(value, str) else None
     if constant is not None:
         return constant, ""

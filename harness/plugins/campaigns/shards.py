@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from harness.core.errors import SpecError
 from harness.core.files import read_at_most, replaced, writing
 from harness.core.limits import RESULTS_DOCUMENT
 from harness.core.untrusted_json import parse_json
@@ -203,13 +204,18 @@ def _read(folder: Path) -> ShardRecord:
         entry = parse_json(read_at_most(path, RESULTS_DOCUMENT))
         if entry.pop("format") != FORMAT:
             raise UsageError(f"'{path}' is not of the format {FORMAT}")
-        return from_plain(entry, ShardRecord)
+        record = from_plain(entry, ShardRecord)
+        for each in record.files:
+            stated_variation(each.varied)  # a merge needs it
     except FileNotFoundError:
         raise UsageError(
             f"'{folder}' holds no {FILE}; name report folders of `harness run ... --shard N/COUNT`"
         ) from None
+    except SpecError as error:
+        raise UsageError(f"'{path}' cannot be read: {error.problems[0].message}") from None
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise UsageError(f"'{path}' cannot be read: {error}") from None
+    return record
 
 
 def _check_same_suite(record: ShardRecord, folder: Path, other: ShardRecord, place: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from harness.core.resources import data_folder
-from harness.plugins.campaigns.shards import Shard, shard_of
+from harness.plugins.campaigns.shards import Shard, read_shard_records, shard_of
 from harness.suite.discovery import UsageError
 from harness.suite.plan import planned_cases
 from harness.suite.request import SuiteRequest
@@ -210,6 +210,25 @@ def test_a_damaged_description_is_refused(parts, tmp_path, text):
     assert refused.returncode == 2
     assert "shard.json" in refused.stderr
     assert "Traceback" not in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("varied", "said"),
+    [
+        ({"time": {"uniform": [0]}}, "cannot be read"),
+        ({"time": {"version": [0, 1]}}, "unknown key `version`"),
+        ({"time": {"uniform": [0, 10**400]}}, "more than 308 digits"),
+        ({"time": {"normal": {"mean": -(10**400), "std": 1}}}, "more than 308 digits"),
+    ],
+)
+def test_impossible_variations_in_a_description_are_refused(parts, tmp_path, varied, said):
+    broken = Path(shutil.copytree(next(parts.glob("*/shard.json")).parent, tmp_path / "broken"))
+    record = json.loads((broken / "shard.json").read_text())
+    sampled = next(each for each in record["files"] if "randomize" in each["varied"])
+    sampled["varied"]["randomize"] = varied
+    (broken / "shard.json").write_text(json.dumps(record))
+    with pytest.raises(UsageError, match=re.escape(said)):
+        read_shard_records([broken])
 
 
 def test_a_folder_without_a_part_and_a_part_twice_are_refused(parts, tmp_path):

@@ -184,6 +184,20 @@ def test_damaged_archives_are_reported(tmp_path, content, ending):
     assert "cannot be unpacked" in refusal(path, tmp_path)
 
 
+@pytest.mark.parametrize("name", [b"", b"\0", b"\xff"])
+def test_names_that_are_none_are_reported(tmp_path, name):
+    path = zipped(tmp_path / "bad.zip", {"a": "x"})
+    data = path.read_bytes()
+    place = data.rindex(b"PK\x01\x02")  # of the list of files, which counts
+    head = bytearray(data[place : place + 46])
+    head[28:30] = len(name).to_bytes(2, "little")
+    moved = data[:place] + bytes(head) + name + data[place + 47 :]
+    end = bytearray(moved[moved.rindex(b"PK\x05\x06") :])
+    end[12:16] = (46 + len(name)).to_bytes(4, "little")
+    path.write_bytes(moved[: moved.rindex(b"PK\x05\x06")] + bytes(end))
+    assert "cannot be unpacked" in refusal(path, tmp_path)
+
+
 def test_an_archive_with_a_password_is_reported(tmp_path):
     path = zipped(tmp_path / "secret.zip", {"a": "x"})
     data = bytearray(path.read_bytes())

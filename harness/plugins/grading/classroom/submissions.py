@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import lzma
 import os
 import re
 import shutil
 import stat
 import tarfile
 import zipfile
-import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -24,11 +22,6 @@ from harness.suite.discovery import UsageError
 BLOCK = 2**20  # [bytes]
 ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.xz", ".tar.bz2")
 BAGS = (".mcap", ".db3", ".bag", ".csv")
-UNREADABLE = (
-    *(OSError, EOFError, ValueError, RuntimeError, NotImplementedError),
-    *(tarfile.TarError, zipfile.BadZipFile, zlib.error, lzma.LZMAError),
-)
-"""What damaged archives, passwords and impossible names raise."""
 LEFT_OUT = ("__MACOSX", "__pycache__")
 
 
@@ -102,7 +95,10 @@ def unpack(submission: Submission, target: Path, megabytes: int) -> Path:
         try:
             with ExitStack() as stack:
                 _write_all(_entries(source, stack), place, megabytes * 10**6)
-        except UNREADABLE as error:
+        except HarnessError:
+            raise
+        except Exception as error:
+            # whatever the libraries raise on damaged bytes, passwords and impossible names
             reason = str(error).partition("\n")[0].rstrip(":")
             raise SubmissionError(f"it cannot be unpacked: {reason}") from error
         while len(inside := list(place.iterdir())) == 1 and inside[0].is_dir():
