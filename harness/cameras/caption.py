@@ -20,7 +20,19 @@ def captioned_jpeg(
     status: str = "",
     status_ink: tuple[int, int, int] = DARK,
 ) -> bytes:
-    """RGB pixels as a JPEG file with a caption over its lowest rows.
+    """RGB pixels as a JPEG file with a caption; arguments as of `captioned`."""
+    return jpeg(captioned(pixels, caption, ink=ink, status=status, status_ink=status_ink))
+
+
+def captioned(
+    pixels: np.ndarray,
+    caption: str,
+    *,
+    ink: tuple[int, int, int] = RED,
+    status: str = "",
+    status_ink: tuple[int, int, int] = DARK,
+) -> np.ndarray:
+    """A picture with a caption over its lowest rows, BGR.
 
     Args:
         pixels: The picture, RGB, shape (height, width, 3), uint8.
@@ -40,5 +52,10 @@ def captioned_jpeg(
     wide = cv2.getTextSize(text, FONT, SIZE, 1)[0][0]
     scale = SIZE * min(1.0, (right - MARGIN) / max(wide, 1))
     cv2.putText(picture, text, (MARGIN, height), FONT, scale, ink, 1, cv2.LINE_AA)
+    return picture
+
+
+def jpeg(picture: np.ndarray) -> bytes:
+    """A BGR picture as a JPEG file."""
     _, content = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
     return content.tobytes()

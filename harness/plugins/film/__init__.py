@@ -1,0 +1,1 @@
+"""Films of runs, for slides, issues and phones."""

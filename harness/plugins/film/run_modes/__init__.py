@@ -1,0 +1,1 @@
+"""The option `--film` of `harness run`."""

@@ -1,0 +1,34 @@
+"""`harness run` with `--film`."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar
+
+from harness.cli.run_mode import RunFiles, RunMode
+from harness.suite.hooks import SuiteHooks
+
+
+class FilmMode(RunMode):
+    """Write a film of each case into its report."""
+
+    name: ClassVar[str] = "film"
+
+    def add_options(self, command: argparse.ArgumentParser) -> None:
+        """Add `--film`."""
+        text = "write a film of the replay and a picture of the deciding moment into the report too"
+        command.add_argument("--film", action="store_true", help=f"{text}; needs the extra `video`")
+
+    def run(
+        self,
+        run_files: RunFiles,
+        arguments: argparse.Namespace,
+        files: Sequence[Path],
+        hooks: SuiteHooks,
+    ) -> int:
+        """Run scenarios, with the reporter `film` if it is requested."""
+        if getattr(arguments, "film", False):
+            arguments.reporters = (*(arguments.reporters or ()), "film")
+        return run_files(arguments, files, hooks)
