@@ -39,7 +39,7 @@ class Frame:
         sample: The recorded sample that is drawn.
         step: The step that runs; None between steps.
         moment: What is decided at that time; None where nothing is.
-        repeats: For how many pictures it stands still.
+        repeats: The number of pictures for which it stands still.
     """
 
     sample: int
