@@ -26,6 +26,8 @@ def position_around(name: str, state: FloatArray, cell: Cell) -> float:
         state: The whole robot, description order.
         cell: The cell with the object in its planning scene.
     """
+    if cell.gripper.cups:
+        return cell.gripper.closed_position
     tcp = cell.kinematics.link_pose(state, cell.description.tcp_link)
     axis = tcp.rotation @ gripper_axes(cell)[1]
     across = cell.frame(name).apply(cell.scene.corners(name)) @ axis
@@ -35,6 +37,8 @@ def position_around(name: str, state: FloatArray, cell: Cell) -> float:
 def closing_obstacles(name: str, state: FloatArray, cell: Cell) -> list[Touch]:
     """What the hand penetrates when it has closed to the width of an object, deepest first."""
     hand = cell.gripper
+    if hand.cups:
+        return []
     closed = np.array(state)
     closed[cell.description.joint_index[hand.joint]] = position_around(name, state, cell)
     links = {hand.palm_link, *hand.links}

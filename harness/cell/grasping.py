@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
+from harness.cell.suction import suction_grasps, suction_grasps_at
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
 from harness.core.pose_arrays import rotations_about
@@ -43,6 +44,8 @@ def gripper_axes(cell: Cell) -> tuple[FloatArray, FloatArray]:
     """
     opened = _at(cell, cell.gripper.open_position)
     approach = approach_axis(cell.description, cell.kinematics, cell.scene, opened)
+    if cell.gripper.cups:  # nothing closes: any direction across
+        return approach, np.linalg.svd(approach[None])[2][1]
     _, first, second = _in_tcp(cell, cell.gripper.open_position)
     closing = second.translation - first.translation
     if np.linalg.norm(closing) < IN_ONE_PLACE:  # then from the middle of one pad's shapes
@@ -139,6 +142,8 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
         StepFailed: INVALID_OBJECT_NAME, when the object leans, or its shape says too little;
             GOAL_STATE_INVALID, when no level side fits between the pads.
     """
+    if cell.gripper.cups:
+        return suction_grasps(obj, object_pose, cell)
     shape, at, size, vertical, level = _standing(obj, object_pose, cell)
     check_opening(obj, object_pose, cell)
     side = at.rotation[:, level[0]].copy()
@@ -177,6 +182,8 @@ def top_grasps_at(point: FloatArray, obj: WorldObject, object_pose: SE3, cell: C
 
     Where the object leans, or is not one simple shape, at every eighth of a turn.
     """
+    if cell.gripper.cups:
+        return suction_grasps_at(point)
     if has_simple_shape(obj):
         try:
             return [SE3(each.rotation, point) for each in top_grasps(obj, object_pose, cell)]

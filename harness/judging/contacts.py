@@ -20,6 +20,7 @@ from harness.judging.temporal import trailing_max, without_gaps
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
+from harness.robot.description import seal_words
 
 TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
 OVERLAP = 0.001  # [m]; what is less deep is rounding: convex hulls are off by as much
@@ -27,6 +28,7 @@ FORCE_WINDOW = 0.010
 """Time over which a force is averaged before it is compared with a limit [s], unless a file says
 otherwise: longer than the vibrations of a stiff contact, shorter than a motion or a person's push.
 """
+SUCTION = "suction"  # the one side of a gripper with suction cups
 DEBOUNCE = 0.010  # longest gap inside one contact [s]: ten physics steps of 1 ms
 
 
@@ -67,12 +69,47 @@ def bodies_touching(run: Run, name: str, but: Collection[str] = ()) -> dict[str,
 
 @fact
 def side_forces(run: Run, name: str) -> dict[str, FloatArray]:
-    """Debounced force of each finger side on an object, by side name [N], shape (N,) each."""
+    """Debounced force of each finger side on an object, by side name [N], shape (N,) each.
+
+    Of suction cups it is one side: the force of their vacuum.
+    """
     sides = gripper_of(run).sides
+    if gripper_of(run).cups:
+        return {SUCTION: debounced(run, np.linalg.norm(pull_on(run, name), axis=1))}
     return {
         side: debounced(run, force_between(run, frozenset(sides[side]), {name}))
         for side in sorted(sides)
     }
+
+
+def pull_on(run: Run, name: str) -> FloatArray:
+    """Force of the vacuum of the hand's cups on an object, in world axes [N], shape (N, 3)."""
+    cups = {cup.link for cup in gripper_of(run).cups}
+    pulls = [
+        rows[:, :3] for key, rows in run.signals.pulls.items() if key[0] in cups and key[1] == name
+    ]
+    return np.sum(pulls, axis=0) if pulls else np.zeros((len(run.signals.times), 3))
+
+
+def side_words(side: str) -> str:
+    """A finger side, or the suction of cups, in a verdict: `left finger`."""
+    return side if side == SUCTION else f"{side} finger"
+
+
+def why_unsealed(run: Run, name: str, sample: int) -> str:
+    """Why suction cups do not hold an object at a sample; empty for fingers, and where they do."""
+    cups = gripper_of(run).cups
+    if not cups or pull_on(run, name)[sample].any():
+        return ""
+    at = {cup.name: run.signals.pulls.get((cup.link, name)) for cup in cups}
+    words = {
+        cup: seal_words(None if rows is None else int(rows[sample, 3])) for cup, rows in at.items()
+    }
+    valve = run.robot.joint_index[gripper_of(run).joint]
+    position, hand = run.signals.joint_positions[sample, valve], gripper_of(run)
+    if abs(position - hand.open_position) < abs(position - hand.closed_position):
+        return "the suction is off"
+    return "; ".join(f"{cup}: {why}" for cup, why in words.items())
 
 
 def finger_gap(run: Run) -> FloatArray:

@@ -57,9 +57,12 @@ def grip_force(run: Run) -> FloatArray:
     """Force of a finger side as the effort of the gripper's joint explains it [N], shape (N,).
 
     By the work of a small motion: the effort times the joint's motion is the force times the change
-    of the gap. It is not known (inf) where the gripper's widths are not.
+    of the gap. It is not known (inf) where the gripper's widths are not. Of suction cups it is the
+    force with which all of them hold.
     """
     hand = gripper_of(run)
+    if hand.cups:
+        return np.full(len(run.signals.times), hand.holding_force)
     rows = hand.widths[np.argsort(hand.widths[:, 0])]
     if len(rows) < 2:
         return np.full(len(run.signals.times), np.inf)

@@ -26,6 +26,7 @@ from harness.judging.body_motion import lowest_points, middle_of
 from harness.judging.contacts import (
     DEBOUNCE,
     TOUCH_FORCE,
+    pull_on,
     side_forces,
     welded,
 )
@@ -90,6 +91,8 @@ def between_fingers(run: Run, name: str) -> BoolArray:
     shelf, or what closed tips rest on: `is_antipodal` says what between means. Where no direction
     was recorded (an older run) every touch counts.
     """
+    if gripper_of(run).cups:  # a cup holds by its own vacuum, between nothing
+        return np.ones(len(run.signals.times), dtype=bool)
     sides = _side_presses(run, name)
     thickness = least_thickness(object_record(run, name).shapes)
     pairs = [
@@ -172,6 +175,8 @@ def _upward(run: Run, name: str, which: str) -> FloatArray:
     for key, rows in getattr(run.signals, which).items():
         if key[0] in hand and key[1] == name:
             total = total + (np.nan_to_num(rows[:, 3:]) if which == "presses" else rows)
+    if which == "presses":
+        total = total + pull_on(run, name)
     gravity = np.array(run.gravity)
     up = -gravity / max(float(np.linalg.norm(gravity)), 1e-12)
     return recent_mean(run, (total @ up)[:, None], HOLD_TIME)[:, 0]
@@ -199,7 +204,7 @@ def cradled(run: Run, name: str) -> BoolArray:
     """
     weight = weight_of(run, name)
     mask = np.zeros(len(run.signals.times), dtype=bool)
-    if weight == 0:
+    if weight == 0 or gripper_of(run).cups:
         return mask
     lying = _upward(run, name, "presses") >= CARRIED_SHARE * weight
     return lying & ~_is_squeezed(run, name) if lying.any() else mask

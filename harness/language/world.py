@@ -203,8 +203,8 @@ class ObjectSpec(SpecModel):
     not_yet: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys(
             ("suction", "vacuum", "magnet"),
-            "a gripper holds objects between two finger sides; `grasp: {object: NAME, mode: weld}`"
-            " also fixes the object to the hand",
+            "suction cups are a gripper: `robot: {model: ur5e, gripper: suction_cup}`; any smooth"
+            " face of an object has room for them",
         ),
     }
 

@@ -27,6 +27,7 @@ class GripperResult:
         reached_goal: Whether it is at the commanded position within tolerance.
         contacts: Object names in contact with each finger side at the end, by side name.
         between: Names of objects that two finger sides press from opposite sides at the end.
+        unsealed: Why each suction cup that holds nothing does not, by cup.
         forces: Normal force with which each finger side presses other bodies at the end, by side
             name and body [N]; empty where it is not measured.
     """
@@ -40,6 +41,7 @@ class GripperResult:
     forces: Mapping[str, Mapping[str, float]] = field(
         default_factory=dict[str, Mapping[str, float]]
     )
+    unsealed: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
 `contact_forces/<body>|<body>`, `presses/<link>|<body>`, `frictions/<link>|<body>`,
+`pulls/<cup>|<body>`,
 `support_forces/<a>|<b>`, `slides/<a>|<b>`, `clearances/<a>|<b>`, `clearance_links/<a>|<b>`,
 `planned_clearances/<a>|<b>`, `link_overlaps/<a>|<b>`.
 """
@@ -26,6 +27,7 @@ BY_PAIR = (
     "contact_forces",
     "presses",
     "frictions",
+    "pulls",
     "support_forces",
     "slides",
     "clearances",

@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.types import FloatArray, Floats, IntArray, Pair
 
 UNPUBLISHED = (
-    *("contact_forces", "presses", "frictions", "support_forces"),
+    *("contact_forces", "presses", "frictions", "pulls", "support_forces"),
     *("slides", "link_overlaps", "planned_clearances"),
 )
 """Signals that no topic of a robot carries, and that no recording of its topics contains."""
@@ -111,6 +111,9 @@ class Signals:
             body (world xyz) [N], (N, 6) each; NaN without force; keys as in `contact_forces`.
         frictions: Friction force of a robot link on another body (world xyz) [N], (N, 3) each; zero
             without contact; keys as in `presses`. A pair that is not in it was recorded without.
+        pulls: Force of a suction cup's vacuum on another body (world xyz) [N], and the number of
+            quarters of its rim that touch the body, (N, 4) each; zero where the valve is shut; keys
+            (link of the cup, body).
         support_forces: Upward part of the normal force [N] that the first of two objects exerts on
             the second; negative where the second carries the first. (N,) each; keys as in
             `contact_forces`, of objects alone. A pair that is not in it was recorded without.
@@ -144,6 +147,7 @@ class Signals:
     )
     presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     frictions: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
+    pulls: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )

@@ -21,7 +21,7 @@ def without_gripper(part: RobotPart) -> RobotPart:
     hand, place = part.facts.gripper, part.facts.flange
     if hand is None or place is None:
         return part
-    removed = {link for side in hand.sides.values() for link in side.links}
+    removed = {link for links in hand.links_by_side.values() for link in links}
     removed.add(part.facts.tcp_link or "")
     for joint in part.urdf.joints:  # parents before children
         if joint.parent in removed:

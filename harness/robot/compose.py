@@ -14,6 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.robot.description import (
     WORLD,
+    Cup,
     Gripper,
     Joint,
     Link,
@@ -201,17 +202,28 @@ def _gripper(facts: GripperFacts) -> Gripper:
     return Gripper(
         group=facts.group,
         joint=facts.joint,
-        sides={name: side.links for name, side in facts.sides.items()},
-        pads={name: side.pad for name, side in facts.sides.items()},
+        sides=facts.links_by_side,
+        pads=facts.pads,
         palm_link=facts.palm_link,
         open_position=facts.open_position,
         closed_position=facts.closed_position,
         grip_effort=facts.grip_effort,
         max_effort=facts.max_effort,
-        widths=np.array(facts.widths),
+        widths=np.array(facts.widths or _valve(facts)),
         friction=facts.friction,
         approach_axis=None if axis is None else axis / np.linalg.norm(axis),
+        cups=tuple(
+            Cup(name, cup.link, cup.radius, cup.lip, cup.depth)
+            for name, cup in (facts.cups or {}).items()
+        ),
+        vacuum=facts.vacuum or 0.0,
     )
+
+
+def _valve(facts: GripperFacts) -> list[tuple[float, float]]:
+    """The table of a valve: how far it is from open, at its two ends, with rising position."""
+    ends = facts.open_position, facts.closed_position
+    return sorted((end, abs(facts.closed_position - end)) for end in ends)
 
 
 def _cameras(parts: list[RobotPart], links: tuple[Link, ...]) -> dict[str, Camera]:

@@ -6,6 +6,7 @@ are built from the same description, and a run stores it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -139,9 +140,44 @@ class NamedState:
     positions: Mapping[str, float]
 
 
+@dataclass(frozen=True)
+class Cup:
+    """A suction cup: a rigid rim with a lip that closes gaps.
+
+    Attributes:
+        name: Its name in the robot.yaml.
+        link: Its link, whose z axis leaves the gripper; z = 0 is the plane of the rim.
+        radius: The radius of the rim [m].
+        lip: The largest gap between rim and surface that it closes [m].
+        depth: How far a surface may bulge into it [m].
+    """
+
+    name: str
+    link: str
+    radius: float
+    lip: float
+    depth: float
+
+    @property
+    def area(self) -> float:
+        """The area inside the rim [m^2]."""
+        return math.pi * self.radius**2
+
+
+def seal_words(quarters: int | None) -> str:
+    """Why a cup holds nothing: the quarters of its rim that touch a body; None: it is near none."""
+    if not quarters:
+        return "its rim touches nothing"
+    if quarters < 4:
+        return f"{quarters} of 4 quarters of the rim touch"
+    return "the whole rim touches, and air enters inside it, as over a hole"
+
+
 @dataclass(frozen=True, eq=False)
 class Gripper:
-    """Two finger sides closed by one joint.
+    """Two finger sides closed by one joint, or suction cups with one valve.
+
+    Of cups each one is a side; the joint is that of the valve, closed position: suction is on.
 
     Attributes:
         group: The name of its SRDF group.
@@ -157,6 +193,8 @@ class Gripper:
         friction: Sliding friction coefficient of the pads.
         approach_axis: Unit approach axis in the TCP frame, shape (3,); None for the one that
             `harness.cell.approach` derives.
+        cups: The suction cups; none of a gripper with fingers.
+        vacuum: The pressure below the atmosphere's in sealed cups with the valve open [Pa].
     """
 
     group: str
@@ -171,6 +209,13 @@ class Gripper:
     widths: FloatArray
     friction: float = 1.0
     approach_axis: FloatArray | None = None
+    cups: tuple[Cup, ...] = ()
+    vacuum: float = 0.0
+
+    @property
+    def holding_force(self) -> float:
+        """The force with which all cups together hold a flat face [N]."""
+        return self.vacuum * sum(cup.area for cup in self.cups)
 
     @property
     def links(self) -> tuple[str, ...]:

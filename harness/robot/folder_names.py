@@ -38,7 +38,11 @@ def unknown_names(facts: RobotYaml, urdf: Urdf, srdf: Srdf) -> Iterator[Unknown]
     yield from _unknown(("gripper", "group"), hand.group, groups, "group", "SRDF")
     yield from _unknown(("gripper", "joint"), hand.joint, movable, "movable joint", "URDF")
     yield from _unknown(("gripper", "palm_link"), hand.palm_link, links, "link", "URDF")
-    for side, finger in hand.sides.items():
+    for cup, facts_of_cup in (hand.cups or {}).items():
+        yield from _unknown(
+            ("gripper", "cups", cup, "link"), facts_of_cup.link, links, "link", "URDF"
+        )
+    for side, finger in (hand.sides or {}).items():
         key = ("gripper", "sides", side)
         for index, link in enumerate(finger.links):
             yield from _unknown((*key, "links", index), link, links, "link", "URDF")

@@ -62,8 +62,29 @@ class FingerSide(SpecModel):
     pad: Name = Field(description="The link of this side that touches objects.")
 
 
+class CupFacts(SpecModel):
+    """A suction cup; the z axis of its link leaves the gripper, and z = 0 is the plane of the rim.
+
+    The rim is a circle that is rigid in contact, with a lip that closes gaps.
+    """
+
+    link: Name = Field(description="The link of the cup, whose collision shapes are its rim.")
+    radius: Annotated[float, Field(gt=0)] = Field(description="The radius of the rim [m].")
+    lip: Annotated[float, Field(gt=0)] = Field(
+        description="The largest gap between rim and surface that the lip closes [m]; on a slope it"
+        " bends by as much across the rim."
+    )
+    depth: Annotated[float, Field(gt=0)] = Field(
+        description="How far a surface may bulge into the cup [m]."
+    )
+
+
 class GripperFacts(SpecModel):
-    """Two finger sides closed by one joint; efforts in N m or N at that joint."""
+    """Two finger sides closed by one joint, or suction cups with one valve.
+
+    Efforts are in N m or N at the joint. The joint of suction cups is that of their valve, whose
+    open share is the share of the vacuum.
+    """
 
     group: Name = Field(description="The SRDF group of the gripper.")
     joint: Name = Field(
@@ -72,8 +93,15 @@ class GripperFacts(SpecModel):
     palm_link: Name = Field(
         description="The link that carries the fingers; of a single jaw also the pad of a side."
     )
-    sides: Annotated[dict[Name, FingerSide], Field(min_length=2, max_length=2)] = Field(
-        description="The two sides by name."
+    sides: Annotated[dict[Name, FingerSide], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="The two sides of fingers, by name; or `cups`."
+    )
+    cups: Annotated[dict[Name, CupFacts], Field(min_length=1)] | None = Field(
+        default=None, description="The suction cups by name, in place of `sides`."
+    )
+    vacuum: Annotated[float, Field(gt=0)] | None = Field(
+        default=None,
+        description="The pressure below the atmosphere's in sealed cups with the valve open [Pa].",
     )
     open_position: float = Field(
         description="The position of the joint at which the pads are widest apart."
@@ -95,9 +123,35 @@ class GripperFacts(SpecModel):
         description="The direction in which the gripper approaches an object, in the axes of the "
         "TCP; by default from the palm to the pads.",
     )
-    widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] = Field(
-        description="Rows of joint position and gap between the pads [m], with rising position."
+    widths: Annotated[tuple[tuple[float, Length], ...], Field(min_length=2)] | None = Field(
+        default=None,
+        description="Rows of joint position and gap between the pads [m], with rising position;"
+        " required of fingers.",
     )
+
+    @model_validator(mode="after")
+    def _fingers_or_cups(self) -> GripperFacts:
+        if (self.sides is None) == (self.cups is None):
+            raise ValueError("a gripper has `sides` of fingers, or `cups`")
+        needed, other = ("widths", "vacuum") if self.cups is None else ("vacuum", "widths")
+        if getattr(self, needed) is None or getattr(self, other) is not None:
+            kind = "fingers need" if self.cups is None else "cups need"
+            raise ValueError(f"{kind} `{needed}`, and have no `{other}`")
+        return self
+
+    @property
+    def links_by_side(self) -> dict[str, tuple[str, ...]]:
+        """The links of each finger side, or of each cup."""
+        if self.cups is not None:
+            return {name: (cup.link,) for name, cup in self.cups.items()}
+        return {name: side.links for name, side in (self.sides or {}).items()}
+
+    @property
+    def pads(self) -> dict[str, str]:
+        """The link of each side that touches objects."""
+        if self.cups is not None:
+            return {name: cup.link for name, cup in self.cups.items()}
+        return {name: side.pad for name, side in (self.sides or {}).items()}
 
     @field_validator("approach_axis")
     @classmethod

@@ -133,6 +133,7 @@ def _renamed_gripper(hand: Gripper, name: Name, group: Name) -> Gripper:
         sides={side: tuple(map(name, links)) for side, links in hand.sides.items()},
         pads={side: name(link) for side, link in hand.pads.items()},
         palm_link=name(hand.palm_link),
+        cups=tuple(replace(cup, link=name(cup.link)) for cup in hand.cups),
     )
 
 

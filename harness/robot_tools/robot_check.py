@@ -158,6 +158,11 @@ def _gripper(description: RobotDescription, kinematics: PinocchioKinematics) -> 
         f"{gripper.joint} closes {' against '.join(sides)},"
         f" {1e3 * gripper.widths[:, 1].max():.0f} mm apart, at most {gripper.max_effort:.4g} {unit}"
     )
+    if gripper.cups:
+        text = (
+            f"{gripper.joint} switches {', '.join(cup.name for cup in gripper.cups)},"
+            f" {len(gripper.cups)} suction cups that hold {gripper.holding_force:.1f} N"
+        )
     if not description.tcp_link:
         return text
     state = description.start_positions()

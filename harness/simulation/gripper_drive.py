@@ -97,6 +97,7 @@ class GripperDrive:
             contacts=self._contacts(),
             between=self._between(),
             forces=self._forces(),
+            unsealed=simulator.suction.unsealed(self._recording.count - 1, self._gripper),
         )
 
     def _ramp(self, position: float) -> SetPoints:
@@ -139,7 +140,11 @@ class GripperDrive:
         return forces
 
     def _between(self) -> tuple[str, ...]:
-        """Objects that two finger sides have pressed from opposite sides in the last samples."""
+        """Objects that cups hold, or two finger sides press from opposite sides, at the end."""
+        if self._gripper.cups:
+            return tuple(
+                sorted(self._simulator.suction.held(self._recording.count - 1, self._gripper))
+            )
         presses = self._recording.presses(max(0, self._recording.count - CHECK_EVERY))
         found: list[str] = []
         for name, place in self._simulator.physics.objects.items():

@@ -37,6 +37,7 @@ from harness.simulation.snapshot import (
     saved_state,
 )
 from harness.simulation.step_state import refresh
+from harness.simulation.suction import Suction
 from harness.simulation.surfaces import Surfaces
 
 CHECK_EVERY = 100
@@ -54,6 +55,7 @@ class MujocoSimulator:
 
     Attributes:
         overlaps_at_start: Pairs of bodies that overlap at the start, deepest first.
+        suction: The suction cups of the gripper, if it has any.
         unrecorded: Signals that are not recorded: none.
     """
 
@@ -105,7 +107,8 @@ class MujocoSimulator:
         self._data.ctrl[:] = self._control
         self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
         self.faults = MujocoFaults(self, self.physics, self._data)
-        self._recording = Recording(self.physics, self._data)
+        self.suction = Suction(self.physics, self._data)
+        self._recording = Recording(self.physics, self._data, self.suction)
         self._surfaces = Surfaces(self.physics, self._data, self._recording)
         refresh(self._model, self._data)
         self._refuse_unusable_start()

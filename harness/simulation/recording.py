@@ -17,6 +17,7 @@ from harness.recording.signals import Signals
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
 from harness.simulation.model import ObjectPlace, PhysicsModel
 from harness.simulation.step_state import refresh
+from harness.simulation.suction import Suction
 
 MOST_BYTES = 2**30
 """Largest record of states, sensors and contacts; judging it takes about four times as much."""
@@ -37,8 +38,9 @@ class Recording:
         longest: The most simulated time of the run [s].
     """
 
-    def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
+    def __init__(self, physics: PhysicsModel, data: mujoco.MjData, suction: Suction) -> None:
         model = physics.model
+        self._suction = suction
         self._physics = physics
         self._data = data
         self._qpos = np.empty((ROWS, model.nq))
@@ -83,12 +85,15 @@ class Recording:
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
         positions, velocities, sensed = self._qpos, self._qvel, self._sensors
         keep_contacts = self._contacts.keep
+        suction = self._suction if self._suction.cups else None
         for row in range(first, first + steps):
             control[:] = controls[row - first]
             forward(model, data)
             if row > first:
                 sensed[row - 1] = sensors
                 keep_contacts(row - 1)
+            if suction is not None:
+                suction.apply(row)
             check(model, data)
             integrate(model, data)
             positions[row] = qpos
@@ -128,6 +133,7 @@ class Recording:
         """Forget all samples after the first `count`; the physics stands at the last one kept."""
         self.count = count
         self._contacts.rewind(count)
+        self._suction.rewind(count)
 
     def replace_last(self, command: FloatArray) -> None:
         """Make the last sample the current state, after a change that was not recorded."""
@@ -253,6 +259,7 @@ class Recording:
             support_forces=self._contacts.support_forces(count),
             presses=self._contacts.presses(0, count),
             frictions=self._contacts.frictions(count),
+            pulls=self._suction.recorded(count),
             slides=self._contacts.slides(
                 count, object_poses, self._moved_by_robot(contacts), surfaces
             ),

@@ -10,6 +10,7 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.closing import closing_obstacles, higher_grasp, position_around
 from harness.cell.scope import At
+from harness.cell.suction import EARTH, why_not_held
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
@@ -64,7 +65,7 @@ class Grasp(Step):
     def check(self, at: At) -> None:
         if at.scope.check_gripper(at.loc, "`grasp`"):
             check_gripper_position(self.position, at)
-        check_graspable(self.object, at)
+        check_graspable(self.object, at, self.mode, by_all_cups=False)
         at.scope.attached[self.object] = None
 
     def execute(self, cell: Cell) -> None:
@@ -89,7 +90,15 @@ class Grasp(Step):
         outcome = note_result(cell, target, result)
         cell.report(GraspMode(self.mode))
         empty = [side for side, names in result.contacts.items() if self.object not in names]
-        if empty or self.object not in result.between:
+        if hand.cups and self.object not in result.between:
+            raise StepFailed(
+                "CONTROL_FAILED",
+                f"no suction cup holds '{self.object}': "
+                + "; ".join(f"{cup}: {why}" for cup, why in result.unsealed.items()),
+                outcome,
+                GraspFailure(self.mode),
+            )
+        if not hand.cups and (empty or self.object not in result.between):
             missed = _missed(self.object, empty) if empty else _not_between(self.object)
             cause, advice = _cause(self.object, result, obstacles, cell)
             message, failure = f"{missed}; {cause}", GraspFailure(self.mode)
@@ -98,9 +107,12 @@ class Grasp(Step):
         cell.take_hold(self.object, weld=self.mode == "weld")
 
 
-def check_graspable(name: str, at: At) -> None:
-    """Report an object that is not there, cannot be lifted, or is unknown to the planner."""
+def check_graspable(name: str, at: At, mode: str, *, by_all_cups: bool) -> None:
+    """Report an object that is not there, cannot be held, or is unknown to the planner."""
     scope = at.scope
+    gripper = scope.description.gripper
+    if gripper is not None and gripper.cups:
+        _check_suction(name, at, mode, by_all_cups)
     scope.check_present(name, at.key("object"))
     obj = scope.objects.get(name)
     if obj is not None:
@@ -112,6 +124,21 @@ def check_graspable(name: str, at: At) -> None:
             at.key("object"),
             f"'{name}' is unknown to the planner, so it cannot be attached",
             "name an object that is `in: both`",
+        )
+
+
+def _check_suction(name: str, at: At, mode: str, by_all: bool) -> None:
+    """Report what no suction cup can hold, and a weld in its place."""
+    obj = at.scope.objects.get(name)
+    why = "" if obj is None else why_not_held(obj, at.scope.description, EARTH, by_all=by_all)
+    if why:
+        hint = "take a smaller load, or a gripper with other cups"
+        at.scope.problems.add(at.key("object"), why, hint)
+    if mode == "weld":
+        at.scope.problems.add(
+            at.key("mode"),
+            "suction cups hold by their vacuum alone: a weld would hold what they cannot",
+            "leave out `mode`",
         )
 
 

@@ -110,6 +110,11 @@ def _check_gripper_width(width: float | None, at: At) -> None:
     hand = at.scope.description.gripper
     if width is None or hand is None:
         return
+    if hand.cups:
+        at.scope.problems.add(
+            at.key("width"), "suction cups have no width", "write `gripper: on` or `gripper: off`"
+        )
+        return
     narrowest, widest = hand.widths[:, 1].min(), hand.widths[:, 1].max()
     if not narrowest - GAP_SLACK <= width <= widest + GAP_SLACK:
         at.scope.problems.add(

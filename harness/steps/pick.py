@@ -154,7 +154,7 @@ class Pick(Step):
 
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`pick`")
-        check_graspable(self.object, at)
+        check_graspable(self.object, at, self.mode, by_all_cups=self.grasp_pose is None)
         at.scope.check_no_fixture(self.object, at.key("object"))
         if self.grasp_pose is not None:
             at.check_pose(self.grasp_pose, "grasp_pose")

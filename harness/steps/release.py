@@ -93,6 +93,8 @@ class Release(Step):
         )
         note_result(cell, target, result)
         touching = [side for side, names in result.contacts.items() if name in names]
+        if hand.cups:  # a rim may touch what it does not hold
+            touching = list(result.between)
         if touching:
             sides = " and ".join(f"the {side} finger" for side in touching)
             message = f"{sides} still touches '{name}' with the gripper open"

@@ -15,7 +15,7 @@ def messages(text):
 @pytest.mark.parametrize(
     ("key", "word"),
     [
-        ("suction: true", "`grasp: {object: NAME, mode: weld}`"),
+        ("suction: true", "`robot: {model: ur5e, gripper: suction_cup}`"),
     ],
 )
 def test_what_objects_do_not_have_yet_is_said_alone(key, word):

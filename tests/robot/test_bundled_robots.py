@@ -101,8 +101,9 @@ def mass(description, without=()):
 
 def test_every_type_of_the_family_is_a_model_name():
     assert set(UR_TYPES) == set(MOVING_MASS)
-    assert set(robot_names()) == {"open_manipulator_x", "rh_p12_rn_a", *MOVING_MASS}
-    assert gripper_names() == ("rh_p12_rn_a",)
+    grippers = ("rh_p12_rn_a", "suction_array", "suction_cup")
+    assert set(robot_names()) == {"open_manipulator_x", *grippers, *MOVING_MASS}
+    assert gripper_names() == grippers
 
 
 @pytest.mark.parametrize(("positions", "xyz", "pitch"), OPEN_MANIPULATOR_X)

@@ -9,7 +9,13 @@ from pydantic import Field
 
 from harness.cell.scope import At
 from harness.core.amounts import amount, amounts
-from harness.judging.contacts import TOUCH_FORCE, attached, side_forces
+from harness.judging.contacts import (
+    TOUCH_FORCE,
+    attached,
+    side_forces,
+    side_words,
+    why_unsealed,
+)
 from harness.judging.expectation import ArmPredicate, ObjectPredicate
 from harness.judging.hold import (
     HOLD_TIME,
@@ -89,7 +95,7 @@ class Grasped(ArmPredicate, ObjectPredicate):
         relevant = window.cut(in_hand)
         sides = {side: window.cut(force) for side, force in side_forces(run, name).items()}
         parts = [
-            Part(FINGERS, force, min_force, ">=", measured_name=f"{side} finger force")
+            Part(FINGERS, force, min_force, ">=", measured_name=f"{side_words(side)} force")
             for side, force in sides.items()
         ]
         slip = [
@@ -108,7 +114,8 @@ class Grasped(ArmPredicate, ObjectPredicate):
 
         def text(index: int, measure: Measure) -> str:
             forces = ", ".join(
-                f"{side} finger {amount(float(force[index]), 'N')}" for side, force in sides.items()
+                f"{side_words(side)} {amount(float(force[index]), 'N')}"
+                for side, force in sides.items()
             )
             if relevant[index]:
                 moved = amount(float(slip[0].values[index]), "m")
@@ -122,6 +129,8 @@ class Grasped(ArmPredicate, ObjectPredicate):
             sample = window.start + index
             where = _where_pressed(run, name, sample)
             belief = _planners_belief(run, name, sample)
+            if why := why_unsealed(run, name, sample):
+                return f"{forces}; no suction cup holds {name}: {why}{belief}"
             return f"{forces}; {name} is not between the fingers{where}{belief}"
 
         return all_of(window, parts, text, present=window.cut(present(run, name)), shown=len(parts))

@@ -13,6 +13,8 @@ from harness.judging.contacts import (
     TOUCH_FORCE,
     bodies_touching,
     side_forces,
+    side_words,
+    why_unsealed,
 )
 from harness.judging.expectation import ArmPredicate, ObjectPredicate
 from harness.judging.hands import gripper_of, hand_links
@@ -115,7 +117,7 @@ class Lifted(ArmPredicate, ObjectPredicate):
             gained = float(rise[sample])
             text = f"lifted {' of '.join(amounts(gained, self.above, 'm'))}"
             text += ": " + ", ".join(
-                f"{side} finger {amount(float(force[sample]), 'N')}"
+                f"{side_words(side)} {amount(float(force[sample]), 'N')}"
                 for side, force in sides.items()
             )
             carriers = [body for body, force in others.items() if force[sample] > TOUCH_FORCE]
@@ -129,7 +131,7 @@ class Lifted(ArmPredicate, ObjectPredicate):
             measures = [measured(HEIGHT, gained, self.above, ">=", time, name), *more]
             measures += [
                 measured(FINGERS, float(force[sample]), TOUCH_FORCE, ">=", time,
-                         name=f"{side} finger force")
+                         name=f"{side_words(side)} force")
                 for side, force in sides.items()
             ]  # fmt: skip
             measures += [
@@ -168,7 +170,7 @@ class _Hold:
         if not self._held[sample]:
             lies = cradled(self._run, name)[sample]
             return f"{name} lies on the fingers, which do not press it" if lies else (
-                f"nothing holds {name}"
+                f"nothing holds {name}{_seal(self._run, name, sample)}"
             ), []
         duration, moved = float(self._duration[sample]), float(self._moved[sample])
         if duration < HOLD_TIME - TIME_RESOLUTION:
@@ -190,6 +192,12 @@ class _Hold:
         if raised < gained - STEADY:
             return f"the hand raised it by {amount(raised, 'm')}", []
         return "", []
+
+
+def _seal(run: Run, name: str, sample: int) -> str:
+    """Why suction cups do not hold an object, as the end of a sentence."""
+    why = why_unsealed(run, name, sample)
+    return f": {why}" if why else ""
 
 
 def _touched_by_hand(run: Run, name: str) -> BoolArray:

@@ -41,7 +41,13 @@ class LiveSimulator(MujocoSimulator):
     def idle(self, samples: int) -> None:
         """Step without a record; set points stay where they are."""
         self._data.ctrl[:] = self._control
-        mujoco.mj_step(self._model, self._data, nstep=samples)
+        if self.suction.cups:
+            for _ in range(samples):
+                self.suction.apply(self.sample_count, anew=True)
+                mujoco.mj_step(self._model, self._data)
+            self.suction.rewind(self.sample_count)
+        else:
+            mujoco.mj_step(self._model, self._data, nstep=samples)
         refresh(self._model, self._data)
 
     def resume_record(self) -> None:
