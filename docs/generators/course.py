@@ -16,7 +16,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from docs import ROOT
+from docs.generators.examples import COLUMNS
 from harness.cli.main import main as harness
+from harness.core.printable import fitted
 from harness.plugins.grading.course import Exercise, exercises
 
 FOLDER = ROOT / "docs/course"
@@ -43,7 +45,8 @@ def checked(exercise: Exercise, file: Path) -> str:
 
 def shown(printed: str) -> str:
     """A check's output as a page has it."""
-    lines = [line for line in printed.splitlines() if not LEFT_OUT.fullmatch(line)]
+    kept = [line for line in printed.splitlines() if not LEFT_OUT.fullmatch(line)]
+    lines = [part for line in kept for part in fitted(line, COLUMNS) or [""]]
     text = re.sub(r"\n{2,}", "\n\n", "\n".join(lines)).strip("\n")
     return f"```text\n{text}\n```"
 

@@ -28,8 +28,8 @@ PAGES = (
 )
 """The pages whose every block is an example."""
 
-COLUMNS = 110
-"""Width to which printed lines are broken, as a terminal does."""
+COLUMNS = 88
+"""Width to which printed lines are broken, as a terminal does: that of a code block on the site."""
 
 BLOCK = re.compile(r"(?ms)^(?:`(?P<file>[\w./-]+)`:\n\n)?```(?P<language>\w+)\n(?P<text>.*?)^```$")
 TIMES = re.compile(r"(?: at [\d.]+x real time)|(?: in [\d.]+ ?s$)", re.MULTILINE)

@@ -11,6 +11,7 @@ import yaml
 from docs import ROOT
 from docs.generators.examples import (
     BLOCK,
+    COLUMNS,
     PAGES,
     RENEW,
     commands,
@@ -95,6 +96,18 @@ def test_the_steps_next_to_the_calls_of_moveit_are_those_of_the_lesson():
         step.pop("expect", None)
     assert [yaml.safe_load(step) for step in shown] == numbered
     assert len(shown) == 16
+
+
+SHOWING = [*PAGES, *sorted((ROOT / "docs/course").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", SHOWING, ids=page_id)
+def test_what_a_page_shows_is_not_wider_than_the_page(page):
+    for block in blocks(page):
+        lines = block["text"].splitlines() if block["language"] == "text" else []
+        for line in (each for each in lines if not each.startswith("$ ")):
+            words = line.split()
+            assert len(line) <= COLUMNS or len(words) == 1 or len(words[0]) > 60, line
 
 
 def test_a_page_that_shows_something_else_is_found(tmp_path):
