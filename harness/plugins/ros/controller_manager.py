@@ -20,6 +20,7 @@ STATE = "control_msgs/msg/JointTrajectoryControllerState"
 TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
 GRIPPER = "position_controllers/GripperActionController"
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
+ACTIVE = message("lifecycle_msgs/msg/State", id=3, label="active")
 UPDATES = 100
 """Updates of the controllers in a second of simulated time."""
 
@@ -38,6 +39,10 @@ class ControllerManager:
             ("ConfigureController", self._is_there),
             ("UnloadController", lambda _: {"ok": False}),
             ("ReloadControllerLibraries", lambda _: {"ok": False}),
+            ("CleanupController", lambda _: {"ok": False}),
+            ("ListHardwareComponents", self._components),
+            ("ListHardwareInterfaces", lambda _: self._interfaces()),
+            ("SetHardwareComponentState", lambda _: {"ok": False, "state": ACTIVE}),
         ):
             kind = SRV + name
             graph.serve(
@@ -76,6 +81,28 @@ class ControllerManager:
     def _list(self, _request: Any) -> dict[str, Any]:
         known = [_state(name, each) for name, each in self._cell.controllers.items()]
         return {"controller": [_described("joint_state_broadcaster", BROADCASTER, ()), *known]}
+
+    def _interfaces(self) -> dict[str, list[Any]]:
+        """The interfaces of the joints: a position to command, and three states."""
+        moved = self._cell.description.movable_joints
+        driven = [joint.name for joint in moved if joint.mimic is None]
+        states = ("position", "velocity", "effort")
+        read = [_interface(f"{joint.name}/{each}") for joint in moved for each in states]
+        commanded = [_interface(f"{name}/position", is_claimed=True) for name in driven]
+        return {"command_interfaces": commanded, "state_interfaces": read}
+
+    def _components(self, _request: Any) -> dict[str, Any]:
+        """The simulated robot, as one component."""
+        robot = message(
+            "controller_manager_msgs/msg/HardwareComponentState",
+            name=self._cell.description.name,
+            type="system",
+            rw_rate=UPDATES,
+            plugin_name="armharness/Simulation",
+            state=ACTIVE,
+            **self._interfaces(),
+        )
+        return {"component": [robot]}
 
     def _types(self, _request: Any) -> dict[str, Any]:
         types = [TRAJECTORY, GRIPPER, BROADCASTER]
@@ -116,6 +143,11 @@ def _described(name: str, kind: str, interfaces: Iterable[str]) -> Any:
         claimed_interfaces=claimed,
         required_command_interfaces=claimed,
     )
+
+
+def _interface(name: str, *, is_claimed: bool = False) -> Any:
+    kind = "controller_manager_msgs/msg/HardwareInterface"
+    return message(kind, name=name, data_type="double", is_available=True, is_claimed=is_claimed)
 
 
 def _point(rows: FloatArray) -> Any:

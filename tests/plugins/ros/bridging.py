@@ -21,9 +21,10 @@ ROBOT = "{model: open_manipulator_x}"
 STEPS = "- external: {until: {joints: {positions: {joint1: 0.2}, tolerance: 0.5 deg}}}"
 
 
-def require_control_msgs():
-    """Fail without rclpy, and skip without control_msgs."""
-    for module, missing in (("rclpy", pytest.fail), ("control_msgs.action", pytest.skip)):
+def require_control_msgs(*others):
+    """Fail without rclpy, and skip without control_msgs or other modules."""
+    built = [(module, pytest.skip) for module in ("control_msgs.action", *others)]
+    for module, missing in (("rclpy", pytest.fail), *built):
         done = subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True, check=False)
         if done.returncode:
             missing(f"{PYTHON} has no {module}; build it with harness.plugins.ros.build_messages")

@@ -40,6 +40,13 @@ def test_controllers_are_listed_and_their_states_are_published(tmp_path):
         assert not call(*switch, activate_controllers=["leg_controller"]).ok
         assert call("load_controller", "LoadController", name="arm_controller").ok
         assert not call("unload_controller", "UnloadController", name="arm_controller").ok
+        [robot] = call("list_hardware_components", "ListHardwareComponents").component
+        assert (robot.name, robot.state.label) == ("open_manipulator_x", "active")
+        interfaces = call("list_hardware_interfaces", "ListHardwareInterfaces")
+        claimed = [each.name for each in interfaces.command_interfaces if each.is_claimed]
+        assert claimed == [*arm.claimed_interfaces, "gripper_left_joint/position"]
+        assert "gripper_right_joint/velocity" in {each.name for each in interfaces.state_interfaces}
+        assert not call("set_hardware_component_state", "SetHardwareComponentState").ok
         node.send(follow(point(0.4, [0.2, 0, 0, 0])))
         node.wait(lambda: states and abs(states[-1].feedback.positions[0] - 0.2) < 0.02)
     last = states[-1]

@@ -1,7 +1,7 @@
 """Nodes of the real rclpy, with Fast DDS, against the bridge.
 
 HARNESS_ROS_PYTHON names the Python of an environment that has rclpy and control_msgs; the latter is
-built by `python -m harness.plugins.ros.build_messages PREFIX control_msgs`.
+built by `python -m harness.plugins.ros.build_messages PREFIX`, as is moveit_msgs.
 """
 
 import json
@@ -15,6 +15,7 @@ import pytest
 from harness.cli.main import main
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.handover import replay
+from harness.recording.read_run import read_run
 from tests.plugins.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
 
 pytestmark = pytest.mark.needs_ros
@@ -26,9 +27,10 @@ def _control_msgs():
     require_control_msgs()
 
 
-def run_node(folder, name):
+def run_node(folder, name, **served):
     """What a node prints as its last line while a bridge serves the OpenMANIPULATOR-X."""
-    with bridge(scenario(folder, "- external: {}")) as (node, _):
+    options = {"run": {"report_dir": folder / "run"}}
+    with bridge(scenario(folder, "- external: {}", **served), **options) as (node, _):
         done = subprocess.run(
             [PYTHON, STUDENT / name],
             env={**os.environ, "ROS_DOMAIN_ID": str(node.graph.participant.domain)},
@@ -128,3 +130,28 @@ def test_joint_angles_that_are_sent_ten_times_a_second_arrive(tmp_path):
     file = scenario(tmp_path, f"- external: {{until: {until}}}\n  timeout: 30 s")
     command = f"{PYTHON} {STUDENT / 'joint_angles.py'} 0.3 0.2 0.0 0.0"
     assert main(["grade", str(file), "--node", command, "--no-report"]) == 0
+
+
+def test_a_client_of_moveit_on_rclpy_plans_moves_and_attaches_and_its_run_replays(tmp_path):
+    require_control_msgs("moveit_msgs.srv")
+    rest = "objects:\n  - {name: cube, box: {size: [4 cm, 4 cm, 4 cm]}, mass: 0.1, "
+    rest += "pose: {xyz: [0.4, 0.3, 0.02]}}\nexpect: [{always: within_limits}]"
+    served = {"robot": "{model: ur5e, gripper: rh_p12_rn_a}", "rest": rest}
+    said = run_node(tmp_path, "move_group.py", **served)
+    times = said.pop("milliseconds")
+    assert all(0 < each < 5000 for each in times.values())
+    assert said == {
+        "kinematics": [1, 1],
+        "place": [0.4, 0.1, 0.4],
+        "move": [True, 4, 1],
+        "line": [1.0, 1],
+        "execute": [True, 4, 1],
+        "again": [True, 6, -4],  # the arm is not at its start any more
+        "apply": True,
+        "blocked": True,
+        "attach": True,
+        "scene": ["ground_plane", "wall"],
+        "attached": ["cube"],
+    }
+    stored = read_run(tmp_path / "run")
+    assert replay(tmp_path / "run").digest == stored.digest
