@@ -444,8 +444,17 @@ class Cell:
         """
         self.carry_out(self.planner.plan(self.motion(group, motion, options)))
 
-    def carry_out(self, plan: MotionPlan) -> None:
+    def carry_out(
+        self,
+        plan: MotionPlan,
+        follow: Callable[[JointTrajectory], JointTrajectory] | None = None,
+    ) -> None:
         """Note a plan, check it against the step's timeout, then follow it.
+
+        Args:
+            plan: A plan that starts where the arm is.
+            follow: Follows the trajectory in its own way and returns what it commanded; by default
+                the simulator tracks the whole.
 
         Raises:
             StepFailed: START_STATE_INVALID, as of `motion`; TIMED_OUT, when it takes longer than
@@ -465,7 +474,10 @@ class Cell:
                 f" {timeout:g} s; raise the timeout or the velocity scaling",
                 TimeoutFailure(plan.trajectory.duration, timeout),
             )
-        self.simulator.track(plan.trajectory)
+        if follow is None:
+            self.simulator.track(plan.trajectory)
+        else:
+            self.notes.trajectory = follow(plan.trajectory)
 
     def refuse_joint_hold(self, moved: Sequence[str]) -> None:
         """Refuse to move joints of an arm that holds an object together with another one.

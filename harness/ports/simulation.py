@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -130,6 +130,15 @@ class Simulator(Protocol):
         Raises:
             StepFailed: CONTROL_FAILED, when a joint leaves the controller's tolerances; says which
                 joint, by how much, what it touched.
+        """
+        ...
+
+    def force_on_robot(self, span: float, held: Collection[str]) -> float:
+        """Sum of the normal forces between the robot and other bodies, mean over some time [N].
+
+        Args:
+            span: The time until now [s].
+            held: Objects that count as parts of the robot.
         """
         ...
 

@@ -6,7 +6,7 @@ missing objects have the results of a run; contacts are assumed to happen as the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -100,6 +100,11 @@ class DrySimulator:
         for name, position in zip(trajectory.joint_names, trajectory.positions[-1], strict=True):
             self._positions[self._description.joint_index[name]] = position
         self._positions = self._description.with_mimics(self._positions)
+
+    def force_on_robot(self, span: float, held: Collection[str]) -> float:
+        """What a guarded move waits for happens."""
+        del span, held
+        return float("inf")
 
     def command_gripper(
         self,

@@ -203,6 +203,15 @@ class MujocoSimulator:
         self.command(whole.positions[-1])
         self._wait_for_goal(whole.positions[-1, columns], columns)
 
+    def force_on_robot(self, span: float, held: Collection[str]) -> float:
+        """Sum of the normal forces between the robot and other bodies, mean over `span` [N]."""
+        last = self._recording.count
+        first = max(0, last - max(1, round(span / self._timestep)))
+        own = {*self.description.link_names, *held}
+        pairs = self._recording.contacts(first, last)
+        forces = (force for pair, force in pairs.items() if (pair[0] in own) != (pair[1] in own))
+        return float(sum(float(force.mean()) for force in forces))
+
     def command_gripper(
         self,
         position: float,

@@ -200,6 +200,7 @@ class RemoteArm:
     remove_object = _refuses("an object cannot be taken out of the real cell by a program")
     move_object = _refuses("an object cannot be moved in the real cell by a program")
     drive_surface = _refuses("a belt of the real cell is not driven by a scenario")
+    force_on_robot = _refuses("the forces on a ROS 2 robot are not known here")
     weld = _refuses("an object cannot be welded to the gripper of a real robot")
 
     def surface_motion(self, name: str) -> SurfaceMotion:

@@ -217,7 +217,7 @@ class LiveCell:
         self._continue_record()
         before, on_step = self._saved(self.steps_done), self.on_step
         was_by_hand = self.is_by_hand
-        vars(self.cell)["carry_out"] = keep
+        vars(self.cell)["carry_out"] = lambda plan, *_: keep(plan)
         self.on_step = _no_step
         try:
             return self._run_aside(step)
