@@ -24,6 +24,7 @@ export function makeControls({ clock, scene, plots, drawFilm }) {
     if (scene) {
       scene.viewer.background = rgba(themeColor("--sky")).slice(0, 3);
       scene.viewer.ambient = Number(themeColor("--ambient"));
+      scene.viewer.outline = Number(themeColor("--outline"));
       scene.replay.paintFloor(rgba(themeColor("--floor")));
       scene.viewer.redraw();
     }

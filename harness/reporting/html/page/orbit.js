@@ -3,9 +3,9 @@
 import { addScaled, cross, dot, lookAt, multiply, normalize, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
-const FRAMED = { left: 0.95, right: 0.95, top: 0.88, bottom: 0.86 }; // shares of half the picture: words lie along its edges
-const THICKNESS = 0.09; // of the arm's size, by which links reach beyond their origins
-const FOLLOWED = 0.8; // of the arm's size: how much of it is seen around a TCP that is followed
+const FRAMED = { left: 0.95, right: 0.95, top: 0.88, bottom: 0.86, narrow: 0.74 }; // shares of half the picture: words lie along its edges, in a narrow one above all of it
+const THICKNESS = { share: 0.09, least: 0.05 }; // of the arm's size, and [m]: how far links reach beyond their origins
+const FOLLOWED = 0.4; // of the arm's size: how much of it is seen around a TCP that is followed
 const TURN_PER_PIXEL = 0.008; // [rad]
 const STEEPEST = 1.55; // [rad]
 
@@ -86,12 +86,12 @@ export class Orbit {
    */
   #frame(aspect) {
     const { right, up } = this.#axes();
-    const room = THICKNESS * this.focus.arm;
+    const room = Math.max(THICKNESS.least, THICKNESS.share * this.focus.arm);
     const placed = this.focus.points.map((point) => [dot(point, right), dot(point, up), dot(point, this.back)]);
     const farthest = (axis, sign, slope) => Math.max(...placed.map((at) => sign * at[axis] + room + slope * at[2]));
     const slopes = [
       [this.tangent * aspect * FRAMED.right, this.tangent * aspect * FRAMED.left],
-      [this.tangent * FRAMED.top, this.tangent * FRAMED.bottom],
+      [this.tangent * (aspect < 1 ? FRAMED.narrow : FRAMED.top), this.tangent * FRAMED.bottom],
     ];
     const edges = slopes.map(([more, less], axis) => [farthest(axis, 1, more), farthest(axis, -1, less)]);
     const near = Math.max(...placed.map((at) => at[2])) + 2 * room;

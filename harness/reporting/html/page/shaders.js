@@ -22,7 +22,7 @@ in vec3 world, worldNormal;
 in vec4 inSun;
 uniform vec4 color, fog;
 uniform vec3 eye, sunDirection, gridCenter;
-uniform float grid, glow, ambient;
+uniform float grid, glow, ambient, outline;
 uniform highp sampler2DShadow shadowMap;
 out vec4 result;
 
@@ -48,7 +48,7 @@ void main() {
   float facing = max(dot(n, sunDirection), 0.0), lit = sunlight();
   vec3 sky = mix(vec3(0.26, 0.26, 0.28), vec3(0.52, 0.54, 0.58), n.z * 0.5 + 0.5) * ambient;
   float shine = pow(max(dot(n, normalize(sunDirection + toEye)), 0.0), 48.0) * 0.20 * lit * facing;
-  float rim = pow(1.0 - max(dot(n, toEye), 0.0), 4.0) * 0.10;
+  float rim = pow(1.0 - max(dot(n, toEye), 0.0), 3.0) * outline;
   vec3 light = base * (sky + vec3(1.05, 1.02, 0.97) * facing * lit) + shine + rim * sky;
   light += glow * vec3(0.55, 0.10, 0.02);
   float alpha = color.a;

@@ -3,16 +3,46 @@
 /** @typedef {{positions: Float32Array | number[], indices: Uint32Array | number[]}} Triangles */
 
 const SEGMENTS = 48;
+const BEVEL = { most: 0.0015, share: 0.08 }; // [m], and of the shortest side
 const HALF_TURN_STEPS = 12;
 
-/** @param {ArrayLike<number>} size full size along x, y, z @returns {Triangles} */
+/**
+ * A box whose edges are broken, so that they catch light: each corner is three vertices, one in each side.
+ * @param {ArrayLike<number>} size full size along x, y, z @returns {Triangles}
+ */
 function box(size) {
+  const bevel = Math.min(BEVEL.most, BEVEL.share * Math.min(size[0], size[1], size[2]));
   const positions = [];
   for (let corner = 0; corner < 8; corner++) {
-    for (let axis = 0; axis < 3; axis++) positions.push(((corner >> axis) & 1 ? 0.5 : -0.5) * size[axis]);
+    for (let side = 0; side < 3; side++) {
+      for (let axis = 0; axis < 3; axis++) {
+        const reach = size[axis] / 2 - (axis === side ? 0 : bevel);
+        positions.push((corner >> axis) & 1 ? reach : -reach);
+      }
+    }
   }
-  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-  return { positions, indices: sides.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]) };
+  const indices = [];
+  const quad = (a, b, c, d) => indices.push(a, b, c, a, c, d);
+  for (let side = 0; side < 3; side++) {
+    const [u, v] = [1 << ((side + 1) % 3), 1 << ((side + 2) % 3)];
+    for (const end of [0, 1 << side]) {
+      const at = (corner) => 3 * (end | corner) + side;
+      if (end) quad(at(0), at(u), at(u | v), at(v));
+      else quad(at(0), at(v), at(u | v), at(u));
+    }
+    const [one, two] = [(side + 1) % 3, (side + 2) % 3]; // the edges along this axis lie between these sides
+    for (const edge of [0, u, v, u | v]) {
+      const [a, b] = [edge, edge | (1 << side)];
+      const isTurned = edge === 0 || edge === (u | v);
+      if (isTurned) quad(3 * a + one, 3 * a + two, 3 * b + two, 3 * b + one);
+      else quad(3 * a + two, 3 * a + one, 3 * b + one, 3 * b + two);
+    }
+  }
+  for (let corner = 0; corner < 8; corner++) {
+    const isOdd = ((corner & 1) + ((corner >> 1) & 1) + (corner >> 2)) % 2 === 1;
+    indices.push(3 * corner, 3 * corner + (isOdd ? 1 : 2), 3 * corner + (isOdd ? 2 : 1));
+  }
+  return { positions, indices };
 }
 
 /** A profile of [radius, z] from bottom to top, turned about z. @param {[number, number][]} profile @returns {Triangles} */

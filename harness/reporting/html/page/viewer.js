@@ -58,6 +58,7 @@ export class Viewer {
     this.small = new Map();
     this.background = [1, 1, 1];
     this.ambient = 1;
+    this.outline = 0.1; // how bright the edges of bodies are
     this.isDirty = this.hasMoved = true;
     this.isCoarse = false;
     this.drawn = 0;
@@ -298,6 +299,7 @@ export class Viewer {
     gl.uniform3fv(at.gridCenter, this.bounds.center);
     gl.uniform4fv(at.fog, [...this.background, 1]);
     gl.uniform1f(at.ambient, this.ambient);
+    gl.uniform1f(at.outline, this.outline);
     gl.bindTexture(gl.TEXTURE_2D, this.shadowMap);
     const distance = ({ model }) => Math.hypot(model[12] - eye[0], model[13] - eye[1], model[14] - eye[2]);
     const solid = shown.filter((surface) => surface.color[3] > 0.99);

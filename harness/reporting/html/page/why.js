@@ -8,6 +8,7 @@ import { addScaled, dot, subtract } from "./vectors.js";
 
 const HIGHLIGHT = 0.7; // glow of the bodies that a verdict is about
 const SEEN = 0.06; // of the arm's size: how long the largest deviation is drawn
+const AGREED = 1.5; // factor within which the drawn deviation is the measured one
 const MOST_EXAGGERATED = 1000;
 const POINT = 4; // half the size of a point [pixels]: two that are near stay apart
 
@@ -64,6 +65,12 @@ export class Why {
     });
     const largest = apart.reduce((most, each) => (Math.hypot(...each.away) > Math.hypot(...most.away) ? each : most), apart[0]);
     const size = Math.hypot(...largest.away);
+    const isMeasured = size < AGREED * measure.value && measure.value < AGREED * size;
+    if (!isMeasured) {
+      // the path of the page has too few points to show what was measured on all of them
+      const text = `${amount(measure.value, "m")} off the path`;
+      return { reference, exaggerated: [], labels: [{ point: this.replay.byName.get(this.run.toolBody).pose.slice(0, 3), text, tone: "warn" }] };
+    }
     const factor = Math.max(1, Math.min(MOST_EXAGGERATED, roundDown((SEEN * this.run.focus.arm) / (size || 1))));
     const exaggerated = apart.flatMap(({ nearest, away }) => addScaled(nearest, away, factor));
     const label = { point: addScaled(largest.nearest, largest.away, factor), text: `${amount(measure.value, "m")} off the path, drawn ${factor} ×`, tone: "warn" };
