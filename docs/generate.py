@@ -14,6 +14,7 @@ from docs.generators.expectations import expectations_reference
 from docs.generators.floors import floors_picture
 from docs.generators.readme_samples import with_samples
 from docs.generators.reference import scenario_reference, steps_reference
+from docs.generators.reliability import reliability_page
 from docs.generators.robot_formats import robot_formats_page
 from docs.generators.robot_yaml import robot_yaml_page
 from docs.generators.world_formats import formats_page
@@ -35,6 +36,7 @@ GENERATED: dict[str, Callable[[], str]] = {
     "docs/reference/world_formats.md": formats_page,
     "docs/reference/robot_formats.md": robot_formats_page,
     "docs/reference/robot_yaml.md": robot_yaml_page,
+    "docs/explanation/reliability.md": reliability_page,
     "docs/pictures/floors.svg": partial(floors_picture, "harness"),
     "docs/pictures/planning_floors.svg": partial(floors_picture, "harness.planning"),
     "docs/reference/commands.md": partial(_with_samples, "docs/reference/commands.md"),

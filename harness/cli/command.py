@@ -32,12 +32,15 @@ class Command(Plugin, ABC):
         group: The one of `GROUPS` that lists the command.
         writes_json_in_parts: Whether `--format json` prints case by case, so that the command
             itself keeps everything else from standard output.
+        reads_geometry: Whether the command itself reads meshes or models, and needs a process of
+            its own: a native library may crash on damaged ones.
         collects_garbage: Whether the command lives long enough for Python's garbage collector.
     """
 
     plugin_kind: ClassVar[str] = "command"
     group: ClassVar[str] = OTHERS
     writes_json_in_parts: ClassVar[bool] = False
+    reads_geometry: ClassVar[bool] = False
     collects_garbage: ClassVar[bool] = False
 
     @classmethod

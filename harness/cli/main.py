@@ -85,6 +85,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
 
     command: Command = parsed.implementation
+    if arguments is None and command.reads_geometry:
+        from harness.cli.native_crash import in_own_process
+
+        if (ended := in_own_process()) is not None:
+            code, reason = ended
+            if reason:
+                complain(f"harness {command.name}: error: {reason}")
+            return code
     if command.collects_garbage:
         gc.enable()
     given = getattr(parsed, "json", False) or getattr(parsed, "format", "") in ("json", "sarif")

@@ -30,6 +30,22 @@ def path_exists(path: Path) -> bool:
     return os.path.exists(path)  # noqa: PTH110 - as above
 
 
+def home_folder() -> Path | None:
+    """The user's home folder; None where neither HOME nor an entry of the user names one."""
+    try:
+        return Path.home()
+    except RuntimeError:
+        return None
+
+
+def expanded(path: str | Path) -> Path:
+    """A path with `~` replaced, as far as that names the home folder of a user."""
+    try:
+        return Path(path).expanduser()
+    except RuntimeError:
+        return Path(path)
+
+
 def read_at_most(path: Path, most: int) -> bytes:
     """The bytes of a file that anybody may have written.
 

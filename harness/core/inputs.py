@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from harness.core.files import is_dir, path_exists
@@ -18,6 +18,7 @@ INSTALLED = ("site-packages", "dist-packages")  # installed packages: their vers
 FOLDER = "folder"  # in place of a folder's hash: not the empty one of a missing place
 
 _read: dict[str, str] = {}
+_listeners: list[Callable[[str], object]] = []
 
 
 def read_input(path: Path) -> bytes:
@@ -27,6 +28,8 @@ def read_input(path: Path) -> bytes:
         OSError: It cannot be read.
     """
     key = str(path.absolute())
+    for listener in _listeners:
+        listener(key)
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -34,6 +37,11 @@ def read_input(path: Path) -> bytes:
         raise
     _read[key] = hashlib.sha256(content).hexdigest()
     return content
+
+
+def note_inputs(listener: Callable[[str], object]) -> None:
+    """Call a function with the path of each input before it is read."""
+    _listeners.append(listener)
 
 
 def is_there(path: Path) -> bool:

@@ -44,7 +44,7 @@ BAG_SIGNALS = 40_000_000
 """Numbers of all signals of the judged run (320 MB; judging takes three times as much): ten minutes
 of twelve joints at 500 Hz and of five objects at 100 Hz."""
 
-CSV_FILE = 200 * MB  # an hour of ten joints at 100 Hz has 40 MB
+CSV_FILE = 64 * MB  # an hour of ten joints at 100 Hz has 40 MB
 
 RUN_DOCUMENT = 64 * MB
 RUN_ARRAYS = 2 * 2**30  # unpacked; what a run records itself is bounded by 1 GiB of states

@@ -8,16 +8,18 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
+from harness.core.files import home_folder
+
 LARGEST = 1_000_000_000  # [bytes], of the folder: files that were not read for longest go
 
 _CHECKSUM = hashlib.sha256().digest_size
 
 
 def cache_folder() -> Path:
-    """The folder `armharness` in XDG's cache directory."""
+    """The folder `armharness` in XDG's cache directory; none can be there without a home folder."""
     base = os.environ.get("XDG_CACHE_HOME", "")
-    root = Path(base) if Path(base).is_absolute() else Path.home() / ".cache"
-    return root / "armharness"
+    home = home_folder() or Path(os.devnull)
+    return (Path(base) if Path(base).is_absolute() else home / ".cache") / "armharness"
 
 
 def cached(name: str) -> bytes | None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.core.errors import RobotOptionError
-from harness.core.files import is_dir, is_file
+from harness.core.files import expanded, is_dir, is_file
 from harness.robot.packages import NotFoundError, PackagePath
 
 
@@ -28,7 +28,7 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
                 key, f"the package '{package}' is not found; without a package it would be {path}"
             )
         return path
-    path = base_dir / Path(name).expanduser()
+    path = base_dir / expanded(name)
     if not is_file(path):
         near = difflib.get_close_matches(path.name, _names(path.parent), 1)
         hint = f"; did you mean '{near[0]}'?" if near else ""
@@ -60,7 +60,7 @@ def find_folder(name: str, base_dir: Path) -> Path:
     Raises:
         RobotError: It does not exist.
     """
-    folder = base_dir / Path(name).expanduser()
+    folder = base_dir / expanded(name)
     if not is_dir(folder):
         raise RobotOptionError("packages", f"there is no folder {folder}")
     return folder

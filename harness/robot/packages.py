@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from harness.core.files import is_dir, is_file
+from harness.core.files import expanded, home_folder, is_dir, is_file
 from harness.core.inputs import is_there
 
 SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
@@ -128,7 +128,7 @@ class PackagePath:
     def outside(self, name: str, path: Path) -> str:
         """The message on a file that may not be read, with the folder that would allow it."""
         around = Path(os.path.commonpath([self.home, path.parent]))
-        folder = path.parent if Path.home().is_relative_to(around) else around
+        folder = path.parent if _holds_home(around) else around
         return (
             f"'{name}' lies outside the robot's folder {self.home} and the given ones; if it may "
             f"be read, give --package-path {folder}, or add that folder to `packages` of `robot:`"
@@ -163,7 +163,7 @@ class PackagePath:
         if is_file(self.home / MANIFEST):
             return
         for folder in (self.home, *self.home.parents)[: HIGHEST + 1]:
-            if Path.home().is_relative_to(folder) or folder == Path(folder.anchor):
+            if _holds_home(folder) or folder == Path(folder.anchor):
                 return
             yield folder
 
@@ -175,10 +175,16 @@ class PackagePath:
                 yield self.home.parents[2]
 
 
+def _holds_home(folder: Path) -> bool:
+    """Whether a folder is the user's home folder, or holds it."""
+    home = home_folder()
+    return home is not None and home.is_relative_to(folder)
+
+
 def environment_folders() -> tuple[Path, ...]:
     """Folders of the environment variable."""
     listed = os.environ.get(SEARCH_VARIABLE, "").split(os.pathsep)
-    return tuple(Path(each).expanduser().resolve() for each in listed if each)
+    return tuple(expanded(each).resolve() for each in listed if each)
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import count
 from pathlib import Path
 
 from harness.core.resources import data_folder
@@ -328,13 +329,17 @@ def _begin_mesh(folder: Path) -> Read:
     from harness.core.geometry import Mesh
     from harness.robot.mesh_file import convex_hull
 
+    numbers = count()  # what was read of a path is kept as long as the process lives
     del folder
 
     def read(folder: Path, data: bytes) -> None:
         kind, _, content = data.partition(b":")
-        path = _put(folder, f"changed.{kind.decode()}", content)
-        mesh_parts(Mesh(path, (1.0, 1.0, 1.0)))
-        convex_hull(Mesh(path, (1.0, 1.0, 1.0), collision="hull"))
+        path = _put(folder, f"{next(numbers)}.{kind.decode()}", content)
+        try:
+            mesh_parts(Mesh(path, (1.0, 1.0, 1.0)))
+            convex_hull(Mesh(path, (1.0, 1.0, 1.0), collision="hull"))
+        finally:
+            path.unlink()
 
     return read
 

@@ -5,7 +5,9 @@ import os
 import pytest
 
 from harness.core import user_cache
+from harness.core.files import expanded, home_folder
 from harness.core.user_cache import cache_folder, cached, store
+from tests.commands import forked
 
 
 @pytest.fixture(autouse=True)
@@ -50,3 +52,19 @@ def test_a_damaged_file_is_as_good_as_none():
     file = cache_folder() / "a"
     file.write_bytes(file.read_bytes()[:-1])
     assert cached("a") is None
+
+
+def stored_by_a_number(out, _notify):
+    """Use the cache as a user that is a number, without a home folder, as in some containers."""
+    for name in ("HOME", "XDG_CACHE_HOME"):
+        os.environ.pop(name, None)
+    with out.open("w") as stream:
+        os.setuid(12345)
+        store("trees/a", b"content")
+        stream.write(repr((home_folder(), cached("trees/a"), expanded("~/a"))))
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become another user")
+def test_without_a_home_folder_nothing_is_kept_and_nothing_fails(tmp_path):
+    forked(stored_by_a_number, tmp_path / "out")
+    assert (tmp_path / "out").read_text() == "(None, None, PosixPath('~/a'))"

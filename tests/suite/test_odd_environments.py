@@ -125,3 +125,23 @@ def test_python_without_docstrings_gives_the_same_digest():
     assert [each.returncode for each in found] == [0, 0]
     first, second = (json.loads(each.stdout)["cases"][0]["digest"] for each in found)
     assert first == second
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        ("robot: {urdf: ~no_such_user/arm.urdf}", 2),
+        ("robot: {model: ur3e, packages: [~no_such_user]}", 2),
+        ("robot: open_manipulator_x\nworld: ~no_such_user/world.yaml", 3),
+        (
+            "robot: open_manipulator_x\nobjects:\n  - {name: a, mesh: {file: ~no_such_user/a.obj},"
+            " static: true, pose: {xyz: [1, 0, 0]}}",
+            4,
+        ),
+    ],
+)
+def test_the_home_folder_of_no_user_is_a_mistake_at_its_place(keys, line, capsys, folder):
+    del folder
+    Path("home.scenario.yaml").write_text(f"scenario: x\n{keys}\nsteps: [{{wait: 10 ms}}]\n")
+    assert main(["check", "home.scenario.yaml"]) == 2
+    assert f"home.scenario.yaml:{line}:" in capsys.readouterr().out

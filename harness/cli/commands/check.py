@@ -27,6 +27,7 @@ class CheckCommand(Command):
 
     name: ClassVar[str] = "check"
     group: ClassVar[str] = SCENARIOS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness check`."""

@@ -16,6 +16,7 @@ class ExplainCommand(Command):
 
     name: ClassVar[str] = "explain"
     group: ClassVar[str] = SCENARIOS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness explain`."""

@@ -26,6 +26,7 @@ class ExportCommand(Command):
 
     name: ClassVar[str] = "export"
     group: ClassVar[str] = RESULTS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness export`."""

@@ -27,6 +27,7 @@ class JudgeCommand(Command):
 
     name: ClassVar[str] = "judge"
     group: ClassVar[str] = RESULTS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness judge`."""

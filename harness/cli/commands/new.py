@@ -23,6 +23,7 @@ class NewCommand(Command):
 
     name: ClassVar[str] = "new"
     group: ClassVar[str] = SCENARIOS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness new`."""

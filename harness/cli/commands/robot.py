@@ -29,6 +29,7 @@ class RobotCommand(Command):
 
     name: ClassVar[str] = "robot"
     group: ClassVar[str] = EXCHANGE
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness robot`."""

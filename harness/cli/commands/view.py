@@ -18,6 +18,7 @@ class ViewCommand(Command):
 
     name: ClassVar[str] = "view"
     group: ClassVar[str] = RESULTS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness view`."""

@@ -11,6 +11,7 @@ from typing import Any, Generic, Literal, TypeVar, cast
 from pydantic import ValidationError
 
 from harness.core.errors import Problem, SpecError
+from harness.core.files import expanded
 from harness.core.registry import plugin_hints, registry
 from harness.core.resources import data_folder
 from harness.core.suggestion import did_you_mean
@@ -266,7 +267,7 @@ def file_path(text: str, base_dir: Path) -> Path:
         )
     if not text.isprintable():
         raise _no_world(text, f"{text!r} is not a path", "")
-    return base_dir / Path(text).expanduser() if text.startswith("~") else base_dir / text
+    return base_dir / expanded(text) if text.startswith("~") else base_dir / text
 
 
 class _BrokenError(SpecError):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.core.errors import HarnessError, SpecError
-from harness.core.files import replaced
+from harness.core.files import expanded, replaced
 from harness.language.files.source import Located, walk
 from harness.language.reading.load import WORLD_SUFFIXES, LoadedScenario, load_world
 
@@ -125,7 +125,7 @@ class StudioFiles:
         words = str(item.value)
         if not words.isprintable() or not {"/", ".", "~"} & set(words):
             return False
-        path = (Path(item.place.source.path).parent / Path(words).expanduser()).resolve()
+        path = (Path(item.place.source.path).parent / expanded(words)).resolve()
         if path.is_relative_to(self.root) or path in self.given:
             return False
         return words.startswith(("/", "~")) or ".." in Path(words).parts or path.exists()

@@ -248,7 +248,14 @@ def guarded(action: Callable[[], Message]) -> Message:
         return action()
     except SpecError as error:
         return {"error": "; ".join(each.sentence for each in error.problems)}
-    except (HarnessError, ValueError, KeyError, TypeError) as error:
+    except (
+        HarnessError,
+        ValueError,
+        LookupError,
+        TypeError,
+        ArithmeticError,
+        AttributeError,
+    ) as error:
         text = str(error) if isinstance(error, HarnessError) else f"a bad request: {error!r}"
         return {"error": text}
 

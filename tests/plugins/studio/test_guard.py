@@ -136,6 +136,9 @@ def test_a_bad_request_is_answered_and_harms_nothing(served):
     assert "no action" in served.reply_to("shutdown")["error"]
     assert "bad request" in served.reply_to("jog", joint="joint1")["error"]
     assert "bad request" in served.reply_to("goal", xyz=["a"], rpy=[])["error"]
+    hovered = {"text": "scenario: x\n", "line": 1}
+    for column in (float("inf"), float("nan"), [], {}):
+        assert "bad request" in served.reply_to("hover", column=column, **hovered)["error"]
     assert served.reply_to("reset") == {}
 
 

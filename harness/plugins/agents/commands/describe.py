@@ -26,6 +26,7 @@ class DescribeCommand(Command):
 
     name: ClassVar[str] = "describe"
     group: ClassVar[str] = SCENARIOS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness describe`."""

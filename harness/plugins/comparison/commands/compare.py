@@ -21,6 +21,7 @@ class CompareCommand(Command):
 
     name: ClassVar[str] = "compare"
     group: ClassVar[str] = RESULTS
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness compare`."""

@@ -23,6 +23,7 @@ class ImportCommand(Command):
 
     name: ClassVar[str] = "import"
     group: ClassVar[str] = EXCHANGE
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness import`."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
-from harness.core.files import is_file
+from harness.core.files import expanded, is_file
 from harness.core.inputs import is_there
 from harness.core.resources import data_folder
 from harness.language.files.xml_file import XmlElement, read_xml
@@ -49,14 +49,14 @@ class ModelPath:
             world_folder,
             world_folder / "models",
             *(
-                Path(folder).expanduser()
+                expanded(folder)
                 for name in VARIABLES
                 for folder in environment.get(name, "").split(os.pathsep)
                 if folder
             ),
             data_folder("worlds") / "models",
         ]
-        home = Path(environment.get("HOME", "~")).expanduser()
+        home = expanded(environment.get("HOME", "~"))
         self._cache = Path(environment.get(FUEL_CACHE) or home / ".gz" / "fuel")
         self._roots = [folder.resolve() for folder in (*self.folders, self._cache)]
 

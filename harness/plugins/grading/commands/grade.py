@@ -37,6 +37,7 @@ class GradeCommand(Command):
 
     name: ClassVar[str] = "grade"
     group: ClassVar[str] = EXCHANGE
+    reads_geometry: ClassVar[bool] = True
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness grade`."""
