@@ -99,13 +99,13 @@ def _toctree(title: str, pages: list[str]) -> str:
 def show_lessons_alive(app: Sphinx, page: str, text: list[str]) -> None:
     """Put the film and the report page of each lesson below its picture in the gallery."""
     if page == "docs/gallery" and app.config.gallery_runs:
-        text[0] = with_pages(text[0])
+        text[0] = with_pages(text[0], app.config.gallery_runs)
 
 
 def run_gallery(app: Sphinx, error: Exception | None) -> None:
     """Run the lessons of the gallery; their reports are a part of the site."""
     if error is None and app.builder.format == "html" and app.config.gallery_runs:
-        run_lessons(Path(app.outdir))
+        run_lessons(Path(app.outdir), app.config.gallery_runs)
 
 
 def write_texts(app: Sphinx, error: Exception | None) -> None:
@@ -131,7 +131,7 @@ def write_texts(app: Sphinx, error: Exception | None) -> None:
 
 def setup(app: Sphinx) -> None:
     """Connect the additions to Sphinx; `-D gallery_runs=0` builds without running lessons."""
-    app.add_config_value("gallery_runs", True, "env", bool)
+    app.add_config_value("gallery_runs", 100, "env", int)  # lessons at most: all
     app.connect("source-read", lead_to_pages)
     app.connect("source-read", add_contents)
     app.connect("source-read", show_lessons_alive)

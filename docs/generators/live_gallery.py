@@ -38,21 +38,21 @@ def view_of(lesson: str) -> str:
     return next((pose for name, pose in VIEWS.items() if lesson.startswith(name)), "")
 
 
-def with_pages(text: str) -> str:
-    """The text of the gallery with a film and a page below each picture."""
+def with_pages(text: str, most: int) -> str:
+    """The text of the gallery with a film and a page below the first pictures."""
 
     def live(found: re.Match[str]) -> str:
         names = {"folder": f"{FOLDER}/lessons", "lesson": found[1]}
         film = FILM.format(**names) if view_of(found[1]) else ""
         return (found[0] if not film else "") + LIVE.format(film=film, **names)
 
-    return PICTURE.sub(live, text)
+    return PICTURE.sub(live, text, count=most)
 
 
-def run_lessons(site: Path) -> None:
-    """Run every lesson that the gallery shows, with its report in the folder of the site."""
+def run_lessons(site: Path, most: int) -> None:
+    """Run the first lessons that the gallery shows, with reports in the folder of the site."""
     page = Path(__file__).parents[1] / "gallery.md"
-    for lesson in PICTURE.findall(page.read_text(encoding="utf-8")):
+    for lesson in PICTURE.findall(page.read_text(encoding="utf-8"))[:most]:
         words = ["run", f"lessons/{lesson}", "--report-dir", FOLDER]
         if pose := view_of(lesson):
             size = "image: {width: 640, height: 480}"

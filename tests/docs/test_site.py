@@ -5,6 +5,7 @@ import inspect
 import re
 import subprocess
 import sys
+from contextlib import closing
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -12,6 +13,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 from tests.docs.test_public_interface import MODULES
+from tests.reporting.browser import new_context
 
 ROOT = Path(__file__).parents[2]
 REQUESTING = {
@@ -42,9 +44,9 @@ class Page(HTMLParser):
                 self.requested.append(value)
 
 
-def built(folder, options):
-    """A site in a folder, and what Sphinx printed."""
-    command = f"-m sphinx -q -D gallery_runs=0 -b html -c docs {options} ."
+def built(folder, options, runs=0):
+    """A site in a folder with some lessons in its gallery, and what Sphinx printed."""
+    command = f"-m sphinx -q -D gallery_runs={runs} -b html -c docs {options} ."
     done = subprocess.run(
         [sys.executable, *command.split(), str(folder)],
         cwd=ROOT,
@@ -69,6 +71,33 @@ def page_of_packages(tmp_path_factory):
     page = "docs/reference/api/run"
     options = f"-D root_doc={page} -D include_patterns={page}.md"
     return built(tmp_path_factory.mktemp("page") / "html", options)[0]
+
+
+@pytest.mark.nightly
+def test_a_report_in_the_gallery_is_alive_in_a_browser(browser, tmp_path):
+    """The first lesson is run for the site; its page is opened inside the gallery's and moved."""
+    page = "docs/gallery"
+    options = f"-D root_doc={page} -D include_patterns={page}.md"
+    site, _ = built(tmp_path / "html", options, runs=1)
+    with closing(new_context(browser, viewport={"width": 1440, "height": 900})) as context:
+        context.set_offline(True)
+        opened, errors = context.new_page(), []
+        opened.on("pageerror", lambda error: errors.append(str(error)))
+        opened.goto((site / f"{page}.html").as_uri())
+        opened.click(".report summary")
+        frame = opened.frame_locator(".report iframe")
+        frame.locator("#view canvas").wait_for()
+        before = frame.locator("#view canvas").screenshot()
+        frame.locator("#track").focus()
+        frame.locator("#track").press("End")
+        frame.locator("#track:not([aria-valuenow='0.000'])").wait_for()
+        assert frame.locator("#view canvas").screenshot() != before
+        video = opened.locator("video").first
+        assert video.evaluate("each => new Promise(done => {"
+                              "each.addEventListener('loadeddata', () => done(true));"
+                              "each.addEventListener('error', () => done(false));"
+                              "each.load(); })")  # fmt: skip
+        assert errors == []
 
 
 @pytest.fixture(scope="module")
