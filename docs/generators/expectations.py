@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from docs import ROOT
 from docs.generators.reference import (
     VALUES,
     contents,
@@ -16,6 +17,7 @@ from harness.language.expectation import KIND, ExpectationFields, PredicateField
 from harness.language.language import EXPECTATIONS, KEYS_BY_PREDICATE, PREDICATES, TEMPORAL
 from harness.plugins.formulas.language.formula import SIGNALS
 
+PICTURES = ROOT / "docs/pictures/expectations"
 JUDGED = {
     "at_end": "Without a temporal word it must hold at the last sample of its window, which"
     " decides.",
@@ -146,7 +148,7 @@ def expectations_reference() -> str:
         is_own = package == OWN_PACKAGE
         notes = [] if is_own else [f"This expectation comes from the package `{package}`."]
         parts += section(word, model, KEYS_BY_PREDICATE, (*notes, JUDGED[model.judged]))
-        parts += [_measured(model.quantities), *([_picture(word)] if is_own else [])]
+        parts += [_measured(model.quantities), *(_picture(word) if is_own else [])]
     parts += part_sections(PREDICATES.values())
     return "\n\n".join(parts) + "\n"
 
@@ -168,6 +170,8 @@ def _measured(quantities: tuple[Quantity, ...]) -> str:
     )
 
 
-def _picture(word: str) -> str:
-    """A picture that is kept next to the page."""
-    return f"![Where `{word}` holds, and where it does not](../pictures/expectations/{word}.svg)"
+def _picture(word: str) -> list[str]:
+    """The picture that is kept next to the page; none where it is not drawn yet."""
+    if not (PICTURES / f"{word}.svg").is_file():
+        return []
+    return [f"![Where `{word}` holds, and where it does not](../pictures/expectations/{word}.svg)"]
