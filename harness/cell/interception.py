@@ -194,8 +194,17 @@ def _company(
     return Company(ride, begin, pace, search.closing, before, at, search.lift), state
 
 
-def company_plan(company: Company, state: FloatArray, group: str, cell: Cell) -> MotionPlan:
+def company_plan(
+    company: Company, state: FloatArray, group: str, cell: Cell, *, padded: bool = True
+) -> MotionPlan:
     """The plan of a motion with an object, which is not where the planning scene has it meanwhile.
+
+    Args:
+        company: The motion of the TCP next to the belt.
+        state: The state of the whole robot in which it begins.
+        group: The name of the planning group.
+        cell: The cell with its planner.
+        padded: Whether the planner's padding applies; what is put down comes as near as it stands.
 
     Raises:
         PlanningFailed: The arm cannot follow the object so.
@@ -204,7 +213,8 @@ def company_plan(company: Company, state: FloatArray, group: str, cell: Cell) ->
     cell.scene.set_allowed([pair], allowed=True)
     try:
         motion = TimedLinkMotion(cell.description.tcp_link, company.tcp_pose, company.duration)
-        return cell.planner.plan(MotionRequest(group, state, motion, cell.current.options))
+        options = cell.current.options if padded else replace(cell.current.options, padding=0.0)
+        return cell.planner.plan(MotionRequest(group, state, motion, options))
     finally:
         cell.scene.set_allowed([pair], allowed=False)
         for around in cell.allowed:  # may name the same pair

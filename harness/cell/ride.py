@@ -59,14 +59,14 @@ class Ride:
         return next((float(time) for time in times if not self.is_on(float(time))), LOOK_AHEAD)
 
 
-def ride_of(name: str, cell: Cell) -> Ride:
-    """The ride of an object on the belt or turntable that it lies on.
+def ride_of(name: str, cell: Cell, pose: SE3 | None = None) -> Ride:
+    """The ride of an object on the belt or turntable that it lies on, or will lie on at a pose.
 
     Raises:
         StepFailed: INVALID_OBJECT_NAME, when it lies on none.
     """
     cell.sync_scene()
-    pose = cell.measured_pose(name)
+    pose = pose or cell.measured_pose(name)
     points = pose.apply(cell.scene.corners(name))
     for belt, presence in cell.presence.items():
         if presence.obj.surface_motion is None or belt not in cell.scene.object_names():

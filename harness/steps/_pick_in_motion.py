@@ -28,6 +28,7 @@ from harness.steps.wait import Wait
 
 AJAR = 0.03  # [m], by which the pads are farther apart than the object is wide: 15 mm on each side
 SQUEEZE = -0.01  # [m], beyond its width, so that the fingers press with their whole effort
+BUILD_UP = 0.1  # [s], for which suction cups stay with the object once the valve is open
 MEETINGS = 3  # searched for, where the motion to the first takes longer than it was predicted
 
 
@@ -46,12 +47,12 @@ class Interception(Detail):
     miss: tuple[float, float, float]
 
 
-class _Approach(Lin):
-    """The first part of the motion with the object, which ends in motion."""
+class PlannedLin(Lin):
+    """A straight motion relative to a belt, which is planned before and ends in motion."""
 
     _plan: MotionPlan = PrivateAttr()
 
-    def planned(self, plan: MotionPlan) -> _Approach:
+    def planned(self, plan: MotionPlan) -> PlannedLin:
         """The step with its plan."""
         self._plan = plan
         return self
@@ -110,16 +111,13 @@ def pick_in_motion(
         StepFailed: INVALID_OBJECT_NAME, when it lies on no belt.
     """
     name, hand = grasp.object, cell.gripper
-    width = level_sides(cell.presence[name].obj, cell.measured_pose(name), cell)[0][0]
-    ajar, squeezed = (
-        position_for_width(hand, max(least_gap(cell), width + more)) for more in (AJAR, SQUEEZE)
-    )
+    ajar, squeezed = _ajar_and_closed(name, cell)
     start = cell.planning_start()
     start[cell.description.joint_index[hand.joint]] = ajar
     search = Search(
         group_of(cell, lift.group),
         cell.description.with_mimics(start),
-        closing_time(cell.description, hand, ajar, squeezed),
+        closing_time(cell.description, hand, ajar, squeezed) + (BUILD_UP if hand.cups else 0.0),
         _rise(lift, cell),
         choose,
     )
@@ -129,7 +127,7 @@ def pick_in_motion(
         plan = company_plan(company, cell.planning_start(), search.group, cell)
         joining, leaving = divided(plan, company.pace)
         keys = meeting.chosen.approach.at.keys
-        approach = _Approach(**keys, group=lift.group).planned(joining)
+        approach = PlannedLin(**keys, group=lift.group).planned(joining)
         closing = _GraspInMotion(**dict(grasp)).planned(leaving, squeezed, company)
         cell.run_children(
             [
@@ -137,6 +135,18 @@ def pick_in_motion(
                 cell.child("grasp", closing, f"grasp and lift {name}"),
             ]
         )
+
+
+def _ajar_and_closed(name: str, cell: Cell) -> tuple[float, float]:
+    """Positions of the gripper's joint before it closes on an object, and after; off and on."""
+    hand = cell.gripper
+    if hand.cups:
+        return hand.open_position, hand.closed_position
+    width = level_sides(cell.presence[name].obj, cell.measured_pose(name), cell)[0][0]
+    before, after = (
+        position_for_width(hand, max(least_gap(cell), width + more)) for more in (AJAR, SQUEEZE)
+    )
+    return before, after
 
 
 def _reach(name: str, ajar: float, search: Search, cell: Cell) -> Meeting:

@@ -25,7 +25,7 @@ from harness.core.pose_arrays import rotations_about
 from harness.core.spatial import SE3, pitch_of
 from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
-from harness.language.base import Name
+from harness.language.base import Flag, Name
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
 from harness.ports.goals import PoseGoal, PositionGoal
@@ -33,6 +33,7 @@ from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.recording.explanation import Explanation
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
+from harness.steps._place_in_motion import place_in_motion
 from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (
@@ -102,6 +103,11 @@ class Place(Step):
     retreat: Travel | None = Field(
         default=None, description="The retreat; the default is 3 to 10 cm back along the gripper."
     )
+    track: Flag = Field(
+        default=False,
+        description="There is a belt or turntable under the place: the arm moves with its surface "
+        "while it lowers the object by 5 cm and lets go.",
+    )
 
     @model_validator(mode="after")
     def _one_place(self) -> Place:
@@ -122,6 +128,14 @@ class Place(Step):
             _check_support(self.on, self.object, at)
         check_travel(self.approach, at, "approach")
         check_travel(self.retreat, at, "retreat")
+        group = at.scope.check_group(self.group, at.key("group"))
+        known = group in at.scope.description.groups
+        if self.track and known and not task_space_of(at.scope.description, group).holds_pose:
+            at.scope.problems.add(
+                at.key("track"),
+                "an arm of fewer than six joints cannot keep the object's heading on a belt",
+                "leave out `track`, and stop the belt with a `conveyor` step before",
+            )
         name = self.object or next(reversed(at.scope.attached), None)
         if name is not None:
             at.scope.attached.pop(name, None)
@@ -143,6 +157,13 @@ class Place(Step):
                 Explanation(advice=f"put a step that takes it before: `- pick: {name or '...'}`"),
             )
         refuse_other_holder(name, cell)
+        if self.track:
+            up = Direction(xyz=(0, 0, 1))
+            back = relative_step(self.retreat or DEFAULT_RETREAT, up, self.group)
+            distance = back.distance or back.max_distance or 0.0
+            targets, group = _targets(name, self, cell), group_of(cell, self.group)
+            place_in_motion(name, targets, distance, group, cell)
+            return
         backwards = _retreat_direction(cell)
         children = [
             *_lowering(name, self, cell),
@@ -178,12 +199,8 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     along = -UP
     if step.approach is not None and step.approach.direction is not None:
         along = cell.world_direction(step.approach.direction)
-    stated = places_on(name, step.on, cell) if step.on else [cell.world_pose(_pose_of(step))]
-    targets = [
-        SE3(equal.rotation, equal.translation + PUT_DOWN_GAP * UP)
-        for each in stated
-        for equal in _equal_poses(name, each, step, cell)
-    ]
+    targets = _targets(name, step, cell)
+    stated = SE3(targets[0].rotation, targets[0].translation - PUT_DOWN_GAP * UP)
     goals = [_tcp_goal(name, target, step, cell) for target in targets]
     approaches = [
         Approach(
@@ -205,7 +222,7 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     try:
         chosen = choose_approach(approaches, search, cell)
     except PlanningFailed as failure:
-        advice = place_advice(name, stated[0], failure, cell)
+        advice = place_advice(name, stated, failure, cell)
         raise with_advice(failure, advice) from failure
     least = max(refused, key=lambda touch: touch.distance, default=None)
     if least is not None and least.distance < -DEEPEST_OPENING:
@@ -216,6 +233,16 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     return [
         cell.child("reach", reach, f"move_to above the place of {name}"),
         _touching(cell.child("lower", lower, f"lin {name}")),
+    ]
+
+
+def _targets(name: str, step: Place, cell: Cell) -> list[SE3]:
+    """T_world_object of each way to put an object down, a little above its support."""
+    stated = places_on(name, step.on, cell) if step.on else [cell.world_pose(_pose_of(step))]
+    return [
+        SE3(equal.rotation, equal.translation + PUT_DOWN_GAP * UP)
+        for each in stated
+        for equal in _equal_poses(name, each, step, cell)
     ]
 
 

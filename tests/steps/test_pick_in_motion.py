@@ -132,3 +132,36 @@ def test_the_tcp_starts_and_ends_at_rest_and_moves_with_the_object_in_between(mo
     times = np.linspace(0.001, company.duration - 0.001, 400)
     jumps = np.diff([speed(time) for time in times], axis=0)
     assert np.abs(jumps).max() < 0.01, "the velocity has no jump"
+
+
+TWO_BELTS = """scenario: from belt to belt
+robot: {model: ur5e, gripper: %s}
+objects:
+  - {name: belt, static: true, surface_velocity: 0.15, box: {size: [2, 0.3, 0.1]}, pose: {xyz: [0.1, 0.4, 0.05]}}
+  - {name: other, static: true, surface_velocity: 0.1, box: {size: [1.5, 0.3, 0.1]}, pose: {xyz: [0.3, -0.4, 0.05]}}
+  - {name: box, box: {size: [0.06, 0.05, 0.06]}, pose: {xyz: [-0.6, 0.4, 0.13]}, mass: 0.3, friction: 0.6}
+steps:
+  - pick: {object: box, track: true}
+  - place: {object: box, pose: {xyz: [0.0, -0.4, 0.13]}, track: true}
+  - wait: 0.5
+expect:
+  - never: collision
+  - released: box
+  - "on": {object: box, support: other}
+"""  # noqa: E501
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("gripper", ["rh_p12_rn_a", "suction_cup"])
+def test_a_box_is_put_from_one_running_belt_onto_another(recorded_run, gripper):
+    run = read_run(recorded_run(TWO_BELTS % gripper) / "run").run
+    release = next(step for step in run.steps if step.verb == "release")
+    poses = run.signals.object_poses["box"][release.start_index :, :3]
+    speed = np.diff(poses[:, 0]) / 0.001
+    assert poses[0, :2] == pytest.approx([0.0, -0.4], abs=2e-3), "it was let go where it was to be"
+    assert speed[50:-1] == pytest.approx(0.1, abs=0.03), "at the belt's speed from the start"
+
+
+def test_an_arm_of_four_joints_does_not_place_in_motion(tmp_path):
+    result = run(tmp_path, step="place: {object: can, pose: {xyz: [0.1, 0.2, 0.045]}, track: true}")
+    assert any("fewer than six joints" in each.message for each in result.problems)

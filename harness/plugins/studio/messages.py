@@ -47,7 +47,10 @@ def robot_message(cell: LiveCell) -> Message:
         "states": list(description.states_of(description.arm_group)),
         "gripper": None
         if gripper is None
-        else {"steps": gripper_steps(description), "widest": float(gripper.widths[:, 1].max())},
+        else {
+            "steps": gripper_steps(description),
+            "widest": 0.0 if gripper.cups else float(gripper.widths[:, 1].max()),
+        },
         "frames": list(
             dict.fromkeys(
                 ["world", description.base_link, *cell.cell.presence, *description.link_names]
@@ -138,7 +141,7 @@ def problem_message(problem: Problem, file: str) -> Message:
 
 def _width(cell: LiveCell) -> float | None:
     gripper = cell.description.gripper
-    if gripper is None:
+    if gripper is None or gripper.cups:
         return None
     value = cell.joint_positions()[cell.description.joint_index[gripper.joint]]
     rows = gripper.widths[np.argsort(gripper.widths[:, 0])]

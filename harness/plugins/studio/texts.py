@@ -58,6 +58,9 @@ def gripper_steps(description: RobotDescription) -> dict[str, str]:
     if gripper is None:
         return {}
     steps = {state: f"gripper: {state}" for state in description.states_of(gripper.group)}
+    if gripper.cups:
+        ends = {"open": gripper.open_position, "close": gripper.closed_position}
+        return {word: step_text("gripper", {"position": end}) for word, end in ends.items()} | steps
     widths = gripper.widths[:, 1]
     narrowest, widest = np.ceil(1e4 * widths.min()) / 1e4, np.floor(1e4 * widths.max()) / 1e4
     closed = next((steps.pop(word) for word in ("closed", "close") if word in steps), None)

@@ -104,6 +104,15 @@ def test_a_gripper_without_named_states_opens_and_closes_by_its_width():
     }
 
 
+def test_suction_cups_are_switched_by_the_keys_and_by_their_states():
+    assert gripper_steps(load_robot(RobotSpec(model="suction_cup"))) == {
+        "open": "gripper: {position: 0}",
+        "close": "gripper: {position: 0.005}",
+        "off": "gripper: off",
+        "on": "gripper: on",
+    }
+
+
 def test_numbers_are_written_as_a_person_would():
     written = flow({"xyz": [0.1 + 0.2, -0.0, 2.0], "name": "on"})
     assert written == "{xyz: [0.3, 0, 2], name: 'on'}"

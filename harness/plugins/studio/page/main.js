@@ -64,8 +64,10 @@ function showGripper() {
   if (!robot.gripper) return box.replaceChildren("This robot has no gripper.");
   const width = element("input", { type: "number", id: "width", min: 0, max: robot.gripper.widest, step: 0.001, value: robot.gripper.widest.toFixed(3) });
   box.replaceChildren(
-    ...Object.entries(robot.gripper.steps).map(([word, step]) => element("button", { onclick: () => run(step) }, word)),
-    element("label", {}, " width [m] ", width), element("button", { onclick: () => run(`gripper: {width: ${Number(width.value)}}`) }, "Go"),
+    ...Object.entries(robot.gripper.steps)
+      .filter(([word]) => robot.gripper.widest || !["open", "close"].includes(word)) // of cups: the keys o and p alone
+      .map(([word, step]) => element("button", { onclick: () => run(step) }, word)),
+    ...(robot.gripper.widest ? [element("label", {}, " width [m] ", width), element("button", { onclick: () => run(`gripper: {width: ${Number(width.value)}}`) }, "Go")] : []),
     element("output", { id: "gap" }));
 }
 
