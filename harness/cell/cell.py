@@ -10,9 +10,9 @@ from typing import NamedTuple
 from harness.cell.program import ProgramStep, step_seed, with_arm
 from harness.core.camera import Camera
 from harness.core.details import Detail, Details
-from harness.core.errors import StepFailed
+from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.spatial import SE3
-from harness.core.trajectory import JointTrajectory
+from harness.core.trajectory import JointTrajectory, together
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.language.poses import Direction, Pose
@@ -20,13 +20,16 @@ from harness.language.step import Step
 from harness.ports.external import ExternalControl
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import MotionPlan, MotionPlanner, MotionRequest, PlanningOptions
-from harness.ports.motions import PlannedMotion
+from harness.ports.motions import PlannedMotion, TimedMotion
 from harness.ports.scene import PlanningScene
 from harness.ports.simulation import Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_results import CELL_RESULTS, Attachment, SceneChange
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import ALL_ARMS, Gripper, RobotDescription
+
+DELAYS = 10  # of a motion of another arm, tried one after the other: tenths of what runs already
+SET_POINTS = 0.01  # [s], between set points, of which delays are multiples
 
 
 @dataclass
@@ -87,6 +90,7 @@ class Cell:
     simulator: Simulator
     later_objects: Mapping[str, WorldObject]
     run_steps: Callable[[Sequence[ProgramStep]], None]
+    run_together: Callable[[Sequence[ProgramStep]], tuple[float, ...]]
     presence: dict[str, Presence] = field(default_factory=dict[str, Presence])
     attachments: list[AttachmentRecord] = field(default_factory=list[AttachmentRecord])
     held: list[Held] = field(default_factory=list["Held"])
@@ -100,6 +104,8 @@ class Cell:
     external: ExternalControl | None = None
     expected: dict[str, SE3] = field(default_factory=dict[str, SE3])
     """T_world_object of objects that plans take to be elsewhere than they are."""
+    waiting: list[JointTrajectory] | None = None
+    """Motions that begin together once all of them are planned; None: each begins at once."""
     faults: dict[str, int] = field(default_factory=dict[str, int])
     """The faults that were injected, in words, and the line of each in the file."""
 
@@ -165,6 +171,10 @@ class Cell:
         for gripper in self.robot.grippers:
             index = self.robot.joint_index[gripper.joint]
             start[index] = measured[index]
+        for motion in self.waiting or ():
+            start[[self.robot.joint_index[name] for name in motion.joint_names]] = motion.positions[
+                -1
+            ]
         return self.robot.with_mimics(start)
 
     def measured_pose(self, name: str) -> SE3:
@@ -411,6 +421,15 @@ class Cell:
             arm=parent.arm,
         )
 
+    @contextmanager
+    def inside(self, step: ProgramStep) -> Generator[None]:
+        """Select the arm of a step that the current one is made of."""
+        current, self.step = self.step, step
+        try:
+            yield
+        finally:
+            self.step = current
+
     def run_children(self, children: Sequence[ProgramStep] | None = None) -> None:
         """Run the steps that the current one is made of; its own notes go on after them."""
         current, notes = self.current, self.notes
@@ -474,10 +493,57 @@ class Cell:
                 f" {timeout:g} s; raise the timeout or the velocity scaling",
                 TimeoutFailure(plan.trajectory.duration, timeout),
             )
-        if follow is None:
+        if self.waiting is not None:
+            self.waiting.append(plan.trajectory)
+        elif follow is None:
             self.simulator.track(plan.trajectory)
         else:
             self.notes.trajectory = follow(plan.trajectory)
+
+    def follow_together(self, motions: Sequence[JointTrajectory]) -> tuple[float, ...]:
+        """Follow motions of different arms at once; returns when each begins [s].
+
+        Each was planned around the arms before it at their ends. It begins as soon as the timed
+        motion of all of them is free, in tenths of the motion before, at the latest when that has
+        ended.
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN, the motions are not free one after the other.
+        """
+        begun, whole = [(motions[0], 0.0)], motions[0]
+        for motion in motions[1:]:
+            whole, delay = self._earliest(begun, motion, whole.duration)
+            begun.append((motion, delay))
+        self.notes.trajectory = whole
+        self.simulator.track(whole)
+        return tuple(delay for _, delay in begun)
+
+    def _earliest(
+        self,
+        begun: Sequence[tuple[JointTrajectory, float]],
+        motion: JointTrajectory,
+        longest: float,
+    ) -> tuple[JointTrajectory, float]:
+        """Motions of arms and one more, and the earliest begin at which they are free [s].
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN; none is.
+        """
+        start, names = self.planning_start(), self.robot.group_joints(ALL_ARMS)
+        rest = start[list(self.robot.group_indices(ALL_ARMS))]
+        for number in range(DELAYS + 1):
+            delay = round(number * longest / DELAYS / SET_POINTS) * SET_POINTS
+            if number == DELAYS:
+                delay = longest
+            whole = together([*begun, (motion, delay)], names, rest)
+            try:
+                self.planner.plan(self.motion(ALL_ARMS, TimedMotion(whole)))
+            except PlanningFailed:
+                if number == DELAYS:
+                    raise
+            else:
+                return whole, delay
+        raise AssertionError("the last delay is accepted or raises")
 
     def refuse_joint_hold(self, moved: Sequence[str]) -> None:
         """Refuse to move joints of an arm that holds an object together with another one.

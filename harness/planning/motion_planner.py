@@ -35,6 +35,7 @@ from harness.ports.motions import (
     MotionSequence,
     RelativeMotion,
     TimedLinkMotion,
+    TimedMotion,
     WaypointMotion,
 )
 from harness.recording.motion_failures import DurationFailure
@@ -76,6 +77,8 @@ class VerifiedPlanner:
                 return self._links(request).relative(link, twist, distances)
             case MotionSequence(items):
                 return plan_items(self._links(request), items)
+            case TimedMotion(trajectory):
+                return self._timed(request, trajectory)
             case WaypointMotion(goals, path_options):
                 return plan_waypoints(self._links(request), goals, path_options)
             case TimedLinkMotion() as motion:
@@ -100,6 +103,13 @@ class VerifiedPlanner:
             return find_motion(task, found.positions, explanation)
         except TimingError as problem:
             raise _untimed(problem) from problem
+
+    def _timed(self, request: MotionRequest, trajectory: JointTrajectory) -> MotionPlan:
+        """Verify a motion that has its times, under the joints' whole limits."""
+        task = self._task(request)
+        task = replace(task, limits=_unscaled_limits(task))
+        task.accept(trajectory, trajectory.positions[-1], "the motions at once")
+        return MotionPlan(trajectory, Details(), task.lowered_margins)
 
     def _joint(self, request: MotionRequest, motion: JointMotion) -> MotionPlan:
         """Plan PTP.

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.goals import AnyGoal, Goal, JointGoal, PathConstraints, PoseGoal, PositionGoal
 
@@ -120,6 +121,13 @@ class JointMotion:
 
 
 @dataclass(frozen=True, eq=False)
+class TimedMotion:
+    """A motion with its times, which is verified and not planned."""
+
+    trajectory: JointTrajectory
+
+
+@dataclass(frozen=True, eq=False)
 class LinearMotion:
     """Pilz's LIN: the link on a straight line, turning at an even rate.
 
@@ -195,4 +203,5 @@ PlannedMotion = (
     | MotionSequence
     | WaypointMotion
     | TimedLinkMotion
+    | TimedMotion
 )

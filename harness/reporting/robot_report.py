@@ -45,6 +45,15 @@ class RobotFinding:
 
 
 @dataclass(frozen=True)
+class ArmLine:
+    """One of several arms, its TCP, and its gripper in one line; empty when it has none."""
+
+    name: str
+    tcp_link: str
+    gripper: str
+
+
+@dataclass(frozen=True)
 class RobotReport:
     """Everything a check of a robot found.
 
@@ -57,6 +66,7 @@ class RobotReport:
         tcp_link: The link whose pose is the TCP.
         gripper: The gripper in one line; empty when there is none.
         notes: What of the robot's files was left out or assumed.
+        arms: The arms of a robot that has several.
         proposal: Pairs that need not be checked, by reason; where no file says which.
     """
 
@@ -70,6 +80,7 @@ class RobotReport:
     tcp_link: str
     gripper: str
     findings: tuple[RobotFinding, ...]
+    arms: tuple[ArmLine, ...] = ()
     notes: tuple[str, ...] = ()
     proposal: Mapping[str, tuple[tuple[str, str], ...]] = field(
         default_factory=dict[str, tuple[tuple[str, str], ...]]
@@ -134,8 +145,10 @@ def _groups(report: RobotReport, style: Style) -> Iterator[str]:
         arm = " (the arm)" if group.name == report.arm_group else ""
         yield f"  {group.name}{arm}: {counted(len(group.joints), 'joint')}{span}"
         yield f"      states: {', '.join(group.states) or 'none'}"
-    yield f"  TCP: {report.tcp_link or 'none'}"
-    yield f"  gripper: {report.gripper or 'none'}"
+    for arm in report.arms or (ArmLine("", report.tcp_link, report.gripper),):
+        begin = f"  {arm.name}, " if arm.name else "  "
+        yield f"{begin}TCP: {arm.tcp_link or 'none'}"
+        yield f"{begin}gripper: {arm.gripper or 'none'}"
 
 
 def _proposal(proposal: Mapping[str, tuple[tuple[str, str], ...]]) -> Iterator[str]:

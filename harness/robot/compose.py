@@ -14,6 +14,7 @@ from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.robot.description import (
     WORLD,
+    Arm,
     Cup,
     Gripper,
     Joint,
@@ -44,6 +45,8 @@ class RobotPart:
         source: Its name in messages.
         notes: Notes on ignored elements and assumptions.
         rejected_grippers: Why parts that look like grippers are none, a sentence each.
+        arms: The arms of a robot with several; the facts are those of the first.
+        default_arm: The arm that the scenario states; empty where it states none.
     """
 
     name: str
@@ -53,6 +56,25 @@ class RobotPart:
     source: str
     notes: tuple[str, ...] = ()
     rejected_grippers: tuple[str, ...] = ()
+    arms: tuple[PartArm, ...] = ()
+    default_arm: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class PartArm:
+    """One of several arms of a part.
+
+    Attributes:
+        group: The name of its planning group.
+        tcp_link: The link whose pose is the arm's TCP.
+        base_link: The first link of the arm.
+        gripper: What is known of its gripper; None for an arm without one.
+    """
+
+    group: str
+    tcp_link: str
+    base_link: str
+    gripper: GripperFacts | None
 
 
 def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -> RobotDescription:
@@ -92,6 +114,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     srdf = replace(srdf, disabled=_allowed(srdf, tree_links, tree_joints, source))
     facts = next((part.facts.gripper for part in parts[::-1] if part.facts.gripper), None)
     bounds = first.facts.controller_tolerances
+    hand = None if facts is None else _gripper(facts)
     return RobotDescription(
         name=source,
         urdf=write_urdf(source, tree_links, tree_joints),
@@ -102,7 +125,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         named_states=srdf.states,
         allowed_collisions=srdf.disabled,
         arm_group="" if arm is None else arm.facts.arm_group or "",
-        gripper=None if facts is None else _gripper(facts),
+        gripper=hand,
         tcp_link=tcp_link,
         base_link=first.urdf.root,
         start_state=_start_state(parts, srdf),
@@ -118,6 +141,16 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         },
         notes=tuple(note for part in parts for note in part.notes),
         rejected_grippers=tuple(why for part in parts for why in part.rejected_grippers),
+        arms=tuple(
+            Arm(
+                each.group,
+                each.tcp_link if number else tcp_link,
+                each.base_link,
+                (each.gripper and _gripper(each.gripper)) if number else hand,
+            )
+            for number, each in enumerate(first.arms)
+        ),
+        default_arm=first.default_arm,
     )
 
 

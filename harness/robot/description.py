@@ -21,6 +21,9 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.robot.task_space import TaskSpace
 
+ALL_ARMS = "arms"
+"""Name of the planning group of the joints of all arms, of a robot with several."""
+
 WORLD = "world"
 """Name of the root link of every composed robot, in which poses are in world coordinates."""
 

@@ -20,7 +20,7 @@ from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
 from harness.robot.robot_format import read_foreign_robot
 from harness.robot.srdf.check import checked_srdf
-from harness.robot.srdf.default_group import DEFAULT_GROUP, default_srdf
+from harness.robot.srdf.default_group import default_srdf
 from harness.robot.srdf.read import read_srdf
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf, parse_urdf
@@ -89,9 +89,11 @@ def _check_limits(spec: RobotSpec, urdf: Urdf, base_dir: Path) -> None:
 
 
 def _default_srdf(spec: RobotSpec, urdf: Urdf, states: Sequence[NamedState]) -> Srdf:
-    """The SRDF of a robot that has none, with an MJCF's keyframes as states of its group."""
+    """The SRDF of a robot that has none, with an MJCF's keyframes as states of its groups."""
     srdf = default_srdf(urdf, spec.tcp_link or "")
-    return replace(srdf, states=tuple(replace(state, group=DEFAULT_GROUP) for state in states))
+    groups = [group.name for group in srdf.groups]
+    named = tuple(replace(state, group=group) for group in groups for state in states)
+    return replace(srdf, states=named)
 
 
 def _srdf(parsed: Srdf, urdf: Urdf, states: Sequence[NamedState], source: str) -> Srdf:

@@ -12,13 +12,15 @@ from harness.core.errors import RobotError, RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
 from harness.robot.assumed_limits import ACCELERATION, VELOCITY
-from harness.robot.compose import RobotPart
+from harness.robot.compose import PartArm, RobotPart
 from harness.robot.description import Joint, PlanningGroup
 from harness.robot.gripper.find_hand import hand_candidates, named_hand
 from harness.robot.gripper.inferred_gripper import IntegratedGripper, NoGripperError, recognise
 from harness.robot.gripper.inferred_tcp import tcp_without_gripper, with_integrated_gripper
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import RobotYaml
+from harness.robot.srdf.all_arms import with_group_of_all
+from harness.robot.srdf.default_group import DEFAULT_GROUP, MOST_FINGER_JOINTS
 from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf
@@ -93,6 +95,13 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         tcp_link = spec.tcp_link or tip
     else:
         tcp_link = tcp_without_gripper(urdf, srdf, arm, tip)
+    arms = [PartArm(arm.name, tcp_link, arm.base_link, gripper)]
+    for other in other_arms(arm, srdf, groups):
+        urdf, srdf, added = _other_arm(spec, urdf, srdf, other, source, notes)
+        arms.append(added)
+    is_stated = bool(spec.group or spec.tcp_link or spec.gripper)
+    if len(arms) > 1:
+        srdf = with_group_of_all(srdf, [each.group for each in arms])
     facts = RobotYaml(
         robot=name,
         kind="arm",
@@ -107,7 +116,48 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
         start_state=StartState(joints=start),
         gripper=gripper,
     )
-    return RobotPart(name, facts, urdf, srdf, source, tuple(notes), tuple(rejected))
+    return RobotPart(
+        name,
+        facts,
+        urdf,
+        srdf,
+        source,
+        tuple(notes),
+        tuple(rejected),
+        arms=tuple(arms) if len(arms) > 1 else (),
+        default_arm=arm.name if len(arms) > 1 and is_stated else "",
+    )
+
+
+def other_arms(
+    first: PlanningGroup, srdf: Srdf, groups: Mapping[str, PlanningGroup]
+) -> list[PlanningGroup]:
+    """The arms besides the first: chains of other joints that carry a tool, or are no fingers."""
+    parents = {tool.parent_group for tool in srdf.end_effectors}
+    found = [first]
+    for group in groups.values():
+        is_chain = bool(group.tip_link and group.joint_names)
+        is_arm = group.name in parents or len(group.joint_names) > MOST_FINGER_JOINTS
+        taken = {name for each in found for name in each.joint_names}
+        if is_chain and is_arm and taken.isdisjoint(group.joint_names):
+            found.append(group)
+    return found[1:]
+
+
+def _other_arm(
+    spec: RobotSpec, urdf: Urdf, srdf: Srdf, arm: PlanningGroup, source: str, notes: list[str]
+) -> tuple[Urdf, Srdf, PartArm]:
+    """An arm besides the first, with its own gripper if it has one, found as that of the first."""
+    groups = planning_groups(srdf, urdf.joints, source)
+    rejected = list[str]()
+    named = spec.model_copy(update={"gripper": None})
+    own = _own_gripper(named, urdf, srdf, groups, arm, rejected)
+    if own is None:
+        notes += rejected
+        tcp = tcp_without_gripper(urdf, srdf, arm, arm.tip_link)
+        return urdf, srdf, PartArm(arm.name, tcp, arm.base_link, None)
+    urdf, srdf, tcp = with_integrated_gripper(own, arm, arm.tip_link, None, notes)
+    return urdf, srdf, PartArm(arm.name, tcp, arm.base_link, own.facts)
 
 
 def names_integrated_gripper(name: str | None, srdf: Srdf) -> bool:
@@ -191,6 +241,8 @@ def _arm_group(
     written = {group.name: group for group in srdf.groups}
     chains = [group for group in movable.values() if group.tip_link]
     single = [group for group in chains if not written[group.name].subgroups]
+    if spec.srdf is None and len(single) > 1:  # arms of which the first is the default's
+        single = [group for group in single if group.name != DEFAULT_GROUP]
     candidates = single or chains or list(movable.values())
     if not candidates:
         raise RobotError(f"{source}: no group has a joint that moves: there is no arm to plan for")

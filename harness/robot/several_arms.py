@@ -8,6 +8,7 @@ from dataclasses import replace
 from harness.core.errors import RobotError, RobotOptionError
 from harness.robot.compose import refuse_clashes
 from harness.robot.description import (
+    ALL_ARMS,
     WORLD,
     Arm,
     Gripper,
@@ -18,12 +19,10 @@ from harness.robot.description import (
     TrackingTolerances,
 )
 from harness.robot.groups import planning_groups
+from harness.robot.srdf.all_arms import with_group_of_all
 from harness.robot.srdf.srdf import Srdf, SrdfGroup, link_pair, parse_srdf, write_srdf
 from harness.robot.tree import in_tree_order
 from harness.robot.urdf.write import write_urdf
-
-ALL_ARMS = "arms"
-"""The planning group of the joints of all arms."""
 
 Name = Callable[[str], str]
 
@@ -183,24 +182,15 @@ def _joined_srdf(parts: list[Srdf], arms: list[str], source: str) -> Srdf:
             f"{source}: several planning groups would be called {', '.join(twice)}: give an arm"
             " another name"
         )
-    states = {(each.group, each.name): each for part in parts for each in part.states}
-    shared = [
-        NamedState(
-            name,
-            ALL_ARMS,
-            {k: v for arm in arms for k, v in states[arm, name].positions.items()},
-        )
-        for group, name in states
-        if group == arms[0] and all((arm, name) in states for arm in arms)
-    ]
-    return Srdf(
-        groups=(*groups, SrdfGroup(ALL_ARMS, subgroups=tuple(arms))),
-        states=(*states.values(), *shared),
+    whole = Srdf(
+        groups=tuple(groups),
+        states=tuple(state for part in parts for state in part.states),
         end_effectors=tuple(tool for part in parts for tool in part.end_effectors),
         passive=tuple(name for part in parts for name in part.passive),
         disabled={pair: why for part in parts for pair, why in part.disabled.items()},
         virtual_joints=tuple(joint for part in parts for joint in part.virtual_joints),
     )
+    return with_group_of_all(whole, arms)
 
 
 def _widest(tolerances: list[TrackingTolerances]) -> TrackingTolerances:

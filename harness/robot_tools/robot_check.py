@@ -20,7 +20,7 @@ from harness.planning.collision.pair_statistics import (
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.trial import try_ik
-from harness.reporting.robot_report import GroupLine, RobotFinding, RobotReport
+from harness.reporting.robot_report import ArmLine, GroupLine, RobotFinding, RobotReport
 from harness.robot.description import Joint, RobotDescription
 from harness.robot_tools import robot_findings as look_at
 
@@ -80,6 +80,10 @@ def check_robot(
         arm_group=description.arm_group,
         tcp_link=description.tcp_link,
         gripper=_gripper(description, kinematics),
+        arms=tuple(
+            ArmLine(name, robot.tcp_link, _gripper(robot, kinematics))
+            for name, robot in description.of_arm.items()
+        ),
         findings=findings,
         notes=tuple(note for note in description.notes if note not in reported),
         proposal=_proposal(touches) if propose else {},

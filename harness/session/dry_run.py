@@ -19,7 +19,7 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
-from harness.ports.motions import FreeMotion, JointMotion
+from harness.ports.motions import FreeMotion, JointMotion, TimedMotion
 from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
@@ -187,6 +187,8 @@ class DryPlanner:
             request = replace(request, motion=FreeMotion(motion.goal))
         if isinstance(request.motion, FreeMotion):
             return self._jump(request)
+        if isinstance(request.motion, TimedMotion):  # of motions that have no times here
+            return MotionPlan(request.motion.trajectory, Details(), Details())
         options = replace(request.options, path_only=True)
         return self._planner.plan(replace(request, options=options))
 

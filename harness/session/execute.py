@@ -64,6 +64,24 @@ class _Runner:
         for step in steps:
             self._run_step(step)
 
+    def run_together(self, steps: Sequence[ProgramStep]) -> tuple[float, ...]:
+        """Plan the motions of steps of different arms, then carry them out at once.
+
+        Returns:
+            When each of them begins [s].
+        """
+        cell, first = self.cell, len(self.records)
+        around, cell.waiting = (cell.step, cell.notes), []
+        try:
+            self.run(steps)
+        finally:
+            motions, cell.waiting = cell.waiting, None
+            cell.step, cell.notes = around
+        delays = cell.follow_together(motions)
+        ends = {"end_time": cell.simulator.time, "end_index": cell.simulator.sample_count}
+        self.records[first:] = [replace(each, **ends) for each in self.records[first:]]
+        return delays
+
     def _run_step(self, step: ProgramStep) -> None:
         cell = self.cell
         self.on_step(step, None)
@@ -146,6 +164,7 @@ class ProgramExecution:
             simulator=simulator,
             later_objects=program.later_objects,
             run_steps=lambda steps: self._runner.run(steps),
+            run_together=lambda steps: self._runner.run_together(steps),
             cameras=program.cameras,
             external=external,
         )

@@ -38,19 +38,7 @@ def sample_trajectory(trajectory: JointTrajectory, timestep: float) -> SetPoints
     if len(trajectory.times) < 2:
         still = np.zeros_like(trajectory.positions)
         return SetPoints(trajectory.positions, still, still)
-    knots = trajectory.times
-    times = np.minimum(np.arange(count + 1) * timestep, knots[-1])
-    segment = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
-    length = (knots[segment + 1] - knots[segment])[:, None]
-    s = (times[:, None] - knots[segment, None]) / length
-    start, end = trajectory.positions[segment], trajectory.positions[segment + 1]
-    out = length * trajectory.velocities[segment]
-    into = length * trajectory.velocities[segment + 1]
-    square = 3.0 * (end - start) - 2.0 * out - into
-    cube = out + into - 2.0 * (end - start)
-    positions = start + s * (out + s * (square + s * cube))
-    velocities = (out + s * (2.0 * square + 3.0 * s * cube)) / length
-    accelerations = (2.0 * square + 6.0 * s * cube) / length**2
+    positions, velocities, accelerations = trajectory.at(np.arange(count + 1) * timestep)
     accelerations[-1] = 0.0
     return SetPoints(positions, velocities, accelerations)
 

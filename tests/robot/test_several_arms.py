@@ -75,3 +75,79 @@ def test_arms_have_the_same_joint_controller():
     other = robot({"model": "ur3e", "joint_controller": "pd_servo"}, 1.0)
     with pytest.raises(RobotOptionError, match="joint_controller"):
         joined_arms({"a": robot({"model": "ur3e"}), "b": other})
+
+
+FINGER = """<link name="{name}"><inertial><mass value="0.02"/>
+<inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/></inertial>
+<collision><origin xyz="0 0 0.03"/><geometry><box size="0.01 0.01 0.06"/></geometry>
+</collision></link><joint name="{name}_slide" type="prismatic"><parent link="{parent}"/>
+<child link="{name}"/><origin xyz="{x} 0 0.1"/><axis xyz="{axis} 0 0"/>
+<limit lower="0" upper="0.04" velocity="0.5" effort="20"/>{mimic}</joint>"""
+LINK = """<link name="{name}"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/>
+</inertial><collision><origin xyz="0 0 0.05"/><geometry><box size="0.04 0.04 0.08"/></geometry>
+</collision></link><joint name="{name}_joint" type="revolute"><parent link="{parent}"/>
+<child link="{name}"/><origin xyz="{x} 0 0.1"/><axis xyz="{axis}"/>
+<limit lower="-2" upper="2" velocity="2" effort="50"/></joint>"""
+
+
+def side(name, x, joints):
+    """An arm with two fingers, of which the second follows the first."""
+    links = ["body", *(f"{name}_{number}" for number in range(joints))]
+    text = ""
+    for number in range(joints):
+        words = {"name": links[number + 1], "parent": links[number], "x": 0 if number else x}
+        text += LINK.format(**words, axis="0 0 1" if number % 2 == 0 else "0 1 0")
+    mimic = f'<mimic joint="{name}_near_slide"/>'
+    text += FINGER.format(name=f"{name}_near", parent=links[-1], x=-0.01, axis="-1", mimic="")
+    return text + FINGER.format(name=f"{name}_far", parent=links[-1], x=0.01, axis="1", mimic=mimic)
+
+
+def two_armed(folder, joints=6, **options):
+    sides = side("l", -0.4, joints) + side("r", 0.4, joints)
+    text = f"<robot name='two'><link name='body'/>{sides}</robot>"
+    (folder / "two.urdf").write_text(text, encoding="utf-8")
+    return load_robot(RobotSpec.model_validate({"urdf": "two.urdf", **options}), folder)
+
+
+SRDF = """<robot name="two">
+<group name="one_arm"><chain base_link="body" tip_link="l_5"/></group>
+<group name="other_arm"><chain base_link="body" tip_link="r_5"/></group>
+<group name="one_hand"><joint name="l_near_slide"/></group>
+<group name="other_hand"><joint name="r_near_slide"/></group>
+<end_effector name="a" parent_link="l_5" group="one_hand" parent_group="one_arm"/>
+<end_effector name="b" parent_link="r_5" group="other_hand" parent_group="other_arm"/>
+</robot>"""
+
+
+@pytest.mark.parametrize("joints", [5, 6])
+def test_a_file_with_two_arms_has_an_arm_for_each(tmp_path, joints):
+    found = two_armed(tmp_path, joints)
+    assert found.needs_arm
+    assert [arm.name for arm in found.arms] == ["l", "r"]
+    assert [arm.gripper.joint for arm in found.arms] == ["l_near_slide", "r_near_slide"]
+    for arm in found.arms:
+        assert found.groups[arm.name].tip_link == arm.tcp_link
+    assert len(found.group_joints(ALL_ARMS)) == 2 * joints
+
+
+def test_an_srdf_names_arms_by_its_end_effectors(tmp_path):
+    (tmp_path / "two.srdf").write_text(SRDF, encoding="utf-8")
+    found = two_armed(tmp_path, srdf="two.srdf")
+    grippers = {arm.name: arm.gripper.group for arm in found.arms}
+    assert grippers == {"one_arm": "one_hand", "other_arm": "other_hand"}
+    stated = two_armed(tmp_path, srdf="two.srdf", group="other_arm")
+    assert stated.default_arm == "other_arm"
+    assert stated.arms[0].name == stated.arm_group == "other_arm"
+
+
+@pytest.mark.parametrize("joints", [2, 4])
+def test_chains_as_short_as_fingers_are_no_arms(tmp_path, joints):
+    found = two_armed(tmp_path, joints)
+    assert not found.arms
+
+
+def test_a_stated_tcp_says_which_arm_is_the_default(tmp_path):
+    found = two_armed(tmp_path, tcp_link="r_5")
+    assert found.arm_group == "arm"
+    assert found.default_arm in ("", "arm")
+    assert found.groups["arm"].joint_names == tuple(f"r_{number}_joint" for number in range(6))

@@ -9,6 +9,7 @@ from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.released import Released
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
+from harness.steps.parallel import Delays
 
 PAIR = """\
 robots:
@@ -148,3 +149,80 @@ def test_a_mistake_under_an_arm_is_there(tmp_path):
 def test_one_arm_or_several(tmp_path):
     [(_, message, _)] = found(tmp_path, "  - wait: 1\n", robot=f"robot: ur3e\n{PAIR}")
     assert message == "`robot` is one arm, and `robots` are several: give one of the two"
+
+
+@pytest.mark.parametrize("y", [0.3, 0.24])
+def test_arms_whose_bases_stand_inside_each_other(y, tmp_path):
+    robot = PAIR.replace("[0, -0.3, 0]", f"[0, {y}, 0]")
+    [(line, message, hint)] = found(tmp_path, "  - wait: 1\n", robot=robot)
+    assert line == 4
+    assert message.startswith("'left' and 'right' stand inside each other: left_base_link_inertia")
+    assert hint == "give one of them another `base`"
+
+
+SWAP = f"""
+scenario: one arm leaves, the other one comes
+{PAIR}
+steps:
+  - move_to: {{pose: {{xyz: [0.3, 0.0, 0.25], rpy: [180 deg, 0, 0]}}}}
+    robot: left
+  - move_to: {{pose: {{xyz: [0.3, -0.25, 0.25], rpy: [180 deg, 0, 0]}}}}
+    robot: right
+  - parallel:
+      - lin: {{pose: {{xyz: [0.3, 0.4, 0.25], rpy: [180 deg, 0, 0]}}}}
+        robot: left
+        planning: {{max_velocity_scaling_factor: 0.05}}
+      - lin: {{pose: {{xyz: [0.3, 0.0, 0.25], rpy: [180 deg, 0, 0]}}}}
+        robot: right
+  - parallel:
+      - gripper: closed
+        robot: left
+      - move_to: up
+        robot: right
+expect:
+  - never: collision
+  - always: within_limits
+  - tcp_pose: {{pose: {{xyz: [0.3, 0.4, 0.25], rpy: [180 deg, 0, 0]}}, by: left}}
+  - gripper: {{named_target: closed, by: left}}
+"""
+
+
+def test_an_arm_waits_until_the_other_one_has_left(recorded_run):
+    stored = read_run(recorded_run(SWAP) / "run")
+    assert all(verdict.status == "passed" for verdict in stored.verdicts)
+    steps = {step.path: step for step in stored.run.steps}
+    whole = steps["steps[2]"]
+    first, second = (steps[f"steps[2].parallel[{number}]"] for number in range(2))
+    begins = whole.result.find(Delays).delays
+    assert begins[0] == 0 < begins[1] <= first.trajectory.duration
+    pairs = zip(begins, (first, second), strict=True)
+    ends = [begin + step.trajectory.duration for begin, step in pairs]
+    assert whole.trajectory.duration == pytest.approx(max(ends))
+    assert (first.end_time, second.end_time) == (whole.end_time, whole.end_time)
+
+
+def at_once(*steps):
+    return "  - parallel:\n" + "".join(f"      - {step}\n        {arm}\n" for step, arm in steps)
+
+
+@pytest.mark.parametrize(
+    ("second", "message"),
+    [
+        (("lin: {pose: {xyz: [0.3, 0, 0.3]}}", "robot: left"), "two motions of 'left'"),
+        (("move_to: up", "group: arms"), "a motion that is of no single arm"),
+    ],
+)
+def test_motions_at_once_are_of_different_arms(second, message, tmp_path):
+    problems = found(tmp_path, at_once(("move_to: up", "robot: left"), second))
+    assert f"{message} cannot run at once with others" in [each[1] for each in problems]
+
+
+def test_two_arms_at_one_place_are_refused_with_the_pair(tmp_path):
+    goal = "move_to: {pose: {xyz: [0.3, 0, 0.25], rpy: [180 deg, 0, 0]}}"
+    text = at_once((goal, "robot: left"), (goal, "robot: right"))
+    path = tmp_path / "a.scenario.yaml"
+    path.write_text(f"scenario: a test\n{PAIR}steps:\n{text}", encoding="utf-8")
+    failure = check_file(path).predicted[-1]
+    assert failure.message.startswith("GOAL_IN_COLLISION")
+    assert "left_" in failure.message
+    assert "right_" in failure.message

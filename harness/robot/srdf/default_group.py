@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import combinations, takewhile
 
 from harness.robot.description import Joint
 from harness.robot.gripper.inferred_gripper import SHARED_RANGE, is_gripper
@@ -49,7 +49,30 @@ def default_srdf(urdf: Urdf, tip_link: str = "") -> Srdf:
             f" tcp_link: {others}"
         )
     group = SrdfGroup(DEFAULT_GROUP, chains=((urdf.root, tips[0]),))
-    return Srdf((group,), notes=tuple(notes))
+    return Srdf((*_sides(tips, urdf), group), notes=tuple(notes))
+
+
+def _sides(tips: Sequence[str], urdf: Urdf) -> list[SrdfGroup]:
+    """A group for each of several arms, from where they part; none where they are no arms.
+
+    Its name is what the names of its joints begin with, up to a separator: `left` of `left_elbow`.
+    """
+    chains = [joints_to(tip, urdf.joints) for tip in tips]
+    shared = sum(len({joint.name for joint in row}) == 1 for row in zip(*chains, strict=False))
+    own = [chain[shared:] for chain in chains]
+    if len(tips) < 2 or any(len(_driven(chain)) <= MOST_FINGER_JOINTS for chain in own):
+        return []
+    names = [_shared_words([joint.name for joint in _driven(chain)]) for chain in own]
+    if len({*names, "", DEFAULT_GROUP}) < len(names) + 2:
+        names = [f"{DEFAULT_GROUP}_{number}" for number in range(1, len(names) + 1)]
+    ends = zip(names, own, tips, strict=True)
+    return [SrdfGroup(name, chains=((chain[0].parent, tip),)) for name, chain, tip in ends]
+
+
+def _shared_words(names: Sequence[str]) -> str:
+    """What names have in common at their beginning, up to a separator: `left` of `left_elbow`."""
+    rows = takewhile(lambda row: len(set(row)) == 1, zip(*names, strict=False))
+    return re.sub(r"[^A-Za-z0-9]*[A-Za-z0-9]*$", "", "".join(row[0] for row in rows))
 
 
 def _with_a_body(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:

@@ -86,12 +86,12 @@ def _pairs_apart_by_design(
     upper = np.array([joint.upper for joint in description.movable_joints])
     zero = description.with_mimics(np.clip(np.zeros(len(lower)), lower, upper))
     still = LinkPoses(description.joints, zero[None])
-    hand = description.gripper
-    moved_by_hand = set[str]() if hand is None else {*hand.links, hand.palm_link}
+    hands = [{*hand.links, hand.palm_link} for hand in description.grippers]
     found: dict[Pair, float] = {}
     for first, second in sorted(description.allowed_collisions):
         is_rigid = robot.parent_joint(first) == robot.parent_joint(second)
-        if {first, second} <= set(shapes) and not is_rigid and not {first, second} <= moved_by_hand:
+        is_hand = any({first, second} <= hand for hand in hands)
+        if {first, second} <= set(shapes) and not is_rigid and not is_hand:
             pairs = _shape_pairs(shapes, still, first, second)
             at_zero = min(pair.distance(0) for pair in pairs)
             if at_zero > LEAST_DEPTH:
