@@ -26,7 +26,8 @@ def refuse_overlapping_bases(loaded: LoadedScenario, robot: RobotDescription) ->
     for first, second in combinations(fixed, 2):
         for one, other in product(sorted(fixed[first]), sorted(fixed[second])):
             bodies = [MovingBody(shapes[name], link_track(poses, name)) for name in (one, other)]
-            depth = -min(pair.distance(0) for pair in pairs_between([bodies[0]], bodies[1], 1.0))
+            near = pairs_between([bodies[0]], bodies[1], 0.0)  # none where the boxes are apart
+            depth = -min((pair.distance(0) for pair in near), default=0.0)
             if depth > LEAST_DEPTH:
                 message = (
                     f"'{first}' and '{second}' stand inside each other: {one} and {other} overlap"

@@ -226,3 +226,9 @@ def test_two_arms_at_one_place_are_refused_with_the_pair(tmp_path):
     assert failure.message.startswith("GOAL_IN_COLLISION")
     assert "left_" in failure.message
     assert "right_" in failure.message
+
+
+@pytest.mark.parametrize("y", [-0.3, 0.9, 9.0])
+def test_arms_that_stand_apart(y, tmp_path):
+    robot = PAIR.replace("[0, -0.3, 0]", f"[0, {y}, 0]")
+    assert not found(tmp_path, "  - wait: 1\n", robot=robot)
