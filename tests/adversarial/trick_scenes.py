@@ -189,7 +189,7 @@ TRICK_SCENES = (
         "steps move the table up by 2 cm, half a millimetre at a time; the box rides on it",
         "objects:\n" + TABLE + CUBE % "0.3, 0.2, 0.12" + "steps:\n  - wait: 0.1 s\n"
         + "".join(
-            "  - move_object: {object: table, pose: {xyz: [0.3, 0.2, %.4f]}}\n  - wait: 10 ms\n"
+            "  - move_object: {object: table, pose: {xyz: [0.3, 0.2, %.4f]}}\n  - wait: 50 ms\n"
             % (0.05 + 0.0005 * k) for k in range(1, 41)
         ) + "  - wait: 1 s\n",
         "it rose by 1 cm, is released, and stands on the table",
