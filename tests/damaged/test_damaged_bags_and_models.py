@@ -94,6 +94,8 @@ def test_a_table_name_that_is_no_text_is_no_traceback(base, tmp_path):
         ("<size>0.2 0.2 0.1</size>", "<size>0.2 1e308 0.1</size>", "1e+308 is too large"),
         ("<gravity>0 0 -9.8</gravity>", "<gravity>0 0 1e308</gravity>", "1e+308 is too large"),
         ("<mass>0.2</mass>", "<mass>1e308</mass>", "1e+308 is too large"),
+        ("<mass>0.2</mass>", "<mass>5e-324</mass>", "is too small"),
+        ("<mass>0.2</mass>", "<mass>1e-12</mass>", "1e-12 is too small"),
         ("<pose>0.3 0 0.05 0 0 0</pose>", "<pose>-1e308 0 0 0 0 0</pose>", "is too large"),
         ("<far>10</far>", "<far>1e308</far>", "1e+308 is too large"),
     ],

@@ -85,6 +85,8 @@ def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
                 return _path_to_mark("\n".join(lines) + MARK + end)
             except yaml.MarkedYAMLError as error:
                 broken = error.problem_mark.line if error.problem_mark else line
+            except yaml.YAMLError as error:  # of characters, which have no mark
+                raise ValueError("the text has characters that YAML does not know") from error
         if broken < line:
             lines[broken] = ""
     raise ValueError("this line is not YAML")

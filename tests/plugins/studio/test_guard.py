@@ -139,6 +139,10 @@ def test_a_bad_request_is_answered_and_harms_nothing(served):
     hovered = {"text": "scenario: x\n", "line": 1}
     for column in (float("inf"), float("nan"), [], {}):
         assert "bad request" in served.reply_to("hover", column=column, **hovered)["error"]
+    for text in ("\0", "a: \x07", "\ud800"):
+        reply = served.reply_to("complete", text=text, line=0, column=1)
+        assert {"error", "options"} & reply.keys(), reply
+    assert "bad request" in served.reply_to("complete", text="a", line=-1, column=1)["error"]
     assert served.reply_to("reset") == {}
 
 

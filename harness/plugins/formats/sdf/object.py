@@ -35,7 +35,7 @@ def object_of(body: SdfBody, reader: ShapeReader) -> ObjectSpec | None:
         words["static"] = True
     else:
         words |= mass_words(together(masses))
-    return ObjectSpec(**words, **look_words(shapes, visuals))
+    return validated(ObjectSpec, {**words, **look_words(shapes, visuals)}, first.element)
 
 
 def part_of(body: SdfBody, joint: SdfJoint, fixture: SE3, reader: ShapeReader) -> JointSpec | None:
