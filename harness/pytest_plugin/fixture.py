@@ -40,7 +40,7 @@ def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
         root = report_root(config)
         name = re.sub(r"[^\w.-]+", "_", request.node.name)
         folder = None if root is None else root / "tests" / f"{name}-{count}"
-        return run_scenario(
+        result = run_scenario(
             _found(request, scenario),
             overrides=overrides,
             seed=seed,
@@ -48,6 +48,9 @@ def runner_of(request: pytest.FixtureRequest) -> Callable[..., ScenarioResult]:
             report_dir=folder,
             runner=run_in_process if config.getoption("--harness-in-process") else isolated,
         )
+        if not result:  # `assert result` alone says no more than its title
+            request.node.add_report_section("call", "scenario", str(result))
+        return result
 
     return run
 

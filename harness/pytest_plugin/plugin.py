@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from fnmatch import fnmatch
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from harness.pytest_plugin.session_options import RECORD, report_root
+from harness.pytest_plugin.session_options import MARGIN, RECORD, report_root
 
 if TYPE_CHECKING:
     from harness.pytest_plugin.item import ScenarioFile
@@ -112,7 +113,25 @@ def pytest_runtest_makereport(
     record = getattr(item, RECORD, None)
     if record is not None and call.when == "call":
         setattr(report, RECORD, record)
+        if item.config.pluginmanager.hasplugin("html"):
+            from harness.pytest_plugin.html_report import add_to_html
+            from harness.pytest_plugin.session_files import from_plains
+
+            [kept] = from_plains([record])
+            add_to_html(report, item.config, kept.cases)
     return report
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_html_results_table_header(cells: list[str]) -> None:
+    """Add a column to the table of pytest-html."""
+    cells.insert(2, "<th>Worst margin</th>")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_html_results_table_row(report: pytest.TestReport, cells: list[str]) -> None:
+    """Fill that column, which is empty of tests that are no scenarios."""
+    cells.insert(2, f"<td>{escape(getattr(report, MARGIN, ''))}</td>")
 
 
 @pytest.fixture

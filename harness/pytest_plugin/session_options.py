@@ -10,6 +10,7 @@ import pytest
 if TYPE_CHECKING:
     from harness.suite.warm import WarmServer
 
+MARGIN = "harness_margin"  # attribute of a test report that holds the worst margin in words
 RECORD = "harness_record"  # attribute of a test report that holds an item's record as plain data
 
 SERVER = pytest.StashKey["WarmServer"]()

@@ -58,6 +58,12 @@ class ScenarioResult:
     def __repr__(self) -> str:
         return f"ScenarioResult({self.case.outcome}: {self.case.title})"
 
+    def _repr_html_(self) -> str:
+        """The outcome, its verdicts and a picture, as Jupyter shows a result."""
+        from harness.reporting.notebook import result_html
+
+        return result_html(self.case)
+
     def __str__(self) -> str:
         """Why it did not pass, as the terminal says it."""
         if self.passed:

@@ -34,7 +34,7 @@ def test_the_page_of_a_scenario_is_attached_to_its_test(pytester):
     done.assert_outcomes(passed=1)
     [margins, page] = attachments(pytester.path / "allure")["Stands still"]
     assert margins[0] == "text/csv"
-    assert b"always: within_limits,,passed,0." in margins[1]
+    assert b"always: joints are within limits,,passed,0." in margins[1]
     assert page[0] == "text/html"
     assert b"Stands still" in page[1]
 

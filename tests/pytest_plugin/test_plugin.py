@@ -1,3 +1,4 @@
+import html
 import json
 import os
 import re
@@ -213,6 +214,30 @@ def test_the_fixture_runs_scenarios_of_tests_written_by_hand(pytester, write):
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.re_match_lines([r"E +AssertionError: failed", r"E +fails.scenario.yaml:8: .*"])
     assert (pytester.path / "reports/tests/test_holds-1/run.json").is_file()
+
+
+def test_a_row_of_pytest_html_has_the_margin_the_picture_and_the_page(pytester, write):
+    write(holds=HOLDS, fails=FAILS)
+    pytester.makepyfile(
+        """
+        def test_by_hand(harness_scenario):
+            assert harness_scenario("fails.scenario.yaml")
+        """
+    )
+    words = ("--html=out/report.html", "--self-contained-html", "-p", "no:cacheprovider")
+    pytester.runpytest_subprocess(*words).assert_outcomes(passed=1, failed=2)
+    page = html.unescape((pytester.path / "out/report.html").read_text())
+    tests = json.loads(re.search(r'data-jsonblob="(\{.*?\})"></div>', page, re.DOTALL)[1])["tests"]
+    rows = {name.split("::")[-1]: row for name, (row,) in tests.items()}
+    failed = rows["Too short"]
+    assert any("duration is at" in cell for cell in failed["resultsTableRow"])
+    kinds = {each["format_type"]: each["content"] for each in failed["extras"]}
+    assert kinds["url"].startswith("../reports/fails/report.html#")
+    assert kinds["image"].startswith("data:image/webp;base64,")
+    assert "duration is at" in kinds["html"]
+    assert "fails.scenario.yaml:8: duration is at" in failed["log"]
+    assert "CaseResult(" not in failed["log"]
+    assert "fails.scenario.yaml:8: duration is at" in rows["test_by_hand"]["log"]
 
 
 @pytest.mark.nightly

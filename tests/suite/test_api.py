@@ -83,6 +83,7 @@ def test_a_failure_says_why_and_wrong_names_what_there_is():
     result = harness.run(Scenario(**WAITS, expect=[DurationCheck(at_least=1.0)]))
     assert not result
     assert "duration is at least 1.0 s" in str(result)
+    assert "duration is at least 1.0 s" in result._repr_html_()
     with pytest.raises(LookupError, match=r"0 have 'lifted': duration is at least 1"):
         result.verdict("lifted")
     with pytest.raises(LookupError, match=r"0 have 'x': steps\[0\]"):

@@ -1,25 +1,59 @@
-"""The picture of a report that shows a failure best."""
+"""The picture of the moment that decided a case."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+from harness.recording.step_record import is_nested
+from harness.reporting.result import CaseResult
 from harness.reporting.suite.record import SuiteCase
-from harness.reporting.terminal import root_failures
 
 
 def picture_of(case: SuiteCase) -> str:
-    """The path of the picture of the step that failed, else of the last one; empty without one.
+    """The path of the picture of what failed; empty without one, or where the case passed."""
+    still = None if case.result.outcome == "passed" else deciding_still(case.result)
+    return str(still or "")
 
-    Pictures are named after the steps that they show: `03-pick-lift.jpg`.
+
+def deciding_still(result: CaseResult) -> Path | None:
+    """The picture of the step within which a case failed, else of the last one.
+
+    Pictures are numbered as the steps that were carried out: `03-pick-lift.jpg`; what explains a
+    failure comes last.
     """
-    if not case.result.report_dir or case.result.outcome == "passed":
-        return ""
-    pictures = sorted(Path(case.result.report_dir, "images").glob("*.jpg"))
-    failed = [step.id for step in root_failures(case.result.steps)]
-    failed += [each.step for each in case.result.verdicts if each.status != "passed" and each.step]
-    for step in filter(None, failed):
-        found = [each for each in pictures if each.stem.partition("-")[2].startswith(step)]
-        if found:
-            return str(found[-1])
-    return str(pictures[-1]) if pictures else ""
+    if not result.report_dir:
+        return None
+    number = _deciding_step(result)
+    files = sorted(Path(result.report_dir, "images").glob(f"{number:02d}-*.jpg"))
+    return files[-1] if files else None
+
+
+def deciding_picture(result: CaseResult, width: int) -> bytes | None:
+    """The same picture as WebP of a width [pixels]."""
+    still = deciding_still(result)
+    if still is None:
+        return None
+    from harness.reporting.html.still import small_still  # loads OpenCV
+
+    return small_still(still, width)
+
+
+def _deciding_step(result: CaseResult) -> int:
+    """The number of the step, from 1, at whose end or within which a case failed."""
+    steps = [step for step in result.steps if step.status != "not reached"]
+    inner = [
+        (number, step)
+        for number, step in enumerate(steps, start=1)
+        if not any(is_nested(other.path, step.path) for other in steps)
+    ]
+    for number, step in inner:
+        if step.status == "failed":
+            return number
+    verdict = next((each for each in result.verdicts if each.status != "passed"), None)
+    time, end = math.inf if verdict is None else verdict.time, 0.0
+    for number, step in inner:
+        end += step.sim_time
+        if end >= time - 1e-9:
+            return number
+    return inner[-1][0] if inner else 1

@@ -10,9 +10,10 @@ from harness.reporting.html.packing import Packer
 from harness.reporting.sampled import missed, rate_text
 from harness.reporting.suite.campaign import campaign_of
 from harness.reporting.suite.columns import Columns
+from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.history import History
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.reporting.suite.rows import deciding_picture, row_facts
+from harness.reporting.suite.rows import row_facts
 from harness.reporting.terminal import OUTCOMES, failure_place
 
 FOLDER = Path(__file__).with_name("page")

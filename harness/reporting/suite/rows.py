@@ -13,6 +13,7 @@ from harness.reporting.html.packing import Packer
 from harness.reporting.margins import used_allowance
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import short_value
+from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.history import History
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes, failure_place
@@ -72,36 +73,6 @@ def _picture(result: CaseResult, number: int, packer: Packer) -> str:
         return ""
     picture = deciding_picture(result, PICTURE_WIDTH)
     return packer.add(f"case.{number}", picture) if picture else ""
-
-
-def deciding_picture(result: CaseResult, width: int) -> bytes | None:
-    """The moment that decided a failure, else the end, as WebP of a width [pixels]."""
-    step = _deciding_step(result)
-    files = sorted(Path(result.report_dir, "images").glob(f"{step:02d}-*.jpg"))
-    if not result.report_dir or not files:
-        return None
-    from harness.reporting.html.still import small_still  # loads OpenCV
-
-    return small_still(files[-1], width)  # the last one explains a failure
-
-
-def _deciding_step(result: CaseResult) -> int:
-    """The number of the step, from 1, at whose end or within which a case failed."""
-    steps = [step for step in result.steps if step.status != "not reached"]
-    for number, step in enumerate(steps, start=1):
-        is_outer = any(other.path.startswith(f"{step.path}.") for other in steps)
-        if step.status == "failed" and not is_outer:
-            return number
-    verdict = next((each for each in result.verdicts if each.status != "passed"), None)
-    time, end, last = math.inf if verdict is None else verdict.time, 0.0, len(steps)
-    for number, step in enumerate(steps, start=1):
-        if any(other.path.startswith(f"{step.path}.") for other in steps):
-            continue
-        end += step.sim_time
-        last = number
-        if end >= time - 1e-9:
-            break
-    return last
 
 
 def _trend(shares: Sequence[float | None]) -> dict[str, str] | None:

@@ -1,0 +1,34 @@
+"""A result as a notebook shows it."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from harness.reporting.notebook import result_html
+from tests.reporting.suites import BROKEN, HOSTILE, STUCK, failed, passed
+
+
+def test_a_result_shows_its_outcome_and_its_verdicts():
+    shown = result_html(passed(0))
+    assert ">passed</b> Pick [c0]" in shown
+    assert "lifted cube" in shown
+    assert "passed by 10.0 mm" in shown
+    assert "<pre>" not in shown
+
+
+def test_a_failure_shows_its_causes_its_picture_and_its_page(tmp_path):
+    (tmp_path / "images").mkdir()
+    cv2.imwrite(str(tmp_path / "images/01-go.jpg"), np.full((480, 640, 3), 200, np.uint8))
+    page = tmp_path / "report.html"
+    shown = result_html(replace(STUCK, report_dir=str(tmp_path), page=str(page)))
+    assert "NO_IK_SOLUTION: out, by 9 mm" in shown
+    assert 'src="data:image/webp;base64,' in shown
+    assert f'href="{page.as_uri()}#t=4.00&amp;tab=planner"' in shown
+    assert "height: 30.0 mm (at least 50.0 mm)" in result_html(failed(1))
+
+
+def test_hostile_texts_stay_text():
+    shown = result_html(BROKEN)
+    assert HOSTILE not in shown
+    assert "<script" not in shown
