@@ -60,6 +60,7 @@ class IkTest:
         orientation_tolerance: The largest orientation or pitch error of an answer [rad].
         patience: Processor time after which a call counts as hanging [s].
         report_dir: Where pictures and `ik_test.json` go; None writes nothing.
+        on_case: Called with the name of a property, its cases that were tried, and all of them.
     """
 
     solver: str | Callable[..., Any]
@@ -72,6 +73,7 @@ class IkTest:
     orientation_tolerance: float = 1e-3
     patience: float = 5.0
     report_dir: Path | None = None
+    on_case: Callable[[str, int, int], None] = lambda *_: None
 
     @property
     def source(self) -> RobotSource:
@@ -292,6 +294,7 @@ class _Search:
             trial.outcomes.clear()
             flaws = each.flaws(trial, case)
             tried += 1
+            self._test.on_case(each.name, tried, max(tried, self._test.examples))
             observed += bool(flaws) or each.is_observed(trial.outcomes)
             flawed += bool(flaws)
             kinds.update(sorted({flaw.kind for flaw in flaws}))

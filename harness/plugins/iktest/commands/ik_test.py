@@ -13,6 +13,7 @@ from harness.cli.command import SEARCHES, Command
 from harness.cli.output import say, say_json
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.cli.shared_options import add_json, add_plugin, add_report_dir
+from harness.cli.work_bar import WorkBar
 from harness.suite.outcome import EXIT_CODES
 
 
@@ -72,6 +73,7 @@ class IkTestCommand(Command):
             orientation_tolerance=arguments.orientation_tolerance,
             patience=arguments.call_limit,
             report_dir=folder,
+            on_case=WorkBar(),
         )
         report = run_ik_test(test)
         if arguments.json:
