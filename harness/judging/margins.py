@@ -204,11 +204,12 @@ def all_of(
     def evidence(index: int) -> Evidence:
         shares = [float(share) for share in rows[:, index]]
         order = sorted(range(len(parts)), key=shares.__getitem__)
-        chosen = [parts[place] for place in order if shares[place] != math.inf][:shown]
-        stated = chosen
-        if shares[order[0]] >= 0 and shares[0] != math.inf:  # what is required, where all hold
-            stated = [parts[0], *(part for part in chosen if part is not parts[0])][:shown]
-        measures = tuple(part.measure(index, window.time(index)) for part in stated)
+        chosen = [parts[place] for place in order if shares[place] != math.inf]
+        stated = list(chosen)
+        if shares[order[0]] >= 0:  # all hold: what is required comes first
+            stated.sort(key=lambda part: part.quantity is not parts[0].quantity)
+            stated[1:] = [part for part in chosen if part is not stated[0]]
+        measures = tuple(part.measure(index, window.time(index)) for part in stated[:shown])
         tightest = chosen[0].measure(index, window.time(index))
         unit = "1" if chosen[0].comparison == "==" else chosen[0].unit
         margin = float(chosen[0].margins()[index])

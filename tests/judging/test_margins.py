@@ -1,6 +1,7 @@
 """Margins of the parts of a predicate, and how several become one."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -59,8 +60,13 @@ def test_one_part_keeps_its_unit_and_several_are_compared_as_shares():
     both = signal(far, near)
     assert (both.unit, both.values.tolist()) == ("1", [1, 0.5, -0.5])
     shown = both.evidence(1)
-    assert [measure.name for measure in shown.measures] == ["far", "distance"], "what is required"
-    assert [measure.unit for measure in shown.measures] == ["mm", "m"]
+    assert [measure.name for measure in shown.measures] == ["distance", "far"], "one quantity"
+    assert [measure.unit for measure in shown.measures] == ["m", "mm"]
+    first = Part(replace(LENGTH, name="length"), 2 * VALUES, 8.0, "<=")
+    several = signal(first, near)
+    assert [each.name for each in several.evidence(1).measures] == ["length", "distance"]
+    assert several.evidence(1).margin == 1, "of the tightest"
+    assert [each.name for each in several.evidence(2).measures] == ["distance", "length"]
     broken = both.evidence(2).measures
     assert [measure.name for measure in broken] == ["distance", "far"], "what decided"
     assert [measure.time for measure in shown.measures] == [11.0, 11.0]

@@ -57,7 +57,7 @@ def suite_html(
         ],
         campaign=campaign_of(columns, record.cases, folder),
         is_campaign=len(columns.numbers) + outcomes["invalid"] == total,
-        plain=[(case, case.link(folder)) for _, case in urgent[:MOST_PLAIN_ROWS]],
+        plain=[(case, _link(case, folder)) for _, case in urgent[:MOST_PLAIN_ROWS]],
         data=packer.text({"rows": [rows[i] for i, _ in listed], "history": bool(history)}),
         has_history=bool(history),
         wall=duration_text(sum(each["wall"] for each in rows.values())),
@@ -65,10 +65,15 @@ def suite_html(
     )
 
 
+def _link(case: SuiteCase, folder: Path) -> str:
+    """The page of a case at its first failure; empty for none."""
+    return case.link(folder) + (failure_place(case.result) if case.result.page else "")
+
+
 def _replay(name: str, case: SuiteCase, folder: Path) -> dict[str, str]:
     """A run next to another one: its name, its page at the deciding moment, and a picture."""
     picture = deciding_picture(case.result, REPLAY_WIDTH)
-    link = case.link(folder) + (failure_place(case.result) if case.result.page else "")
+    link = _link(case, folder)
     encoded = base64.b64encode(picture).decode() if picture else ""
     return {"name": name, "outcome": case.result.outcome, "link": link, "picture": encoded}
 
