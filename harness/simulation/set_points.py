@@ -38,7 +38,7 @@ def sample_trajectory(trajectory: JointTrajectory, timestep: float) -> SetPoints
     if len(trajectory.times) < 2:
         still = np.zeros_like(trajectory.positions)
         return SetPoints(trajectory.positions, still, still)
-    positions, velocities, accelerations = trajectory.at(np.arange(count + 1) * timestep)
+    positions, velocities, accelerations = trajectory.at(np.arange(count + 1.0) * timestep)
     accelerations[-1] = 0.0
     return SetPoints(positions, velocities, accelerations)
 

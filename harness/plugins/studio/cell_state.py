@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from harness.cell.cell import Belief, Presence
+from harness.cell.cell import Belief, Held, Presence
 from harness.planning.collision.collision_model import SceneState
 from harness.planning.collision.scene import CoalScene
 from harness.plugins.studio.live_simulator import LiveSimulator
@@ -30,7 +30,7 @@ class CellState:
     scene: SceneState
     presence: Mapping[str, Presence]
     attachments: tuple[AttachmentRecord, ...]
-    held: tuple[str, ...]
+    held: tuple[Held, ...]
     beliefs: Mapping[str, tuple[Belief, ...]]
     records: tuple[StepRecord, ...]
     ended_early: str
