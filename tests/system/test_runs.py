@@ -233,8 +233,10 @@ def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
         start_new_session=True,
     )
     before = ""
-    while "digest" not in before:
-        before += process.stdout.readline()
+    for line in process.stdout:
+        before += line
+        if "passed" in line:
+            break
     wait_for(lambda: running_cases(process.pid))
     below = processes_below(process.pid)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
