@@ -22,7 +22,7 @@ from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import MotionPlan, MotionPlanner, MotionRequest, PlanningOptions
 from harness.ports.motions import PlannedMotion, TimedMotion
 from harness.ports.scene import PlanningScene
-from harness.ports.simulation import Simulator
+from harness.ports.simulation import RecordingSimulator, Simulator
 from harness.recording.execution_failures import TimeoutFailure
 from harness.recording.run import AttachmentRecord
 from harness.recording.step_results import CELL_RESULTS, Attachment, SceneChange
@@ -178,8 +178,16 @@ class Cell:
         return self.robot.with_mimics(start)
 
     def measured_pose(self, name: str) -> SE3:
-        """T_world_object as the physics has it now, or as it is expected later."""
-        return self.expected.get(name) or self.simulator.object_pose(name)
+        """T_world_object as the physics has it now, or as it is expected later.
+
+        Without physics it is where the planner carries what an arm holds.
+        """
+        if name in self.expected:
+            return self.expected[name]
+        has_physics = isinstance(self.simulator, RecordingSimulator)
+        if not has_physics and name in self.scene.attached():
+            return self.scene.object_pose(name, self.planning_start())
+        return self.simulator.object_pose(name)
 
     @contextmanager
     def expecting(self, name: str, pose: SE3) -> Generator[None]:

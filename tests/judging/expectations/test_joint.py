@@ -7,7 +7,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.core.world import ObjectJoint
-from harness.plugins.fixtures.expectations.joint import FixtureJoint
+from harness.plugins.fixtures.expectations.joint import Joint
 from tests.judging.evidence import Evidence, Three
 from tests.judging.synthetic_run import BOX, TABLE, make_run, step, thing, verdict
 
@@ -43,14 +43,14 @@ def moved(joint, *positions, n=200):
 EVIDENCE = Evidence(
     three_runs=(
         Three(
-            FixtureJoint(object="cabinet", joint="door", at_least=1.0),
+            Joint(object="cabinet", joint="door", at_least=1.0),
             moved(DOOR, 1.2),
             moved(DOOR, 0.99),
             -0.01,
             "rad",
         ),
         Three(
-            FixtureJoint(object="cabinet", joint="drawer", at_most=0.05),
+            Joint(object="cabinet", joint="drawer", at_most=0.05),
             moved(DRAWER, 0.0),
             moved(DRAWER, 0.051),
             -0.001,
@@ -59,12 +59,12 @@ EVIDENCE = Evidence(
     ),
     mutation_cases=(
         (
-            FixtureJoint(object="cabinet", joint="door", at_least=1.0, at_most=1.4),
+            Joint(object="cabinet", joint="door", at_least=1.0, at_most=1.4),
             moved(DOOR, 0.2, 1.2),
             "late",
         ),
         (
-            FixtureJoint(object="cabinet", joint="drawer", at_least=0.1, at_most=0.15),
+            Joint(object="cabinet", joint="drawer", at_least=0.1, at_most=0.15),
             moved(DRAWER, 0.0, 0.12),
             "late",
         ),
@@ -98,15 +98,13 @@ def test_a_part_that_left_its_hinge_has_no_position():
     torn[100:, 0] += 0.02
     poses = {**run.signals.object_poses, "cabinet/door": torn}
     run = replace(run, signals=replace(run.signals, object_poses=poses))
-    answer = verdict(run, FixtureJoint(object="cabinet", joint="door", at_least=1.0))
+    answer = verdict(run, Joint(object="cabinet", joint="door", at_least=1.0))
     assert answer.status == "not observable"
 
 
 def test_the_name_for_people_names_the_joint_where_no_other_key_does():
     run = moved(DOOR, 1.2)
-    assert (
-        verdict(run, FixtureJoint(object="cabinet", name="door", at_least=1.0)).status == "passed"
-    )
-    assert verdict(run, FixtureJoint(object="cabinet", at_least=1.0)).status == "passed"
-    other = verdict(run, FixtureJoint(object="cabinet", joint="lid", at_least=1.0))
+    assert verdict(run, Joint(object="cabinet", name="door", at_least=1.0)).status == "passed"
+    assert verdict(run, Joint(object="cabinet", at_least=1.0)).status == "passed"
+    other = verdict(run, Joint(object="cabinet", joint="lid", at_least=1.0))
     assert other.status == "not observable"
