@@ -18,6 +18,13 @@ from tests.session.front_door import problems
 
 HERE = Path(__file__).parent
 BOX = "ros2/01_lift_the_red_box"
+ELSEWHERE = """
+import os
+from tests.plugins.ros.nodes import Node, follow, point
+node = Node(int(os.environ["ROS_DOMAIN_ID"]))
+node.ready()
+assert node.send(follow(point(2, [0.6, 0.0, 0.0, 0.0]))).result.error_code == 0
+"""
 LIFT = f"{sys.executable} {HERE / 'lift_the_box.py'}"
 
 
@@ -87,7 +94,9 @@ def test_a_node_that_crashes_after_its_work_is_mentioned(tmp_path, capsys):
 
 def test_points_do_not_hide_a_step_that_failed(tmp_path, capsys):
     file = scenario(tmp_path)
-    command = ["--node", "true", "--no-page", "--report-dir", str(tmp_path / "r")]
+    (tmp_path / "elsewhere.py").write_text(ELSEWHERE, encoding="utf-8")
+    node = f"{sys.executable} {tmp_path / 'elsewhere.py'}"
+    command = ["--node", node, "--no-page", "--report-dir", str(tmp_path / "r")]
     code, said = grade(capsys, str(file), *command)
     assert code == 1
     assert "1 of 1 points\nnot passed: every point is earned, but a step failed" in said.out
