@@ -62,8 +62,8 @@ def test_frames_alone_give_the_joints_too(stored, tmp_path):
     assert np.allclose(
         grade.run.signals.joint_positions, stored.run.signals.joint_positions[rows], atol=1e-6
     )
-    assert status_of(grade, "within_limits") == "not observable"
-    assert status_of(grade, "named_target") == "passed"
+    assert status_of(grade, "within limits") == "not observable"
+    assert status_of(grade, "named target") == "passed"
 
 
 def test_a_recording_of_another_arm_is_reported(recording, tmp_path):
