@@ -23,7 +23,7 @@ from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESO
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.path_planning import PathRequest, PathResult
 from harness.recording.motion_failures import SearchFailure
-from harness.recording.plan_statistics import SearchStatistics
+from harness.recording.plan_statistics import DIRECT, SearchStatistics
 
 PLANNER_ID = f"{FAST_PLANNER}, projected"
 
@@ -75,7 +75,7 @@ def find_constrained_motion(
         if is_free and task.overload(ends) is None:
             trajectory = time_straight(names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
-                statistics = task.statistics("direct joint motion", trajectory, [task.start, end])
+                statistics = task.statistics(DIRECT, trajectory, [task.start, end])
                 return MotionPlan(trajectory, Details.of(statistics), explanation)
     defect: Defect | None = None
     for attempt in range(task.options.attempts):

@@ -38,7 +38,7 @@ from harness.ports.motion_planning import MotionPlan, PlanningOptions
 from harness.ports.path_planning import PathPlanner
 from harness.recording.goal_failures import IkStudy
 from harness.recording.motion_failures import BlockedWay, PipelineFailure, SearchFailure
-from harness.recording.plan_statistics import PlanStatistics, SearchStatistics
+from harness.recording.plan_statistics import DIRECT, PlanStatistics, SearchStatistics
 
 BLEND_DEVIATIONS = (0.05, 0.01)
 """Largest deviations of the blends at the corners [rad]; after these, the motion stops there."""
@@ -100,7 +100,7 @@ def _straight(task: PlanningTask, goals: Sequence[FloatArray]) -> _Motion | None
         if checker.edge_free(task.start, end, FINAL_RESOLUTION) and task.overload(ends) is None:
             trajectory = time_straight(space.joint_names, task.start, end, task.limits)
             if task.defect(trajectory, end) is None:
-                statistics = task.statistics("direct joint motion", trajectory, ends)
+                statistics = task.statistics(DIRECT, trajectory, ends)
                 return _Motion(trajectory, end, space.effort(task.start, end), statistics)
     return None
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from harness.core.details import Detail
 from harness.core.types import Floats
 
+DIRECT = "direct joint motion"  # the planner of a motion that needed no search
+
 
 @dataclass(frozen=True)
 class PlanStatistics(Detail):

@@ -13,11 +13,10 @@ from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.ports.motion_planning import MotionPlanner, MotionRequest
 from harness.recording.motion_failures import SearchFailure
-from harness.recording.plan_statistics import PlanStatistics
+from harness.recording.plan_statistics import DIRECT, PlanStatistics
 
 SPACING = 0.05  # [rad], between the states at which smoothness and clearance are measured
 STRAIGHT_TURN = 1e-6  # turns below this are rounding errors [rad]
-STRAIGHT = "straight line"  # a plan's `planner_id` when the straight line was free
 
 
 @dataclass(frozen=True)
@@ -90,7 +89,7 @@ def try_plan(
         clearance=float(nearest.min()) if len(nearest) else float("nan"),
         mean_clearance=float(nearest.mean()) if len(nearest) else float("nan"),
         planning_time=spent,
-        is_straight=statistics.planner_id == STRAIGHT,
+        is_straight=statistics.planner_id == DIRECT,
     )
 
 
