@@ -280,6 +280,7 @@ def test_goals_that_are_canceled_before_they_are_planned_do_not_move_the_arm(tmp
         node.wait(lambda: events.subscribers)
         running = client.execute.send(message(f"{EXECUTE}_Goal", trajectory=plan))
         node.wait(lambda: running.is_accepted)
+        client.call("compute_fk", "GetPositionFK")  # which is answered after the arm set out
         events.publish(message("std_msgs/msg/String", data="halt"))
         events.publish(message("std_msgs/msg/String", data="stop"))
         node.wait(lambda: running.is_over)
