@@ -80,8 +80,9 @@ def test_positions_fill_the_limits_and_stay_inside(chain):
         assert np.all(found <= chain.upper)
     everywhere = np.array(drawn(joint_positions(chain), 300))
     share = (everywhere - chain.lower) / (chain.upper - chain.lower)
-    assert np.all(np.quantile(share, 0.2, axis=0) < 0.35)
-    assert np.all(np.quantile(share, 0.8, axis=0) > 0.65)
+    for values in map(np.unique, share.T):  # Hypothesis repeats constants of whatever is imported
+        assert np.quantile(values, 0.2) < 0.35
+        assert np.quantile(values, 0.8) > 0.65
 
 
 @EACH_ARM
