@@ -78,7 +78,7 @@ def test_positions_fill_the_limits_and_stay_inside(chain):
         found = np.array(drawn(strategy))
         assert np.all(found >= chain.lower)
         assert np.all(found <= chain.upper)
-    everywhere = np.array(drawn(joint_positions(chain), 300))
+    everywhere = np.array(drawn(joint_positions(chain), 1500))
     share = (everywhere - chain.lower) / (chain.upper - chain.lower)
     for values in map(np.unique, share.T):  # Hypothesis repeats constants of whatever is imported
         assert np.quantile(values, 0.2) < 0.35
