@@ -63,6 +63,14 @@ class ObjectJoint:
         """T_world_part (xyz, quat wxyz) at positions (N,) of the joint [rad or m], shape (N, 7)."""
         return compose(np.array(self.fixture_pose), self._moved(positions))
 
+    def _nearest(self, moved: FloatArray) -> FloatArray:
+        """Positions of the joint at T_fixture_part (N, 7), wherever the part is, shape (N,)."""
+        axis = np.array(self.axis)
+        if self.kind == "slide":
+            return moved[:, :3] @ axis
+        angles = 2.0 * np.arctan2(moved[:, 4:] @ axis, moved[:, 3])
+        return (angles + np.pi) % (2.0 * np.pi) - np.pi
+
     def _moved(self, positions: FloatArray) -> FloatArray:
         """T_fixture_part at positions (N,) of the joint, shape (N, 7)."""
         axis, point = np.array(self.axis), np.array(self.point)
@@ -76,8 +84,9 @@ class ObjectJoint:
         return moved
 
     def position(self, pose: SE3) -> float:
-        """The joint's position at T_world_part, of a hinge within half a turn of 0 [rad or m]."""
-        return float(self.positions(np.array(self.fixture_pose), pose.as_vector()[None])[0])
+        """The joint's position nearest to T_world_part, of a hinge within half a turn of 0."""
+        moved = relative(np.array(self.fixture_pose), pose.as_vector()[None])
+        return float(self._nearest(moved)[0])
 
     def positions(self, fixture: FloatArray, part: FloatArray) -> FloatArray:
         """Positions of the joint at poses of fixture and part, shape (N,); NaN where it has none.
@@ -87,11 +96,7 @@ class ObjectJoint:
             part: T_world_part, shape (N, 7).
         """
         moved = relative(fixture, part)
-        axis = np.array(self.axis)
-        positions = moved[:, :3] @ axis
-        if self.kind == "hinge":
-            angles = 2.0 * np.arctan2(moved[:, 4:] @ axis, moved[:, 3])
-            positions = (angles + np.pi) % (2.0 * np.pi) - np.pi
+        positions = self._nearest(moved)
         stray = relative(self._moved(positions), moved)
         off = np.linalg.norm(stray[:, :3], axis=1) > STRAY[0]
         return np.where(off | (rotation_angle(stray[:, 3:]) > STRAY[1]), np.nan, positions)
