@@ -124,31 +124,40 @@ class ClearanceFacts:
 
 
 @dataclass(frozen=True)
-class ObjectFacts:
-    """An object of the scene.
+class LaterFacts:
+    """An object that a step adds.
 
     Attributes:
         name: The name of the object.
         shape: `box`, `cylinder`, `sphere`, `capsule`, `plane`, `mesh`, or the number of shapes.
         size: Lengths of the box around its shapes, along its own axes [m]; None for a plane.
-        pose: The pose of its frame at the start; None for an object that a step adds.
-        low: The least coordinates of the box around it in the world [m].
-        high: The largest coordinates; `high[2]` is where something stands on it.
         mass: The mass [kg]; None for what never moves.
         is_in: Where it exists: `planning`, `simulation`.
-        clearance: The distance from the robot at the start; None where the planner ignores it.
-        level_sides: Widths between which the gripper chooses; empty where none is known.
-        pick: The result of picking it; None for what never moves, and without a gripper.
     """
 
     name: str
     shape: str
     size: Numbers | None
-    pose: PoseFacts | None
-    low: Numbers | None
-    high: Numbers | None
     mass: float | None
     is_in: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ObjectFacts(LaterFacts):
+    """An object of the scene.
+
+    Attributes:
+        pose: The pose of its frame at the start.
+        low: The least coordinates of the box around it in the world [m]; None for a plane.
+        high: The largest coordinates; `high[2]` is where something stands on it.
+        clearance: The distance from the robot at the start; None where the planner ignores it.
+        level_sides: Widths between which the gripper chooses; empty where none is known.
+        pick: The result of picking it; None for what never moves, and without a gripper.
+    """
+
+    pose: PoseFacts
+    low: Numbers | None
+    high: Numbers | None
     clearance: ClearanceFacts | None = None
     level_sides: tuple[SideFacts, ...] = ()
     pick: PickFacts | None = None
@@ -163,7 +172,7 @@ class SceneFacts:
     scenario: str
     robot: RobotFacts
     objects: tuple[ObjectFacts, ...]
-    added_later: tuple[ObjectFacts, ...]
+    added_later: tuple[LaterFacts, ...]
     cameras: tuple[str, ...]
 
 
@@ -186,10 +195,7 @@ def scene_facts(prepared: Prepared, file: str) -> SceneFacts:
             _of_object(obj, execution.cell, clearances.get(obj.name), prepared)
             for obj in program.world.objects
         ),
-        added_later=tuple(
-            replace(_shape(obj, SE3.identity()), pose=None, low=None, high=None)
-            for obj in program.later_objects.values()
-        ),
+        added_later=tuple(_later(obj) for obj in program.later_objects.values()),
         cameras=tuple(program.cameras),
     )
 
@@ -253,7 +259,14 @@ def _clearances(ports: PlanningPorts, program: Program) -> dict[str, ClearanceFa
 def _of_object(
     obj: WorldObject, cell: Cell, clearance: ClearanceFacts | None, prepared: Prepared
 ) -> ObjectFacts:
-    facts = replace(_shape(obj, obj.pose), clearance=clearance)
+    placed = bounds_of(Shape(each.geometry, obj.pose @ each.pose) for each in obj.shapes)
+    facts = ObjectFacts(
+        **vars(_later(obj)),
+        pose=_pose(obj.pose),
+        low=_numbers(placed[0]) if placed else None,
+        high=_numbers(placed[1]) if placed else None,
+        clearance=clearance,
+    )
     description = cell.description
     if description.gripper is None or obj.is_static or not (obj.in_simulation and obj.in_planning):
         return facts
@@ -288,19 +301,16 @@ def _pick(name: str, prepared: Prepared) -> PickFacts | None:
     )
 
 
-def _shape(obj: WorldObject, pose: SE3) -> ObjectFacts:
+def _later(obj: WorldObject) -> LaterFacts:
+    """What is known of an object wherever it is."""
     own = bounds_of(obj.shapes)
-    placed = bounds_of(Shape(each.geometry, pose @ each.pose) for each in obj.shapes)
     kinds = {type(each.geometry).__name__.lower() for each in obj.shapes}
     is_single = len(obj.shapes) == 1 or kinds == {"mesh"}
     where = {"planning": obj.in_planning, "simulation": obj.in_simulation}
-    return ObjectFacts(
+    return LaterFacts(
         name=obj.name,
         shape=kinds.pop() if kinds and is_single else f"{len(obj.shapes)} shapes",
         size=_numbers(own[1] - own[0]) if own else None,
-        pose=_pose(pose),
-        low=_numbers(placed[0]) if placed else None,
-        high=_numbers(placed[1]) if placed else None,
         mass=None if obj.is_static else _rounded(obj.mass),
         is_in=tuple(name for name, is_there in where.items() if is_there),
     )

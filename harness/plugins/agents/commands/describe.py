@@ -13,6 +13,7 @@ from harness.cli.shared_options import add_json, add_preparation, add_seed
 
 if TYPE_CHECKING:
     from harness.plugins.agents.scene_facts import (
+        LaterFacts,
         ObjectFacts,
         PickFacts,
         RobotFacts,
@@ -83,7 +84,7 @@ def _robot(robot: RobotFacts) -> Iterator[str]:
 
 def _object(obj: ObjectFacts) -> Iterator[str]:
     mass = "static" if obj.mass is None else f"{obj.mass:g} kg"
-    at = f" at {_row(obj.pose.xyz)}" if obj.pose else ""
+    at = f" at {_row(obj.pose.xyz)}"
     top = f", top at z {obj.high[2]:g}" if obj.high else ""
     yield f"{obj.name}: {_size(obj)}, {mass}{at}{top}{_where(obj)}"
     if obj.clearance is not None:
@@ -105,13 +106,13 @@ def _pick(pick: PickFacts) -> str:
     return f"{pick.error_code}: {pick.message}{advice}"
 
 
-def _size(obj: ObjectFacts) -> str:
+def _size(obj: LaterFacts) -> str:
     return (
         obj.shape if obj.size is None else f"{obj.shape} {' x '.join(f'{x:.4g}' for x in obj.size)}"
     )
 
 
-def _where(obj: ObjectFacts) -> str:
+def _where(obj: LaterFacts) -> str:
     return f" (in {obj.is_in[0]} alone)" if len(obj.is_in) == 1 else ""
 
 
