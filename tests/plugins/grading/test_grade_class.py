@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,7 @@ from harness.plugins.grading.classroom.confined import (
     descendants,
 )
 from tests.plugins.grading.classes import IK, SOLUTION, SUBMISSIONS, scenario_class
+from tests.reporting.browser import new_context
 
 EXERCISE = "the TCP is at the target"
 
@@ -87,6 +89,20 @@ def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_s
     assert order == sorted(order)
     assert "the public case passes and a hidden one fails: constant" in text
     assert "What keeps submissions apart" in text
+
+
+@pytest.mark.parametrize("width", [1440, 390])
+def test_no_cell_of_a_table_covers_another_one(graded, browser, width):
+    covering = """[...document.querySelectorAll("td")].filter(td => {
+        const content = document.createRange(); content.selectNodeContents(td);
+        return content.getBoundingClientRect().right > td.getBoundingClientRect().right + 1;
+    }).map(td => td.textContent)"""
+    with closing(new_context(browser, viewport={"width": width, "height": 900})) as context:
+        opened = context.new_page()
+        for name in ("index.html", "students/low/index.html", "students/perfect/index.html"):
+            opened.goto((graded / name).as_uri())
+            assert opened.evaluate(covering) == [], name
+            assert opened.evaluate("document.documentElement.scrollWidth") == width
 
 
 def test_tables_for_other_programs_have_everybody(graded):

@@ -31,6 +31,7 @@ from harness.plugins.grading.classroom.results import (
 from harness.plugins.grading.classroom.submissions import Submission
 from harness.plugins.grading.classroom.systems import classroom50, gradescope, write_classroom50
 from harness.plugins.grading.classroom.tables import read_roster, with_roster, write_tables
+from harness.plugins.grading.credit import Credit, GradedResult
 from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.suite.discovery import UsageError
@@ -77,6 +78,17 @@ def test_points_of_an_expectation_are_shared_among_cases():
     assert (HIDDEN.earned, HIDDEN.earned_of(0), HIDDEN.hidden_loss) == (6, 3, [0])
     assert HIDDEN.remark == "hidden case 1: it is lifted"
     assert (NOTHING.earned, NOTHING.is_full) == (0, False)
+
+
+def test_the_first_reason_is_what_fails_and_not_what_earns_a_share():
+    holding = Verdict("it is lifted", "passed", 0.01, "m")
+    failing = Verdict("it is fast", "failed", reason="it is slow")
+    share = Credit(0.2, "1 of 5 targets are answered rightly")
+    result = GradedResult("a.py", "", "Lift", "failed", verdicts=(holding, failing), credit=share)
+    run = graded_run(0, result, CRITERIA, 1)
+    found = StudentGrade(Submission("ada", "ada", Path("ada")), CRITERIA, (run,))
+    assert "it is slow" in found.remark
+    assert found.earned == pytest.approx(1.2)
 
 
 def test_a_case_without_verdicts_earns_nothing_whatever_it_says():

@@ -90,14 +90,7 @@ def _class_html(grade: ClassGrade, folder: Path) -> str:
         each.submission.folder: f"{STUDENTS}/{quote(each.submission.folder)}/{PAGE}"
         for each in students
     }
-    failed_hidden = {
-        each.submission.folder: [
-            (number, f"{HIDDEN}/{quote(each.submission.folder)}/{number}/report.html")
-            for number in range(1, cases + 1)
-            if (folder / HIDDEN / each.submission.folder / str(number) / "report.html").is_file()
-        ]
-        for each in students
-    }
+    failed_hidden = {each.submission.folder: _failed_hidden(each, folder) for each in students}
     return bundle.rendered(
         FOLDER / "class.html",
         script="",
@@ -115,6 +108,17 @@ def _class_html(grade: ClassGrade, folder: Path) -> str:
         protects=PROTECTS[grade.confinement],
         runs_programs=grade.assignment.model.kind in ("node", "ik"),
     )
+
+
+def _failed_hidden(student: StudentGrade, folder: Path) -> list[tuple[int, str]]:
+    """Numbers of the hidden cases that cost points, with the report of each that has one."""
+    own = Path(HIDDEN, student.submission.folder)
+    failed = [run.number for run in student.runs[1:] if any(mark.reason for mark in run.marks)]
+    pages = {number: own / str(number) / "report.html" for number in failed}
+    return [
+        (number, quote(str(page)) if (folder / page).is_file() else "")
+        for number, page in pages.items()
+    ]
 
 
 def _student_html(grade: ClassGrade, student: StudentGrade, own: Path) -> str:
@@ -146,12 +150,12 @@ def _reasons(result: CaseResult) -> list[str]:
 def _pictures(folder: Path) -> list[tuple[str, str]]:
     """Name and content of a few pictures: those that explain failures, then the last steps."""
     files = sorted(folder.glob("*.jpg"))
-    chosen = [each for each in files if each.stem.endswith("-why")][:MOST_PICTURES]
-    rest = [each for each in files if each not in chosen]
-    chosen += rest[len(rest) - max(0, MOST_PICTURES - len(chosen)) :]
+    chosen = [each for each in files if each.stem.startswith("finding-")]
+    chosen += [each for each in files if each.stem.endswith("-why")]
+    chosen += [each for each in reversed(files) if each not in chosen]
     return [
         (each.stem, f"data:image/jpeg;base64,{base64.b64encode(each.read_bytes()).decode()}")
-        for each in sorted(chosen)
+        for each in sorted(chosen[:MOST_PICTURES])
         if not each.is_symlink() and each.stat().st_size < LARGEST_PICTURE
     ]
 

@@ -56,6 +56,11 @@ class Mark:
         return self.points * self.share
 
     @property
+    def holds(self) -> bool:
+        """Whether the criterion is met, whatever it earns."""
+        return self.verdict is not None and self.verdict.status == "passed"
+
+    @property
     def margin(self) -> str:
         """The margin with its unit; empty where there is none."""
         verdict = self.verdict
@@ -142,7 +147,8 @@ class StudentGrade:
         if self.problem:
             return self.problem.splitlines()[0]
         for run in self.runs:
-            lost = next((mark for mark in run.marks if mark.reason and mark.points), None)
+            every = [mark for mark in run.marks if mark.reason and mark.points]
+            lost = min(every, key=lambda mark: mark.holds, default=None)
             if lost is not None and run.number:
                 return f"hidden case {run.number}: {lost.criterion.text}"
             if lost is not None:
