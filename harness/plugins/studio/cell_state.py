@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from harness.cell.cell import Belief, Held, Presence
+from harness.core.types import FloatArray
 from harness.planning.collision.collision_model import SceneState
 from harness.planning.collision.scene import CoalScene
 from harness.plugins.studio.live_simulator import LiveSimulator
@@ -22,10 +23,14 @@ class CellState:
     Attributes:
         steps: The number of steps of the file that were executed.
         is_run: Whether a run of the file would be in the same state.
+        joint_positions: Measured joint positions, description order.
+        objects: T_world_object (xyz, quat wxyz) of the objects in the physics, shape (7,) each.
     """
 
     steps: int
     is_run: bool
+    joint_positions: FloatArray
+    objects: Mapping[str, FloatArray]
     physics: PhysicsState
     scene: SceneState
     presence: Mapping[str, Presence]
@@ -50,6 +55,8 @@ class CellState:
         return cls(
             steps,
             is_run,
+            simulator.joint_positions(),
+            simulator.objects_now(),
             simulator.snapshot(),
             scene.snapshot(),
             _copied(cell.presence),

@@ -14,7 +14,7 @@ from harness.language.files.source import Located, Source
 from harness.language.files.yaml_file import parse_yaml
 
 INDENT = "  "
-ROBOT_BLOCK = re.compile(r"^robot:.*(?:\n[ \t#].*|\n(?=[ \t\n#]))*", re.MULTILINE)
+ROBOT_BLOCK = re.compile(r"^robots?:.*(?:\n[ \t#].*|\n(?=[ \t\n#]))*", re.MULTILINE)
 STAND_IN = "wait: 1 ms"  # the step that a scenario without steps is compiled with
 
 Plain = Any
@@ -106,7 +106,7 @@ class Document:
     def base_key(self) -> str:
         """Text that changes when the cell has to be built again, for other reasons than steps."""
         plain = self._plain
-        keys = ("robot", "world", "objects", "cameras", "params")
+        keys = ("robot", "robots", "world", "objects", "cameras", "params")
         return json.dumps([plain.get(key) for key in keys], sort_keys=True, default=str)
 
     @property
@@ -164,7 +164,8 @@ class Document:
         entry = self.root.mapping().get("world")
         line = f"world: {flow(name)}"
         if entry is None:
-            at = self.root.mapping()["robot"].key.line - 1
+            keys = self.root.mapping()
+            at = (keys.get("robot") or keys["robots"]).key.line - 1
             return self._with([*self.lines[:at], line, *self.lines[at:]])
         row = entry.key.line
         last = self._end_of_item(row, 0, len(self.lines))

@@ -20,7 +20,7 @@ from harness.plugins.studio.messages import failure_message
 from harness.plugins.studio.reach import Reach, ReachStudy
 from harness.plugins.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost
 from harness.plugins.studio.session import Message, RefusedError
-from harness.plugins.studio.texts import MOTIONS, joint_keys, pose_keys, step_text
+from harness.plugins.studio.texts import MOTIONS, joint_keys, of_arm, pose_keys, step_text
 from harness.ports.motion_planning import MotionPlan
 from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.step_record import StepRecord
@@ -212,19 +212,24 @@ class GoalActions(LiveStudio):
             frame = str(message.get("frame", "world"))
             pose = self.cell.cell.frame(frame).inverse() @ self._goal
             keys = pose_keys(description, group, pose, frame)
+        elif self.cell.is_by_hand:  # the sliders have moved the arm to its goal
+            keys = joint_keys(description, group, self.cell.cell.planning_start())
         else:
-            raise RefusedError("there is no goal: drag the handle, or choose a named state")
+            raise RefusedError(
+                "there is no goal: move a joint, drag the handle, or choose a named state"
+            )
         if STEPS[verb].is_arc:
             keys["interim"] = _interim(message)
         if message.get("planner"):
             given = str(message["planner"])
             planning = given if ":" in given else f"planner_id: {given}"
-            return f"{step_text(verb, keys)}\nplanning: {{{' '.join(planning.split())}}}"
+            text = f"{step_text(verb, keys)}\nplanning: {{{' '.join(planning.split())}}}"
+            return of_arm(description, text)
         if set(keys) == {"named_target"}:
-            return step_text(verb, keys["named_target"])
-        return step_text(verb, keys)
+            keys = keys["named_target"]
+        return of_arm(description, step_text(verb, keys))
 
-    def _joint_list(self, message: Message) -> dict[str, float]:
+    def _joint_list(self, message: Message) -> dict[str, Any]:
         """The joints of the arm with the positions that a page lists, in degrees or radians."""
         description = self.cell.description
         names = description.groups[description.default_group].joint_names
@@ -233,7 +238,9 @@ class GoalActions(LiveStudio):
             raise RefusedError(f"list {len(names)} positions: {', '.join(names)}")
         turns = [description.joint_by_name[name].kind != "prismatic" for name in names]
         factor = np.where(turns, np.pi / 180 if message.get("unit") == "deg" else 1.0, 1.0)
-        return dict(zip(names, (float(v) for v in np.round(factor * values, 6)), strict=True))
+        positions = self.cell.cell.planning_start()
+        positions[[description.joint_index[name] for name in names]] = factor * values
+        return joint_keys(description, description.default_group, positions)["joints"]
 
 
 def _interim(message: Message) -> dict[str, Any]:

@@ -26,6 +26,8 @@ from harness.session.execute import OnStep, ProgramExecution
 from harness.session.prepare import Prepared, prepare
 from harness.session.start import start_physics
 
+STILL = 5e-4  # a joint or an object that is no farther from where it was has not moved [rad, m]
+
 
 def _no_step(*_: object) -> None:
     return
@@ -46,6 +48,7 @@ class LiveCell:
         document: The text that the cell was compiled from.
         history: Snapshots: at the start, then after every step that was executed.
         is_by_hand: Whether something was moved by hand since the last snapshot.
+        chosen_arm: The arm that the page chose, of a robot with several.
     """
 
     def __init__(self, files: StudioFiles, document: Document, on_step: OnStep = _no_step) -> None:
@@ -59,6 +62,7 @@ class LiveCell:
         self.pace: Pace | None = None
         self.history: list[CellState] = []
         self.is_by_hand = False
+        self.chosen_arm = ""
         self._build(document)
 
     # -- the scenario -------------------------------------------------------------------------
@@ -96,8 +100,16 @@ class LiveCell:
 
     @property
     def description(self) -> RobotDescription:
-        """The robot."""
-        return self.prepared.program.description
+        """The robot; of one with several arms, with the arm that is moved by hand selected."""
+        robot = self.prepared.program.description
+        return robot.of_arm[self.arm] if robot.arms else robot
+
+    @property
+    def arm(self) -> str:
+        """The arm that is moved by hand, of a robot with several; the default one, or the first."""
+        robot = self.prepared.program.description
+        names = list(robot.of_arm)
+        return self.chosen_arm if self.chosen_arm in names else robot.default_arm or names[0]
 
     @property
     def cell(self) -> Cell:
@@ -246,26 +258,39 @@ class LiveCell:
         del self.execution.records[first:]
         return record
 
-    def record(self, text: str) -> tuple[str, StepRecord]:
+    def record(self, text: str, *, if_moved: bool = False) -> tuple[str, StepRecord]:
         """Put a step into the scenario after those executed, and execute it.
 
         A step that adds new objects needs another physics: the steps before it are repeated there.
+
+        Args:
+            text: The step, given as in a file.
+            if_moved: Whether a step after which everything is where the step before it left it is
+                taken out again.
 
         Returns:
             The scenario's text, which has the step only where it succeeded; and its result.
         """
         before, count = self.document, self.steps_done
+        state = self.history[-1]
         if self.load(before.with_step(text, count)):
             self.repeat(count)
         after = self.document.text
         self.run_steps(count + 1)
         record = next(r for r in self.execution.records if r.path == f"steps[{count}]")
-        if record.status == "failed":
+        if record.status == "failed" or (if_moved and not self._has_moved(state)):
             self.restore(count)
             if self.load(before):
                 self.repeat(count)
             return before.text, record
         return after, record
+
+    def _has_moved(self, state: CellState) -> bool:
+        """Whether a joint or an object is elsewhere than in a state."""
+        now = self.simulator.objects_now()
+        pairs = [(state.joint_positions, self.joint_positions())]
+        pairs += [(pose, now.get(name, pose)) for name, pose in state.objects.items()]
+        return any(np.abs(one - two).max(initial=0.0) > STILL for one, two in pairs)
 
     def repeat(self, count: int) -> None:
         """Execute the first steps as fast as possible."""

@@ -72,6 +72,7 @@ class LiveStudio:
         self.verdicts, self.camera = LiveVerdicts(), LiveCamera()
         self._last_tick = self._last_scene = time.monotonic()
         self._due, self._frames = 0.0, 0
+        self._lived = self._physics_time = 0.0
         self.nearest: Touch | None = None
         self.object_handle = ""
         self.dragged: dict[str, FloatArray] = {}
@@ -193,6 +194,9 @@ class LiveStudio:
         elapsed, self._last_tick = min(0.1, now - self._last_tick), now
         if self._cell is None:
             return
+        physics_time = self._cell.simulator.physics_time
+        self._lived += max(0.0, physics_time - self._physics_time)
+        self._physics_time = physics_time
         if self.session.viewers:
             self.camera.draw(self._cell)
         for message in (self.verdicts.taken(), self.camera.taken()):
@@ -305,6 +309,7 @@ class LiveStudio:
         nearest = self.nearest
         return {
             **cell_message(self.cell),
+            "live": round(self._lived, 3),  # it never goes back, whatever is restored
             "nearest": None
             if nearest is None
             else [nearest.first, nearest.second, round(nearest.distance, 5)],
@@ -368,6 +373,8 @@ class LiveStudio:
         target[description.joint_index[joint.name]] = value
         self.target = description.with_mimics(target)
         self.study = None
+        if self.reach is not None:
+            self.clear_preview()  # the goal is where the slider leads
         return {}
 
     def do_share(self, message: Message) -> Message:

@@ -30,6 +30,8 @@ def robot_message(cell: LiveCell) -> Message:
     return {
         "type": "robot",
         "name": description.name,
+        "arms": list(description.of_arm),
+        "arm": description.selected_arm,
         "tcp": description.tcp_link,
         "arm_joints": list(description.groups[description.arm_group].joint_names)
         if description.arm_group
@@ -75,7 +77,7 @@ def cell_message(cell: LiveCell) -> Message:
     contacts = sorted(cell.simulator.contact_forces().items(), key=lambda item: -item[1])
     return {
         "type": "state",
-        "time": round(cell.simulator.physics_time, 3),
+        "time": round(cell.simulator.time, 3),
         "positions": [
             round(float(positions[index]), 5) for index in cell.simulator.physics.actuated
         ],

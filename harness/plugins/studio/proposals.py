@@ -13,7 +13,7 @@ from harness.plugins.studio.judging import judged
 from harness.plugins.studio.language_help import ITEM, named_at
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.messages import names_of
-from harness.plugins.studio.texts import step_text
+from harness.plugins.studio.texts import pose_keys_of, step_text
 
 MOVED = 0.005  # largest distance from its start at which an object counts as not moved [m]
 
@@ -78,9 +78,7 @@ def _proposal(
     expectation: type[ExpectationFields], keys: dict[str, Any], pose: SE3 | None
 ) -> Proposal:
     if pose is not None and {"pose", "tolerance"} <= set(expectation.model_fields):
-        vector = [round(float(value), 4) for value in pose.as_vector()]
-        place = {"xyz": vector[:3], "quat_wxyz": vector[3:]}
-        keys = {**keys, "pose": place, "tolerance": TOLERANCE}
+        keys = {**keys, "pose": pose_keys_of(pose), "tolerance": TOLERANCE}
     is_short = set(keys) == {expectation.short}
     text = step_text(expectation.word, keys[expectation.short] if is_short else keys)
     return Proposal(text, (expectation.__doc__ or "").partition("\n")[0], expectation.short)

@@ -96,7 +96,9 @@ class Studio(GoalActions):
 
     def do_execute(self, message: Message) -> Message:
         """Execute a step; recorded, it becomes the scenario's next one."""
-        text = str(message.get("step") or self.motion_text(message))
+        is_goal = not message.get("step")
+        text = self.motion_text(message) if is_goal else str(message["step"])
+        count = self.cell.document.step_count
         is_recorded = bool(message.get("record", self.is_recording))
         results: list[StepRecord] = []
 
@@ -105,7 +107,9 @@ class Studio(GoalActions):
                 results.append(self.cell.execute(text))
                 return
             self._refuse_mistakes()
-            new_text, record = self.cell.record(text)
+            new_text, record = self.cell.record(
+                text, if_moved=bool(message.get("if_moved")) or is_goal
+            )
             results.append(record)
             self._take_text(new_text)
 
@@ -113,7 +117,23 @@ class Studio(GoalActions):
         record = results[0]
         if record.status == "failed":
             return {"step": text, **failure_message(record)}
-        return {"step": text, "status": record.status, "message": printable(record.message)}
+        reply = {"step": text, "status": record.status, "message": printable(record.message)}
+        if is_recorded and self.cell.document.step_count == count:
+            reply["note"] = "nothing has moved since the last step, so no step was recorded"
+        return reply
+
+    def do_arm(self, message: Message) -> Message:
+        """Choose the arm that is moved by hand, of a robot with several."""
+        name = str(message["name"])
+        arms = list(self.cell.prepared.program.description.of_arm)
+        if name not in arms:
+            raise RefusedError(f"the arms are {', '.join(arms)}" if arms else "there is one arm")
+        self.cell.chosen_arm = name
+        self.study = self.target = None
+        self.clear_preview()
+        self.session.broadcast(robot_message(self.cell))
+        self.put_handles_back()
+        return {}
 
     # -- objects ------------------------------------------------------------------------------
 

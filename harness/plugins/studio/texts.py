@@ -36,17 +36,45 @@ def pose_keys(description: RobotDescription, group: str, pose: SE3, frame: str) 
     place: dict[str, Any] = {} if frame == "world" else {"frame": frame}
     place["xyz"] = [round(float(value), 5) for value in pose.translation]
     if len(description.groups[group].joint_names) < WHOLE_POSE_JOINTS:
-        return {"position": place, "pitch": round(pitch_of(pose.rotation), 5)}
-    w, x, y, z = (float(value) for value in pose.as_vector()[3:])
-    place["quat_xyzw"] = [round(value, 6) for value in (x, y, z, w)]
+        return {"position": place, "pitch": degrees(pitch_of(pose.rotation))}
+    place["rpy"] = rpy_degrees(pose.rotation)
     return {"pose": place}
 
 
 def joint_keys(description: RobotDescription, group: str, positions: FloatArray) -> dict[str, Any]:
-    """The goal keys of joint positions in description order."""
-    index = description.joint_index
-    names = description.groups[group].joint_names
-    return {"joints": {name: round(float(positions[index[name]]), 5) for name in names}}
+    """The goal keys of joint positions in description order; angles in degrees."""
+    values = {
+        name: float(positions[description.joint_index[name]])
+        for name in description.groups[group].joint_names
+    }
+    slides = {joint.name for joint in description.joints if joint.kind == "prismatic"}
+    return {
+        "joints": {
+            name: round(value, 5) if name in slides else degrees(value)
+            for name, value in values.items()
+        }
+    }
+
+
+def degrees(angle: float) -> str | int:
+    """An angle [rad] as a scenario has it: `20 deg`; a zero alone."""
+    value = round(float(np.degrees(angle)), 3)
+    return f"{value:g} deg" if value else 0
+
+
+def rpy_degrees(rotation: FloatArray) -> list[str | int]:
+    """Roll, pitch and yaw of a rotation as a scenario has them; yaw is 0 where pitch is 90 deg."""
+    level = float(np.hypot(rotation[0, 0], rotation[1, 0]))
+    pitch = np.arctan2(-rotation[2, 0], level)
+    if level < 1e-6:  # only the sum of roll and yaw is determined
+        return [degrees(np.arctan2(-rotation[1, 2], rotation[1, 1])), degrees(pitch), 0]
+    roll = np.arctan2(rotation[2, 1], rotation[2, 2])
+    return [degrees(roll), degrees(pitch), degrees(np.arctan2(rotation[1, 0], rotation[0, 0]))]
+
+
+def of_arm(description: RobotDescription, step: str) -> str:
+    """A step of the selected arm, of a robot that has several."""
+    return f"{step}\nrobot: {description.selected_arm}" if description.selected_arm else step
 
 
 def gripper_steps(description: RobotDescription) -> dict[str, str]:
@@ -60,16 +88,15 @@ def gripper_steps(description: RobotDescription) -> dict[str, str]:
     steps = {state: f"gripper: {state}" for state in description.states_of(gripper.group)}
     if gripper.cups:
         ends = {"open": gripper.open_position, "close": gripper.closed_position}
-        return {word: step_text("gripper", {"position": end}) for word, end in ends.items()} | steps
+        found = {word: step_text("gripper", {"position": end}) for word, end in ends.items()}
+        return {word: of_arm(description, step) for word, step in (found | steps).items()}
     widths = gripper.widths[:, 1]
     narrowest, widest = np.ceil(1e4 * widths.min()) / 1e4, np.floor(1e4 * widths.max()) / 1e4
     closed = next((steps.pop(word) for word in ("closed", "close") if word in steps), None)
     opened = steps.pop("open", None) or step_text("gripper", {"width": float(widest)})
-    return {
-        "open": opened,
-        "close": closed or step_text("gripper", {"width": float(narrowest)}),
-        **steps,
-    }
+    closed = closed or step_text("gripper", {"width": float(narrowest)})
+    found = {"open": opened, "close": closed, **steps}
+    return {word: of_arm(description, step) for word, step in found.items()}
 
 
 AXES: dict[str, tuple[int, ...]] = {"box": (0, 1, 2), "cylinder": (0, 2), "sphere": (2,)}
@@ -167,8 +194,8 @@ class ObjectForm:
 
 def pose_keys_of(pose: SE3) -> dict[str, Any]:
     """The pose of an object in the world."""
-    vector = pose.as_vector()
-    keys = {"xyz": [round(float(value), 4) for value in vector[:3]]}
-    if abs(vector[3]) < 1 - 1e-6:
-        keys["quat_wxyz"] = [round(float(value), 5) for value in vector[3:]]
+    keys: dict[str, Any] = {"xyz": [round(float(value), 4) for value in pose.translation]}
+    turn = rpy_degrees(pose.rotation)
+    if any(turn):
+        keys["rpy"] = turn
     return keys

@@ -6,13 +6,16 @@ import time
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from harness.core.resources import data_folder
 from harness.core.spatial import SE3
-from harness.plugins.studio.document import new_text
+from harness.plugins.studio.document import flow, new_text
 from harness.plugins.studio.files import StudioFiles
 from harness.plugins.studio.live_camera import PERIOD
 from harness.plugins.studio.session import guarded
+from harness.plugins.studio.texts import pose_keys_of, rpy_degrees
 
 studio_module = pytest.importorskip("harness.plugins.studio.studio")
 ROBOT = "open_manipulator_x"
@@ -55,7 +58,7 @@ def test_an_object_is_moved_in_the_text_at_the_start_and_with_a_step_afterwards(
     reply(studio, "add_object", **BOX)
     turned = SE3.from_xyz_rpy([0.25, 0.1, 0.04], [0, 0, np.pi / 2])
     studio.put_object("box", turned)
-    assert "xyz: [0.25, 0.1, 0.04], quat_wxyz: [0.70711, 0, 0, 0.70711]" in studio.text
+    assert "xyz: [0.25, 0.1, 0.04], rpy: [0, 0, 90 deg]" in studio.text
     reply(studio, "execute", step="gripper: open")
     studio.put_object("box", SE3.from_xyz_rpy([0.2, -0.1, 0.04], [0, 0, 0]))
     assert "- move_object: {object: box, pose: {xyz: [0.2, -0.1, 0.04]}}\n" in studio.text
@@ -113,7 +116,7 @@ def test_a_goal_is_recorded_in_the_chosen_frame(studio):
     [reach] = [each for each in shown if each["type"] == "reach"]
     assert (reach["frame"], reach["pose"][:3]) == ("box", pytest.approx([0, 0, 0.11], abs=1e-6))
     done = reply(studio, "execute", verb="move_to", frame="box")
-    assert done["step"] == ("move_to: {position: {frame: box, xyz: [0, 0, 0.11]}, pitch: 1.0472}")
+    assert done["step"] == ("move_to: {position: {frame: box, xyz: [0, 0, 0.11]}, pitch: 60 deg}")
     assert studio.cell.tcp_pose().translation == pytest.approx([0.2, 0, 0.15], abs=2e-3)
 
 
@@ -252,7 +255,7 @@ def test_a_goal_is_a_list_of_joint_positions_with_keys_of_the_planner(studio):
     goal_of = {"verb": "move_to", "joints": [20, 0, 0, 0], "unit": "deg", "planner": planner}
     done = reply(studio, "execute", **goal_of)
     assert done["step"].splitlines() == [
-        "move_to: {joints: {joint1: 0.349066, joint2: 0, joint3: 0, joint4: 0}}",
+        "move_to: {joints: {joint1: 20 deg, joint2: 0, joint3: 0, joint4: 0}}",
         "planning: {planner_id: RRTConnect, planning_attempts: 2}",
     ]
     assert studio.cell.joint_positions()[0] == pytest.approx(0.349, abs=5e-3)
@@ -343,3 +346,121 @@ def test_expectations_that_observe_more_keep_the_steps_before_them(studio):
     assert studio.busy == ""
     assert studio.cell.steps_done == 1
     assert studio.cell.joint_positions() == pytest.approx(positions, abs=1e-9)
+
+
+def moved_by_hand(studio, positions):
+    for joint, value in positions.items():
+        assert reply(studio, "jog", joint=joint, value=value) == {}
+    while studio.target is not None:
+        studio._go_on(0.02)  # noqa: SLF001 - what the thread does between two pictures
+
+
+@pytest.mark.parametrize("positions", [{"joint1": 0.4}, {"joint2": -0.5, "joint4": 0.3}])
+def test_a_slider_then_execute_then_the_whole_run(studio, positions):
+    moved_by_hand(studio, positions)
+    assert reply(studio, "execute", verb="move_to")["status"] == "passed"
+    assert studio.cell.document.step_count == 1
+    assert reply(studio, "run", until="end") == {}
+    assert studio.verdicts.taken(wait=True)["outcome"] == "passed"
+    reached = studio.cell.joint_positions()
+    for name, value in positions.items():
+        index = studio.cell.description.joint_index[name]
+        assert reached[index] == pytest.approx(value, abs=5e-3)
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        {"verb": "move_to", "here": True},
+        {"verb": "ptp", "joints": [0, 0, 0, 0]},
+    ],
+    ids=["the positions of now", "a list"],
+)
+def test_nothing_is_recorded_where_nothing_moves(studio, request_):
+    before = studio.text
+    assert "no step was recorded" in reply(studio, "execute", **request_)["note"]
+    assert (studio.text, studio.cell.steps_done) == (before, 0)
+    assert studio.cell.is_run
+
+
+def test_a_gripper_that_is_open_is_not_opened_again(studio):
+    opens = {"step": "gripper: open", "if_moved": True}
+    assert "note" not in reply(studio, "execute", **opens)
+    assert "no step was recorded" in reply(studio, "execute", **opens)["note"]
+    assert studio.cell.document.step_count == 1
+
+
+def test_positions_are_recorded_after_motions_by_hand_and_not_twice(studio):
+    moved_by_hand(studio, {"joint1": -0.3})
+    assert "note" not in reply(studio, "execute", here=True)
+    assert "joint1: -17.1" in studio.text
+    text = studio.text
+    assert "no step was recorded" in reply(studio, "execute", here=True)["note"]
+    assert studio.text == text
+
+
+@pytest.mark.parametrize(
+    ("rpy", "written"),
+    [
+        ([180, 0, 90], "[180 deg, 0, 90 deg]"),
+        ([0, 90, 0], "[0, 90 deg, 0]"),
+        ([-150, 20, 45], "[-150 deg, 20 deg, 45 deg]"),
+    ],
+)
+def test_poses_are_written_as_roll_pitch_and_yaw_in_degrees(rpy, written):
+    pose = SE3.from_xyz_rpy([0.25, 0.1, 0.04], np.radians(rpy))
+    assert flow(pose_keys_of(pose)) == f"{{xyz: [0.25, 0.1, 0.04], rpy: {written}}}"
+
+
+@given(angles=st.tuples(*[st.floats(-180, 180)] * 3))
+def test_the_written_angles_are_the_rotation(angles):
+    pose = SE3.from_xyz_rpy([0, 0, 0], np.radians(angles))
+    written = [float(str(each).removesuffix(" deg")) for each in rpy_degrees(pose.rotation)]
+    again = SE3.from_xyz_rpy([0, 0, 0], np.radians(written))
+    assert pose.distance_to(again)[1] < 1e-4
+
+
+TWO_ARMS = """\
+scenario: two arms
+robots:
+  left: {model: open_manipulator_x, base: {xyz: [0, 0.3, 0]}}
+  right: {model: open_manipulator_x, base: {xyz: [0, -0.3, 0]}}
+steps: []
+"""
+
+
+def test_each_arm_of_a_cell_is_moved_and_recorded_by_its_name(tmp_path):
+    studio = opened(tmp_path, TWO_ARMS)
+    said = studio_module.robot_message(studio.cell)
+    assert (said["arms"], said["arm"]) == (["left", "right"], "left")
+    assert "the arms are left, right" in reply(studio, "arm", name="middle")["error"]
+    for arm, side in (("right", -0.3), ("left", 0.3)):
+        assert reply(studio, "arm", name=arm) == {}
+        said = studio_module.robot_message(studio.cell)
+        assert all(name.startswith(arm) for name in said["arm_joints"])
+        assert studio.cell.tcp_pose().translation[1] == pytest.approx(side, abs=1e-3)
+        assert goal(studio, [0.2, side, 0.15], 60) == {"refusal": "", "ways": 1}
+        assert reply(studio, "execute", verb="move_to")["status"] == "passed"
+        assert studio.cell.tcp_pose().translation == pytest.approx([0.2, side, 0.15], abs=2e-3)
+        step = said["gripper"]["steps"]["open"]
+        assert step.endswith(f"robot: {arm}")
+        assert "note" not in reply(studio, "execute", step=step, if_moved=True)
+    assert (studio.text.count("robot: left"), studio.text.count("robot: right")) == (2, 2)
+    assert reply(studio, "run", until="end") == {}
+    assert studio.verdicts.taken(wait=True)["outcome"] == "passed"
+
+
+def test_the_clock_is_that_of_the_record_and_what_was_lived_never_goes_back(studio):
+    def clocks():
+        studio._frame(False)  # noqa: SLF001
+        message = studio.state_message()
+        return message["time"], message["live"]
+
+    reply(studio, "advance", seconds=0.5)
+    assert clocks() == (0.0, pytest.approx(0.5))
+    reply(studio, "execute", step="wait: 100 ms")
+    time, live = clocks()
+    assert time == pytest.approx(0.1, abs=0.01), "physics between steps has no record"
+    assert live >= 0.5
+    reply(studio, "reset")
+    assert clocks()[1] >= live

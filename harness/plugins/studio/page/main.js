@@ -153,8 +153,8 @@ on("connected", () => document.body.classList.remove("lost"));
 // -- what is done ---------------------------------------------------------------------------
 
 async function run(step) {
-  const reply = await act("execute", { step });
-  if (!reply.error) log("passed", reply.step);
+  const reply = await act("execute", { step, if_moved: true });
+  if (!reply.error) log("passed", reply.note ?? reply.step);
   return reply;
 }
 
@@ -172,7 +172,7 @@ const goal = () => ({ verb: $("verb").value, state: $("goal-kind").value === LIS
 function showPlan(reply) {
   $("plan-result").replaceChildren(reply.error
     ? element("div", { class: "failed" }, reply.error, ...(reply.explanation ?? []).map((l) => element("div", { class: "explanation" }, l)))
-    : element("div", {}, reply.duration === undefined ? `executed: ${reply.step}` : `${reply.step} takes ${reply.duration} s over ${(1000 * reply.length).toFixed(0)} mm (${reply.planner})`));
+    : element("div", {}, reply.duration === undefined ? reply.note ?? `executed: ${reply.step}` : `${reply.step} takes ${reply.duration} s over ${(1000 * reply.length).toFixed(0)} mm (${reply.planner})`));
 }
 
 const click = (id, action) => $(id).addEventListener("click", action);
