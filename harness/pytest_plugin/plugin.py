@@ -36,6 +36,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--harness-no-report", action="store_true", default=False, help="do not write reports"
     )
     group.addoption(
+        "--harness-reporter",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="let a reporter write into the reports too, such as green=DIR, which compares runs"
+        " that fail with the last one that passed; repeatable",
+    )
+    group.addoption(
         "--harness-history",
         metavar="DIR",
         default=None,
@@ -90,6 +98,8 @@ def pytest_configure(config: pytest.Config) -> None:
     modules = [*config.getini("harness_plugins"), *(config.getoption("--harness-plugin") or [])]
     if modules:
         _load_plugins(modules)
+    for name in config.getoption("--harness-reporter") or ():
+        _refuse_unknown_reporter(name)
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(SessionResults(config), "armharness-session")
 
@@ -102,6 +112,15 @@ def _load_plugins(modules: list[str]) -> None:
             load_plugin(module)
     except PluginError as error:
         raise pytest.UsageError(str(error)) from error
+
+
+def _refuse_unknown_reporter(name: str) -> None:
+    from harness.reporting.reporter import find_reporter
+
+    try:
+        find_reporter(name)
+    except LookupError as error:
+        raise pytest.UsageError(f"--harness-reporter: {error.args[0]}") from None
 
 
 @pytest.hookimpl(wrapper=True)

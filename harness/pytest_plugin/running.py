@@ -49,6 +49,7 @@ class ScenarioNotPassed(Exception):
         lines = causes(result, source_lines(Path(result.file)))
         if result.report_dir:
             lines.append(printable(f"report: {result.report_dir}"))
+        lines += [printable(f"page: {page}") for page in result.further_pages]
         super().__init__("\n".join(lines))
 
 
@@ -84,6 +85,7 @@ def run_item(item: pytest.Item, header: ScenarioHeader, case: str, number: int) 
     request = SuiteRequest(
         report_root=root,
         strict=bool(item.config.getoption("--harness-strict")),
+        reporters=tuple(item.config.getoption("--harness-reporter") or ()),
         nodes=nodes_of(item.config),
     )
     plan = [

@@ -20,9 +20,14 @@ class Reporter(Plugin, ABC):
     """A reporter, selected by `harness run --reporter NAME`.
 
     A reporter reads the finished run, its verdicts and its outcome, and changes none of them.
+
+    Attributes:
+        argument: The text after the name in `--reporter NAME=TEXT`; empty without one.
     """
 
     plugin_kind: ClassVar[str] = "reporter"
+
+    argument: str = ""
 
     def begin(self, stored: StoredRun) -> None:
         """Prepare what does not depend on pictures; by default nothing.
@@ -46,13 +51,12 @@ class Reports:
     """The reports of one case."""
 
     def __init__(self, names: Sequence[str]) -> None:
-        """Load reporters.
+        """Load reporters, each by `NAME` or `NAME=TEXT`.
 
         Raises:
-            HarnessError: There is no reporter of that name.
+            LookupError: There is no reporter of that name.
         """
-        reporters = registry(Reporter.plugin_kind)
-        self._reporters: dict[str, Reporter] = {name: reporters[name]() for name in names}
+        self._reporters = [find_reporter(text) for text in names]
 
     def begin(self, stored: StoredRun) -> None:
         """Prepare all reports.
@@ -60,8 +64,8 @@ class Reports:
         Raises:
             HarnessError: A reporter fails; names it and its package.
         """
-        for name, reporter in self._reporters.items():
-            with _blames(name):
+        for reporter in self._reporters:
+            with _blames(reporter.name):
                 reporter.begin(stored)
 
     def write(self, folder: Path, stored: StoredRun, activity: Activity = unobserved) -> None:
@@ -70,10 +74,22 @@ class Reports:
         Raises:
             HarnessError: A reporter fails; names it and its package.
         """
-        for name, reporter in self._reporters.items():
-            activity(f"writing the report `{name}`", 0, 0)
-            with _blames(name):
+        for reporter in self._reporters:
+            activity(f"writing the report `{reporter.name}`", 0, 0)
+            with _blames(reporter.name):
                 reporter.write(folder, stored)
+
+
+def find_reporter(text: str) -> Reporter:
+    """The reporter of `NAME` or `NAME=TEXT`, with its argument.
+
+    Raises:
+        LookupError: There is no reporter of that name; the message has the nearest one.
+    """
+    name, _, argument = text.partition("=")
+    reporter: Reporter = registry(Reporter.plugin_kind).find(name)()
+    reporter.argument = argument
+    return reporter
 
 
 @contextmanager

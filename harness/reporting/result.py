@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from harness.core.errors import Problem
 from harness.recording.run import Outcome
 from harness.recording.step_record import StepRecord, StepStatus
+from harness.recording.stored_run import PAGE
 from harness.recording.verdict import Verdict
 from harness.reporting.explanation import explanation_lines
 
@@ -95,6 +97,12 @@ class CaseResult:
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     wall_times: Mapping[str, float] = field(default_factory=dict[str, float])
     inputs: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    @property
+    def further_pages(self) -> list[str]:
+        """The pages in its folder but its own, which other reporters wrote."""
+        pages = Path(self.report_dir).glob("*.html") if self.report_dir else ()
+        return sorted(str(page) for page in pages if page.name != PAGE)
 
     @property
     def name(self) -> str:

@@ -164,6 +164,7 @@ def failure(
     lines += [f"  {line}" for cause in causes(result, source) for line in cause.split("\n")]
     if result.report_dir:
         lines.append(f"  report: {report_link(result, style)}")
+        lines += [f"  page:   {style.link(page, _uri(page))}" for page in result.further_pages]
     if again:
         lines.append(f"  again:  {again}")
     return _joined(lines)
@@ -174,7 +175,11 @@ def report_link(result: CaseResult, style: Style = PLAIN) -> str:
     if not result.page:
         return result.report_dir
     place = failure_place(result)
-    return style.link(f"{result.page}{place}", f"{Path(result.page).resolve().as_uri()}{place}")
+    return style.link(f"{result.page}{place}", f"{_uri(result.page)}{place}")
+
+
+def _uri(page: str) -> str:
+    return Path(page).resolve().as_uri()
 
 
 def failure_place(result: CaseResult) -> str:

@@ -398,3 +398,21 @@ def test_stepwise_continues_with_the_case_that_failed(pytester, write):
     options = ("-p", "no:randomly", "--harness-no-report", "--sw")
     pytester.runpytest(*options).assert_outcomes(failed=1, passed=1)
     pytester.runpytest(*options).assert_outcomes(failed=1, deselected=1)
+
+
+def test_a_failed_case_is_compared_with_the_last_one_that_passed(pytester, write):
+    text = (
+        "scenario: still\nrobot: open_manipulator_x\n"
+        "steps: [{wait: 0.1}]\nexpect: [{duration: {at_most: 0.2 s}}]\n"
+    )
+    write(still=text)
+    options = ("--harness-reporter", "green=kept")
+    run(pytester, *options).assert_outcomes(passed=1)
+    write(still=text.replace("0.2", "0.05"))
+    result = run(pytester, *options)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["page: *against_last_green.html"])
+    [page] = pytester.path.rglob("against_last_green.html")
+    assert "at_most: 0.05 s" in page.read_text()
+    wrong = run(pytester, "--harness-reporter", "gren=kept")
+    wrong.stderr.fnmatch_lines(["*there is no reporter 'gren'; did you mean `green`?*"])

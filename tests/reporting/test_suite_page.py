@@ -1,5 +1,6 @@
 """A suite's page in a real browser, opened from disk."""
 
+import shlex
 from dataclasses import replace
 
 import cv2
@@ -11,7 +12,7 @@ from harness.reporting.result import StepLine
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
 from tests.reporting.browser import wait_for
-from tests.reporting.suites import failed, large_suite, small_suite
+from tests.reporting.suites import STUCK, failed, large_suite, passed, small_suite
 
 
 @pytest.fixture(scope="module")
@@ -189,3 +190,39 @@ def test_view_opens_the_page_of_many_runs_and_says_where_a_run_is(small, tmp_pat
     (tmp_path / "pick/run.json").write_text("{}")
     assert main(["view", str(tmp_path), "--no-open"]) == 2
     assert f"there is a run in '{tmp_path}/pick'" in capsys.readouterr().err
+
+
+def test_a_case_offers_the_command_that_compares_it_with_another_one(tmp_path, visit):
+    near = replace(passed(2), report_dir="a/pick/it's 2", page="a/pick/it's 2/report.html")
+    far = replace(STUCK, report_dir="b/place", outcome="passed")
+    alone = SuiteRecord("failed", [SuiteCase(failed(1)), SuiteCase(STUCK)])
+    record = SuiteRecord("failed", [SuiteCase(each) for each in (failed(1), far, near)])
+    write_suite(tmp_path / "one", alone, 1)
+    write_suite(tmp_path / "three", record, 1)
+    page = visit(tmp_path / "one" / "index.html").page
+    page.wait_for_selector("tr.case")
+    assert page.locator("button.compare").count() == 0, "there is no other run"
+    page = visit(tmp_path / "three" / "index.html").page
+    page.click("tr.case[data-outcome=failed] summary")
+    page.click("tr.case[data-outcome=failed] button.compare")
+    assert page.locator(".compared option").all_inner_texts() == [
+        f"{near.name} (passed)", f"{far.name} (passed)"
+    ]  # fmt: skip
+    words = shlex.split(page.inner_text(".compared code"))
+    assert words == ["harness", "compare", near.report_dir, "a/pick/c1"]
+    page.select_option(".compared select", index=1)
+    assert page.inner_text(".compared code") == "harness compare b/place a/pick/c1"
+    page.click(".compared .copy")
+    assert page.evaluate("getSelection().toString()") == "harness compare b/place a/pick/c1"
+
+
+def test_pages_of_other_reporters_are_linked(tmp_path, visit):
+    report = tmp_path / "a" / "pick" / "c1"
+    report.mkdir(parents=True)
+    for name in ("report", "against_last_green"):
+        (report / f"{name}.html").write_text("<!doctype html><title>page</title>")
+    case = replace(failed(1), report_dir=str(report), page=str(report / "report.html"))
+    write_suite(tmp_path, SuiteRecord("failed", [SuiteCase(case), SuiteCase(STUCK)]), 1)
+    page = visit(tmp_path / "index.html").page
+    page.click("a.page:text-is('against last green')")
+    page.wait_for_url("**/a/pick/c1/against_last_green.html")

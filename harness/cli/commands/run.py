@@ -128,6 +128,7 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> SuiteRun:
+    from harness.reporting.reporter import find_reporter
     from harness.session.run_request import named_commands
     from harness.suite.plan import planned_cases
     from harness.suite.suite_run import SuiteRun
@@ -138,7 +139,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHoo
         raise UsageError(f"--history '{arguments.history}' is no folder")
     for name in arguments.reporters:
         try:
-            registry("reporter").find(name)
+            find_reporter(name)
         except LookupError as error:
             raise UsageError(f"--reporter: {error.args[0]}") from None
     if arguments.bag or "rosbag" in arguments.reporters:

@@ -22,7 +22,7 @@ FOLDER = Path(__file__).with_name("page")
 
 
 def comparison_page(
-    first: StoredRun, second: StoredRun, comparison: RunComparison, folders: tuple[Path, Path]
+    first: StoredRun, second: StoredRun, comparison: RunComparison, names: tuple[str, str]
 ) -> str:
     """The text of the page.
 
@@ -30,7 +30,7 @@ def comparison_page(
         first: The run that the other one is compared with.
         second: The run that is compared with it.
         comparison: What differs between both of them.
-        folders: Those of the runs, which give them their names.
+        names: What the page calls the runs.
     """
     groups = _groups(comparison.changes)
     parting = comparison.first_difference
@@ -46,7 +46,8 @@ def comparison_page(
         script=bundle.script(FOLDER / "compare.js"),
         style=bundle.style() + (FOLDER / "compare.css").read_text(encoding="utf-8"),
         runs=(first, second),
-        folders=[printable(name) for name in distinct_parts(*folders)],
+        title=first.run.scenario,
+        names=[printable(name) for name in names],
         outcome="same" if comparison.is_same else "different",
         tone="good" if comparison.is_same else "bad",
         parting=text,

@@ -74,7 +74,7 @@ def rendered(file: Path, *, script: str, style: str, **content: object) -> str:
     """A self-contained page of a template, in which every text of a run stays text.
 
     Args:
-        file: The template; its folder has what it includes.
+        file: The template; it includes those of its folder, or of the run page.
         **content: What the template shows.
     """
     from markupsafe import Markup
@@ -89,11 +89,11 @@ def rendered(file: Path, *, script: str, style: str, **content: object) -> str:
 
 @cache
 def templates(folder: Path) -> Environment:
-    """The templates of a folder, each of which is compiled when it is used first."""
+    """The templates of a folder, then the run page's; each is compiled when it is used first."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined  # not before it is needed
 
     environment = Environment(
-        loader=FileSystemLoader(folder),
+        loader=FileSystemLoader([folder, FOLDER]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -61,6 +61,7 @@ class Page:
             script=bundle.script(),
             style=bundle.style(),
             run=stored.run,
+            title=stored.run.scenario,
             outcome=stored.outcome,
             tone="good" if stored.outcome == "passed" else "bad",
             header=[(name, value, _short(value)) for name, value in header_facts(stored) if value],

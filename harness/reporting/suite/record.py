@@ -22,6 +22,11 @@ from harness.reporting.suite.cause import Cause, cause_of
 FORMAT = "armharness-results/1"
 
 
+def link_from(folder: Path, target: str) -> str:
+    """The address of a file, from a page in a folder."""
+    return quote(Path(os.path.relpath(Path(target).resolve(), folder.resolve())).as_posix())
+
+
 @dataclass(frozen=True)
 class SuiteCase:
     """A case with what its file says of it.
@@ -53,9 +58,7 @@ class SuiteCase:
     def link(self, folder: Path) -> str:
         """The case's page, or its folder, from a page in another folder; empty without one."""
         target = self.result.page or self.result.report_dir
-        if not target:
-            return ""
-        return quote(Path(os.path.relpath(Path(target).resolve(), folder.resolve())).as_posix())
+        return link_from(folder, target) if target else ""
 
     @property
     def urgency(self) -> tuple[bool, float]:

@@ -15,7 +15,7 @@ from harness.reporting.result import CaseResult
 from harness.reporting.sampled import short_value
 from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.history import History
-from harness.reporting.suite.record import SuiteCase
+from harness.reporting.suite.record import SuiteCase, link_from
 from harness.reporting.terminal import causes, failure_place
 
 NO_MARGIN = 9.0  # a share that sorts after every margin, which is 1 at most
@@ -50,6 +50,11 @@ def row_facts(
         "why": " ".join(cause.text.split()) if cause else "",
         "details": causes(result) if cause else [],
         "case": result.case,
+        "report": result.report_dir,
+        "pages": [
+            {"name": Path(page).stem.replace("_", " "), "link": link_from(folder, page)}
+            for page in result.further_pages
+        ],
         "link": case.link(folder) + (failure_place(result) if result.page else ""),
         "share": case.share if math.isfinite(case.share) else NO_MARGIN,
         "used": used,

@@ -36,7 +36,7 @@ class CompareCommand(Command):
         """Compare two runs' folders; exit code 1 when they are not the same."""
         folders = run_folder(arguments.first), run_folder(arguments.second)
         from harness.plugins.comparison.compare import compare
-        from harness.plugins.comparison.html import comparison_page
+        from harness.plugins.comparison.html import comparison_page, distinct_parts
         from harness.plugins.comparison.lines import comparison_lines
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import blames_changes
@@ -52,7 +52,8 @@ class CompareCommand(Command):
                 arguments.page or not (is_good or arguments.json)
             )
             if has_page:
-                write_text(file, comparison_page(first, second, comparison, folders))
+                names = distinct_parts(*folders)
+                write_text(file, comparison_page(first, second, comparison, names))
         code = 0 if is_good else EXIT_CODES["failed"]
         if arguments.json:
             facts = {"exit_code": code, "comparison": comparison}

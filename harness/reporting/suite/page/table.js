@@ -1,5 +1,6 @@
 // The table of cases. Rows are made as far as the page is scrolled.
 
+import { comparing, runCommand } from "./comparing.js";
 import { element } from "./dom.js";
 import { outcomeBar } from "./query.js";
 
@@ -57,7 +58,7 @@ export function startTable(payload) {
       element("td.still", {}, row.link && still ? element("a", { href: row.link, tabindex: -1 }, still) : still),
       element("td.about", {},
         element("span.title", {}, name, ...row.tags.map((tag) => element("span.tag", {}, tag))),
-        element("div.quiet", {}, row.file, row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
+        element("div.quiet", {}, row.file, ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
         row.why && why(row)),
       element("td.nearest", {}, row.margin && allowance(row), row.margin && element("div.quiet", {}, row.expectation)),
       payload.run.history && element("td.history", {}, row.trend && spark(row.trend)),
@@ -72,14 +73,14 @@ export function startTable(payload) {
       ...row.details.map((text) => element("pre", {}, text)), facts(row));
   }
 
+  function facts(row) {
+    return element("div.facts", {}, `simulated ${row.simulated.toFixed(2)} s · seed ${row.seed}`,
+      row.digest && ` · digest ${row.digest}`, " · ", runCommand(row), comparing(row, payload.run.rows));
+  }
+
   return { show: watched(more, extend, show) };
 }
 
-function facts(row) {
-  const command = `harness run ${row.file}${row.case ? ` --case ${row.case}` : ""}`;
-  return element("div.facts", {}, `simulated ${row.simulated.toFixed(2)} s · seed ${row.seed}`,
-    row.digest && ` · digest ${row.digest}`, " · ", element("code", {}, command));
-}
 
 /** How much of the allowance was used, and the margin. */
 function allowance(row) {

@@ -1,0 +1,44 @@
+// The commands of a case: to run it again, and to compare its run with that of another case.
+
+import { element } from "./dom.js";
+
+/** @param {any} row @returns {HTMLElement} what runs it again */
+export function runCommand({ file, case: name }) {
+  return command(["harness", "run", file, ...(name ? ["--case", name] : [])]);
+}
+
+/** @param {any} row @param {any[]} rows of the page @returns {HTMLElement | null} a button that opens the choice of another case; null where a run is missing */
+export function comparing(row, rows) {
+  const isPossible = row.report && rows.some((each) => each.report && each !== row);
+  return isPossible ? element("button.compare", { type: "button", onclick: ({ target }) => target.replaceWith(choice(row, rows)) }, "compare with…") : null;
+}
+
+/** Another case, of ten thousand perhaps, and the command. */
+function choice(row, rows) {
+  const others = rows.filter((each) => each.report && each !== row).sort((a, b) => distance(row, a) - distance(row, b));
+  const place = element("span");
+  const show = (other) => place.replaceChildren(command(["harness", "compare", other.report, row.report]));
+  const list = element("select", { "aria-label": `compare ${row.name} with`, onchange: ({ target }) => show(others[target.selectedIndex]) },
+    ...others.map(({ name, outcome }) => element("option", {}, `${name} (${outcome})`)));
+  show(others[0]);
+  return element("div.compared", {}, "compare with ", list, place);
+}
+
+/** Cases of the same file come first, and of these the ones that passed. */
+function distance(row, other) {
+  return 2 * (row.file !== other.file) + (other.outcome !== "passed");
+}
+
+/** A command for a shell, and a button that copies it. */
+function command(words) {
+  const text = words.map((word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`)).join(" ");
+  const button = element("button.copy", { type: "button", "aria-label": `copy ${text}`, onclick: copy }, "copy");
+  const code = element("code", {}, text);
+  return element("span.command", {}, code, button);
+
+  async function copy() {
+    getSelection().selectAllChildren(code); // where the clipboard is refused, a key copies it
+    await navigator.clipboard?.writeText(text);
+    button.textContent = "copied";
+  }
+}
