@@ -105,7 +105,7 @@ def find_constrained_motion(
         "no free path that satisfies the constraints was found in at most "
         f"{task.options.max_state_checks} state checks",
         *explanation,
-        SearchFailure(task.checker.checks + held.checks),
+        SearchFailure(_spent(task, held)),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from textwrap import indent
@@ -38,6 +39,7 @@ Say = Callable[[str], None]
 
 FEEDBACK_EVERY = 5  # ticks between messages of feedback: 20 Hz, as controllers are set
 LOOK_EVERY = 50  # ticks between two looks at how nodes use topics
+BREATH = 0.001  # wall time between two looks at whether a plan is made [s]
 MOST_NOTES = 50  # notes that are given of a run while it continues
 LOG, WARN = "rcl_interfaces/msg/Log", 30  # the type of /rosout, on which notes are published too
 
@@ -145,7 +147,7 @@ class LiveControl(HandOver):
         if self.scene is not None and not self._move_group.is_open:
             self._move_group.begin(self.scene)
         self._graph.spin(self._pace.next())
-        self._pace.pause(self._move_group.work())
+        self._answer()
         self._pace.tick()
         if self._pace.ticks % LOOK_EVERY == 0:
             self._look_at_names()
@@ -155,6 +157,17 @@ class LiveControl(HandOver):
         if program is not None and program.exit_code is not None and self.cell.end is None:
             self.cell.receive("end", reason="exit", code=program.exit_code)
             program.stop()
+
+    def _answer(self) -> None:
+        """Answer MoveIt's clients, while simulated time stands still, and all others meanwhile."""
+        begin, is_busy = time.monotonic(), True
+        while is_busy and not self._request.stop.is_set():
+            is_busy = self._move_group.work()
+            if is_busy:
+                self._graph.spin(time.monotonic() + BREATH)
+            now = time.monotonic()
+            self._pace.pause(now - begin)
+            begin = now
 
     def after(self) -> None:
         simulator = self.simulator

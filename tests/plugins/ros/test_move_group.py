@@ -290,8 +290,8 @@ def test_goals_that_are_canceled_before_they_are_planned_do_not_move_the_arm(tmp
                 request=request(joint_goal({"elbow_joint": 0}), max_velocity_scaling_factor=0.1),
             )
         )
-        node.wait(lambda: slow.is_accepted)
-        client.call("compute_fk", "GetPositionFK")  # which is answered after the goal is planned
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.wait(lambda: states and abs(states[-1].velocity).max() > 0.05)
         client.move.cancel(slow)
         node.wait(lambda: slow.is_over)
     preempted = NUMBERS["PREEMPTED"]
@@ -307,6 +307,86 @@ def test_goals_that_are_canceled_before_they_are_planned_do_not_move_the_arm(tmp
     assert kinds == ["plan", "trajectory", "plan", "trajectory", "cancel", "plan", "trajectory",
                      "cancel"]  # fmt: skip
     assert replay(tmp_path / "run").digest == results[0].case.digest
+
+
+LEFT = {
+    "shoulder_pan_joint": 0.0, "shoulder_lift_joint": -1.2, "elbow_joint": 1.5,
+    "wrist_1_joint": -1.9, "wrist_2_joint": -1.57, "wrist_3_joint": 0.0,
+}  # fmt: skip
+RIGHT = {**LEFT, "shoulder_pan_joint": 3.0}
+CORRIDOR = (
+    box("north", (0, 0.24, 1), (3, 0.02, 2)),
+    box("south", (0, -0.24, 1), (3, 0.02, 2)),
+    box("lid", (0, 0, 0.75), (3, 0.5, 0.02)),
+)
+"""Walls between which the arm cannot turn round, from LEFT to RIGHT."""
+AXES = [f"absolute_{axis}_axis_tolerance" for axis in "xyz"]
+
+
+def test_a_plan_ends_with_its_allowed_time_and_other_requests_are_answered_meanwhile(tmp_path):
+    folder = tmp_path / "run"
+    with bridge(scenario(tmp_path, HOLD, robot=UR), run={"report_dir": folder}) as (node, results):
+        client = MoveGroupClient(node)
+        assert client.move_to(joint_goal(LEFT)).result.error_code.val == SUCCESS
+        assert client.apply(*CORRIDOR)
+
+        def answer(**fields):
+            requested = request(joint_goal(RIGHT), **fields)
+            planned = client.call(
+                "plan_kinematic_path", "GetMotionPlan", motion_plan_request=requested
+            )
+            return planned.motion_plan_response.error_code
+
+        for allowed, checks in ((0.02, 4_000), (0.005, 1_000), (1e-9, 1)):
+            code = answer(allowed_planning_time=allowed)
+            assert code.val == NUMBERS["TIMED_OUT"]
+            assert f"at most {checks} state checks" in code.message
+            assert f"allowed_planning_time: {allowed:g} s" in code.message
+        code = answer(allowed_planning_time=0.02, num_planning_attempts=8)
+        assert code.val == NUMBERS["TIMED_OUT"]
+        assert "8 searches with at most 500 state checks" in code.message
+        level = moveit(
+            "OrientationConstraint",
+            link_name="end_effector_link",
+            orientation=pose((0, 0, 0)).orientation,
+            **dict(zip(AXES, (0.2, 0.2, 4.0), strict=True)),
+        )
+        code = answer(
+            path_constraints=moveit("Constraints", orientation_constraints=[level]),
+            allowed_planning_time=0.02,
+        )
+        assert code.val == NUMBERS["TIMED_OUT"]
+
+        endless = request(joint_goal(RIGHT), allowed_planning_time=1e6)
+        first, second = (
+            client.move.send(message(f"{MOVE}_Goal", request=endless)) for _ in range(2)
+        )
+        node.wait(lambda: first.is_accepted and second.is_accepted)
+        client.call("compute_fk", "GetPositionFK")
+        target = moveit("PositionIKRequest", pose_stamped=stamped(pose((0.4, 0.1, 0.4))))
+        client.call("compute_ik", "GetPositionIK", ik_request=target)
+        assert len(client.scene().world.collision_objects) >= len(CORRIDOR)
+        assert not first.is_over
+        for each in (second, first):
+            client.move.cancel(each)
+            node.wait(lambda each=each: each.is_over)
+            assert outcome(each) == (Status.CANCELED, NUMBERS["PREEMPTED"])
+        assert answer(allowed_planning_time=0.005).val == NUMBERS["TIMED_OUT"]
+        client.move.send(message(f"{MOVE}_Goal", request=endless))  # until the session ends
+    assert results[0].case.outcome == "passed"
+    assert replay(folder).digest == results[0].case.digest
+
+
+def test_the_budget_of_the_scenario_is_the_most_that_a_request_may_use(tmp_path):
+    own = "planning: {max_state_checks: 300}\nexpect: [{always: within_limits}]"
+    with bridge(scenario(tmp_path, HOLD, own, robot=UR)) as (node, _):
+        client = MoveGroupClient(node)
+        assert client.move_to(joint_goal(LEFT)).result.error_code.val == SUCCESS
+        assert client.apply(*CORRIDOR)
+        for allowed in (0.0, -1.0, np.nan, 5.0, np.inf):
+            goal = client.move_to(joint_goal(RIGHT), allowed_planning_time=allowed)
+            assert goal.result.error_code.val == NUMBERS["TIMED_OUT"]
+            assert "at most 300 state checks" in goal.result.error_code.message
 
 
 CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.01, 0.01) for z in (-0.3, 0.3)])

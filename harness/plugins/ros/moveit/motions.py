@@ -11,9 +11,9 @@ from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.control.cell import CANCELED, PREEMPTED
 from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.interfaces import EXECUTE, MOVE
-from harness.plugins.ros.moveit.planning import plan_fields
+from harness.plugins.ros.moveit.planning import Planned, plan_fields
 from harness.plugins.ros.moveit.requests import Requests
-from harness.plugins.ros.moveit.scene_changes import changes_of_scene, is_empty
+from harness.plugins.ros.moveit.scene_changes import changes_of_scene
 from harness.plugins.ros.moveit.values import error_code
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wiring import trajectory_content
@@ -82,7 +82,7 @@ class Motions:
         server = self._servers[place]
         self._goals[goal] = _Goal(server, content, message(f"{server.kind}_Result"))
         begin = self._plan if server.kind == MOVE else self._execute
-        self._requests.put(lambda: begin(goal) if goal in self._goals else None)
+        self._requests.in_turn(lambda: begin(goal) if goal in self._goals else None)
         return True
 
     def _cancel(self, goal: str) -> None:
@@ -106,23 +106,26 @@ class Motions:
     def _plan(self, goal: str) -> None:
         """Plan a goal of `move_action`, and follow the plan unless it is requested alone."""
         known, requests = self._goals[goal], self._requests
-        options = known.content.planning_options
-        diff, before = options.planning_scene_diff, requests.here.as_message()
-        if not requests.change(changes_of_scene, diff):
-            self._finish(goal, StepFailed("FAILURE", "planning_scene_diff cannot be applied"))
+        options, cell = known.content.planning_options, requests.here.cell
+        try:
+            diff = [*changes_of_scene(cell, options.planning_scene_diff)]
+        except StepFailed as failure:
+            requests.report(failure)
+            self._finish(goal, failure)
             return
-        planned, code, seconds = requests.plan(known.content.request)
-        if not is_empty(diff):  # which is of this plan alone
-            requests.change(changes_of_scene, before)
-        fields = plan_fields(requests.here.cell, planned)
-        kind = f"{MOVE}_Result"
-        known.result = message(kind, error_code=code, planning_time=seconds, **fields)
-        if planned is None or options.plan_only:
-            self._goals.pop(goal)
-            known.server.finish(goal, planned is not None, known.result)
-            return
-        known.result.executed_trajectory = known.result.planned_trajectory
-        self._follow(goal, known.result.planned_trajectory)
+
+        def done(planned: Planned | None, code: Any, seconds: float) -> None:
+            fields, kind = plan_fields(cell, planned), f"{MOVE}_Result"
+            known.result = message(kind, error_code=code, planning_time=seconds, **fields)
+            if planned is None or options.plan_only:
+                self._goals.pop(goal)
+                known.server.finish(goal, planned is not None, known.result)
+                return
+            known.result.executed_trajectory = known.result.planned_trajectory
+            self._follow(goal, known.result.planned_trajectory)
+
+        content = known.content.request
+        requests.plan(content, done, diff=diff, is_awaited=lambda: goal in self._goals)
 
     def _execute(self, goal: str) -> None:
         self._follow(goal, self._goals[goal].content.trajectory)

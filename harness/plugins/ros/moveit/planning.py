@@ -10,7 +10,9 @@ import numpy as np
 from harness.cell.cell import Cell
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.registry import registry
+from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.plugins.ros.moveit.goals import arc_point_of, goal_of, path_constraints_of
 from harness.plugins.ros.moveit.values import (
     frame_of,
@@ -21,7 +23,7 @@ from harness.plugins.ros.moveit.values import (
     state_message,
 )
 from harness.ports.goals import AnyGoal, JointGoal, PoseGoal
-from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOptions
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import (
     CartesianPathOptions,
     CircularMotion,
@@ -32,6 +34,7 @@ from harness.ports.motions import (
     PlannedMotion,
     WaypointMotion,
 )
+from harness.recording.motion_failures import SearchFailure
 from harness.recording.step_results import CartesianPathResult
 from harness.reporting.rosbag.messages import message
 
@@ -49,13 +52,16 @@ PRECISION = 1e-3
 """How far a Cartesian path may leave its lines [m]: MoveIt names none."""
 
 
+SECONDS = 1.0
+"""The `allowed_planning_time` of a request that has none or a negative one [s], as in MoveIt."""
+
+
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A plan, the joint positions that it starts from, and its group."""
+    """The trajectory of a plan, and the joint positions that it starts from."""
 
-    plan: MotionPlan
+    trajectory: JointTrajectory
     start: FloatArray
-    group: str
 
 
 def plan_fields(cell: Cell, planned: Planned | None) -> dict[str, Any]:
@@ -67,7 +73,7 @@ def plan_fields(cell: Cell, planned: Planned | None) -> dict[str, Any]:
         }
     return {
         "trajectory_start": state_message(cell, planned.start),
-        "planned_trajectory": robot_trajectory(planned.plan.trajectory),
+        "planned_trajectory": robot_trajectory(planned.trajectory),
     }
 
 
@@ -76,6 +82,7 @@ def plan_motion(cell: Cell, request: Any) -> Planned:
 
     Raises:
         StepFailed: With MoveIt's code: there is no such motion, or the request cannot be read.
+            TIMED_OUT, when its `allowed_planning_time` is used up.
     """
     cell.sync_scene()
     group = group_of(cell, request.group_name)
@@ -83,8 +90,7 @@ def plan_motion(cell: Cell, request: Any) -> Planned:
         reason = "trajectory constraints and reference trajectories are not kept"
         raise StepFailed("FAILURE", reason)
     start = positions_of(cell, request.start_state)
-    attempts = min(max(1, int(request.num_planning_attempts)), MOST_ATTEMPTS)
-    options = replace(_scaled(cell, request), attempts=attempts)
+    options = _budgeted(_scaled(cell, request), request)
     pipeline = str(request.pipeline_id) or "ompl"
     if pipeline not in PLANNERS:
         known = ", ".join(PLANNERS)
@@ -93,8 +99,24 @@ def plan_motion(cell: Cell, request: Any) -> Planned:
     if pipeline == "ompl":
         name = "auto" if unknown_planner(request) else str(request.planner_id) or "auto"
         options = replace(options, pipeline="ompl", planner_id=name)
-    plan = cell.planner.plan(MotionRequest(group, start, motion, options))
-    return Planned(plan, start, group)
+    try:
+        plan = cell.planner.plan(MotionRequest(group, start, motion, options))
+    except PlanningFailed as failure:
+        search = failure.details.find(SearchFailure)
+        if search is None or search.state_checks < options.attempts * options.max_state_checks:
+            raise
+        reason = f"{failure.message}; allowed_planning_time: {request.allowed_planning_time:g} s"
+        raise StepFailed("TIMED_OUT", reason, *failure.details) from failure
+    return Planned(plan.trajectory, start)
+
+
+def _budgeted(options: PlanningOptions, request: Any) -> PlanningOptions:
+    """Options with the budget of a request, which its attempts share; the step's is the most."""
+    attempts = min(max(1, int(request.num_planning_attempts)), MOST_ATTEMPTS)
+    allowed = float(request.allowed_planning_time)
+    seconds = allowed if allowed > 0 else SECONDS
+    checks = min(float(options.max_state_checks), seconds * STATE_CHECKS_PER_SECOND)
+    return replace(options, attempts=attempts, max_state_checks=max(1, int(checks / attempts)))
 
 
 def unknown_planner(request: Any) -> str:
@@ -165,7 +187,7 @@ def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float
             raise
         return None, followed.fraction
     followed = plan.result.find(CartesianPathResult)
-    return Planned(plan, start, group), followed.fraction if followed else 1.0
+    return Planned(plan.trajectory, start), followed.fraction if followed else 1.0
 
 
 def solve_pose(cell: Cell, request: Any) -> FloatArray:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from harness.cell.cell import Cell
-from harness.core.errors import StepFailed
+from harness.core.activity import unobserved
+from harness.core.errors import HarnessError, StepFailed
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.endpoints import Reply
 from harness.plugins.ros.moveit.client_scene import ClientScene
@@ -16,13 +18,30 @@ from harness.plugins.ros.moveit.planning import Planned, plan_motion, unknown_pl
 from harness.plugins.ros.moveit.scene_changes import Change
 from harness.plugins.ros.moveit.values import error_code
 from harness.recording.commands import CommandRecord
+from harness.recording.explanation import Explanation
+from harness.session.background import Background
+
+T = TypeVar("T")
+OnPlan = Callable[[Planned | None, Any, float], object]
 
 Read = Callable[[Cell, Any], Iterable[Change]]
 """Reads from a message what it changes of the planning scene."""
 
 
+@dataclass(frozen=True)
+class _Work:
+    """What another process computes, who takes it, and whether that still waits."""
+
+    value: Background[Any]
+    done: Callable[[Any], None]
+    is_awaited: Callable[[], bool]
+
+
 class Requests:
     """The requests that wait, the cell that they are about, and what is common to all.
+
+    What takes long (plans, and motions) is done one after another. A process of its own plans, so
+    that everything else is answered meanwhile, and a crash costs one request.
 
     Attributes:
         control: Records commands, and lets them take effect.
@@ -48,6 +67,8 @@ class Requests:
         self.scene: ClientScene | None = None
         self.on_scene: Callable[[Any], None] = lambda _: None
         self._waiting: deque[Callable[[], object]] = deque()
+        self._turns: deque[Callable[[], object]] = deque()
+        self._work: _Work | None = None
 
     @property
     def here(self) -> ClientScene:
@@ -68,21 +89,73 @@ class Requests:
         """What takes a request of a service now and answers it in `work`."""
         return lambda request, reply: self.put(lambda: reply(answer(self.here.cell, request)))
 
+    def in_turn(self, begin: Callable[[], object]) -> None:
+        """Keep something that begins once what was computed before is known."""
+
+        def take() -> None:
+            self._turns.append(begin)
+            self._begin_next()
+
+        self.put(take)
+
+    def compute(
+        self,
+        work: Callable[[], T],
+        done: Callable[[T | StepFailed], None],
+        is_awaited: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """Let another process compute something; of what begins in its turn.
+
+        Args:
+            work: Returns what can be pickled; raises StepFailed. It changes nothing here.
+            done: Takes the value or the failure.
+            is_awaited: Whether somebody still waits for it; the process is ended otherwise.
+        """
+        self._work = _Work(Background(lambda _: work(), despite_threads=True), done, is_awaited)
+
     def topic(self, read: Read) -> Callable[[Any], None]:
         """What takes a message of a topic that changes the planning scene."""
         return lambda content: self.put(lambda: self.change(read, content))
 
-    def work(self) -> float:
-        """Answer what waits; the wall time that it took [s]."""
-        begin = time.monotonic()
-        while self._waiting and self.scene is not None:
-            self._waiting.popleft()()
-        return time.monotonic() - begin
+    def work(self) -> bool:
+        """Answer what waits; whether something is still computed."""
+        while self.scene is not None and (self._waiting or self._is_computed()):
+            if self._waiting:
+                self._waiting.popleft()()
+            else:
+                self._begin_next()
+        return self._work is not None
+
+    def _begin_next(self) -> None:
+        while self._turns and self._work is None:
+            self._turns.popleft()()
+
+    def _is_computed(self) -> bool:
+        """Whether what another process computes has become known, or is awaited no more."""
+        work = self._work
+        if work is None or (work.is_awaited() and not work.value.has_message()):
+            return False
+        self._work, result = None, None
+        if work.is_awaited():
+            try:
+                result = work.value.result(unobserved)
+            except StepFailed as failure:
+                result = failure
+            except HarnessError as failure:
+                result = StepFailed("CRASH", str(failure))
+        work.value.close()
+        if work.is_awaited():
+            work.done(result)
+        return True
 
     def forget(self) -> None:
         """Answer nothing of what waits."""
         self.scene = None
         self._waiting.clear()
+        self._turns.clear()
+        if self._work is not None:
+            self._work.value.close()
+            self._work = None
 
     def report(self, failure: StepFailed | str) -> None:
         """Say why a request failed."""
@@ -102,17 +175,44 @@ class Requests:
         self.on_scene(self.here.as_message())
         return record.answer == "accepted"
 
-    def plan(self, request: Any) -> tuple[Planned | None, Any, float]:
-        """The plan of a MotionPlanRequest, its error code, and the wall time that it took [s]."""
-        begin, cell = time.monotonic(), self.here.cell
+    def plan(
+        self,
+        request: Any,
+        done: OnPlan,
+        *,
+        diff: Iterable[Change] = (),
+        is_awaited: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """Plan what a MotionPlanRequest describes, in its turn.
+
+        Args:
+            done: Takes the plan, its error code, and the wall time that it took [s].
+            diff: Changes of the planning scene that are of this plan alone.
+            is_awaited: Whether somebody still waits for it.
+        """
+        begin, scene = time.monotonic(), self.here
         if note := unknown_planner(request):
             self.report(f"{note}; the default plans instead, as with MoveIt")
-        try:
-            planned, failure = plan_motion(cell, request), None
-        except StepFailed as error:
-            planned, failure = None, error
-            self.report(failure)
-        goal = str(request.group_name) or cell.description.default_group
-        answer = "planned" if failure is None else str(failure)
-        self.control.receive("plan", goal="", group=goal, answer=answer)
-        return planned, error_code(failure), time.monotonic() - begin
+
+        def work() -> Planned:
+            scene.apply([*diff])
+            return plan_motion(scene.cell, request)
+
+        def end(result: Planned | StepFailed) -> None:
+            failure = result if isinstance(result, StepFailed) else None
+            planned = None if isinstance(result, StepFailed) else result
+            self._record(str(request.group_name), failure)
+            done(planned, error_code(failure), time.monotonic() - begin)
+
+        self.compute(work, end, is_awaited)
+
+    def _record(self, group: str, failure: StepFailed | None) -> None:
+        """Record a request to plan with what became of it."""
+        answer = "planned"
+        if failure is not None:
+            explanation = failure.details.find(Explanation)
+            advice = f"; advice: {explanation.advice}" if explanation and explanation.advice else ""
+            answer = f"{failure}{advice}"
+            self.report(answer)
+        group = group or self.here.cell.description.default_group
+        self.control.receive("plan", goal="", group=group, answer=answer)

@@ -27,7 +27,7 @@ SCENE = "moveit_msgs/msg/PlanningScene"
 class MoveGroup:
     """Answers MoveIt's clients while a step hands the arm over.
 
-    Requests wait until `work`, between two ticks; simulated time stands still meanwhile.
+    Requests wait until `work`, between two ticks; simulated time stands still until it is over.
     """
 
     def __init__(
@@ -62,8 +62,8 @@ class MoveGroup:
         """Whether requests are answered."""
         return self._requests.scene is not None
 
-    def work(self) -> float:
-        """Answer what waits; the wall time that it took [s]."""
+    def work(self) -> bool:
+        """Answer what waits; whether a plan is still made."""
         return self._requests.work()
 
     def finish(self, outcome: Outcome) -> None:

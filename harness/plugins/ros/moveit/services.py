@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
+from harness.plugins.ros.endpoints import Reply
 from harness.plugins.ros.interfaces import header
 from harness.plugins.ros.moveit.planning import (
     PLANNERS,
+    Planned,
     plan_cartesian_path,
     plan_fields,
     solve_pose,
@@ -27,6 +30,8 @@ from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message, pose_message
 
 SRV = "moveit_msgs/srv/"
+Begin = Callable[[Requests, Any, Reply], None]
+"""Begins what takes long, of a request, and replies once it is known."""
 
 
 def serve(graph: Graph, requests: Requests) -> None:
@@ -37,12 +42,15 @@ def serve(graph: Graph, requests: Requests) -> None:
         ("check_state_validity", "GetStateValidity", _validity),
         ("query_planner_interface", "QueryPlannerInterfaces", _planners),
         ("get_planner_params", "GetPlannerParams", _parameters),
-        ("plan_kinematic_path", "GetMotionPlan", partial(_plan, requests)),
-        ("compute_cartesian_path", "GetCartesianPath", partial(_cartesian, requests)),
         ("get_planning_scene", "GetPlanningScene", partial(_scene, requests)),
         ("apply_planning_scene", "ApplyPlanningScene", partial(_apply, requests)),
     ):
         graph.serve(f"/{name}", SRV + kind, requests.service(answer))
+    for name, kind, begin in (
+        ("plan_kinematic_path", "GetMotionPlan", _plan),
+        ("compute_cartesian_path", "GetCartesianPath", _cartesian),
+    ):
+        graph.serve(f"/{name}", SRV + kind, partial(_in_turn, requests, begin))
 
 
 def _inverse(cell: Cell, request: Any) -> Any:
@@ -108,35 +116,48 @@ def _parameters(_cell: Cell, _request: Any) -> Any:
     return message(f"{SRV}GetPlannerParams_Response")
 
 
-def _plan(requests: Requests, cell: Cell, request: Any) -> Any:
-    planned, code, seconds = requests.plan(request.motion_plan_request)
-    fields = plan_fields(cell, planned)
-    response = message(
-        "moveit_msgs/msg/MotionPlanResponse",
-        group_name=str(request.motion_plan_request.group_name),
-        trajectory=fields["planned_trajectory"],
-        trajectory_start=fields["trajectory_start"],
-        planning_time=seconds,
-        error_code=code,
-    )
-    return message(f"{SRV}GetMotionPlan_Response", motion_plan_response=response)
+def _in_turn(requests: Requests, begin: Begin, request: Any, reply: Reply) -> None:
+    requests.in_turn(lambda: begin(requests, request, reply))
 
 
-def _cartesian(requests: Requests, cell: Cell, request: Any) -> Any:
-    kind = f"{SRV}GetCartesianPath_Response"
-    try:
-        planned, fraction = plan_cartesian_path(cell, request)
-    except StepFailed as failure:
-        requests.report(failure)
-        return message(kind, fraction=-1.0, error_code=error_code(failure))
-    fields = plan_fields(cell, planned)
-    return message(
-        kind,
-        start_state=fields["trajectory_start"],
-        solution=fields["planned_trajectory"],
-        fraction=fraction,
-        error_code=error_code(None),
-    )
+def _plan(requests: Requests, request: Any, reply: Reply) -> None:
+    cell = requests.here.cell
+
+    def done(planned: Planned | None, code: Any, seconds: float) -> None:
+        fields = plan_fields(cell, planned)
+        response = message(
+            "moveit_msgs/msg/MotionPlanResponse",
+            group_name=str(request.motion_plan_request.group_name),
+            trajectory=fields["planned_trajectory"],
+            trajectory_start=fields["trajectory_start"],
+            planning_time=seconds,
+            error_code=code,
+        )
+        reply(message(f"{SRV}GetMotionPlan_Response", motion_plan_response=response))
+
+    requests.plan(request.motion_plan_request, done)
+
+
+def _cartesian(requests: Requests, request: Any, reply: Reply) -> None:
+    cell, kind = requests.here.cell, f"{SRV}GetCartesianPath_Response"
+
+    def done(result: tuple[Planned | None, float] | StepFailed) -> None:
+        if isinstance(result, StepFailed):
+            requests.report(result)
+            reply(message(kind, fraction=-1.0, error_code=error_code(result)))
+            return
+        planned, fraction = result
+        fields = plan_fields(cell, planned)
+        response = message(
+            kind,
+            start_state=fields["trajectory_start"],
+            solution=fields["planned_trajectory"],
+            fraction=fraction,
+            error_code=error_code(None),
+        )
+        reply(response)
+
+    requests.compute(lambda: plan_cartesian_path(cell, request), done)
 
 
 def _scene(requests: Requests, _cell: Cell, _request: Any) -> Any:
