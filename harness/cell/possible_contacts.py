@@ -53,8 +53,10 @@ def _bodies(scope: Scope, word: str) -> tuple[str, ...]:
             return () if robot.gripper is None else (*robot.gripper.links, robot.gripper.palm_link)
         case "any":
             return (*robot.link_names, *scope.objects)
+        case _ if word in robot.link_names or word in scope.objects:
+            return (word,)
         case _:
-            return (word,) if word in robot.link_names or word in scope.objects else ()
+            return tuple(link for link, arm in robot.arm_of_link.items() if arm == word)
 
 
 def _why_apart(scope: Scope, first: str, second: str, *, overlaps_count: bool) -> str:

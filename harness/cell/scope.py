@@ -344,8 +344,10 @@ class Scope:
             self.problems.unknown(loc, "camera", name, self.cameras)
 
     def check_body(self, name: str, loc: Loc, *, special: tuple[str, ...]) -> None:
-        """Report a name that is no link, no object and none of some special words."""
-        known = (*special, *self.objects, *self.description.link_names)
+        """Report a name of no link, object or arm of several, and none of some special words."""
+        description = self.description
+        arms = description.of_arm if special else ()
+        known = (*special, *arms, *self.objects, *description.link_names)
         if name not in known:
             self.problems.unknown(loc, "object or link", name, known)
 

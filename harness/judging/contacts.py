@@ -163,7 +163,7 @@ def was_in_robot(run: Run, name: str, samples: slice) -> bool:
 
 
 def bodies(run: Run, word: str) -> frozenset[str]:
-    """Links and objects that a word of `between` names: `robot`, `gripper`, `any`, or a name.
+    """Links and objects that a word of `between` names: `robot`, an arm, `gripper`, `any`, a name.
 
     Raises:
         NotObservable: The run knows no such body, or only the planner knows it.
@@ -182,6 +182,8 @@ def bodies(run: Run, word: str) -> frozenset[str]:
             if any(record.name == word and not record.in_simulation for record in run.objects):
                 raise NotObservable(f"{word} is not in the physics: nothing can touch it")
             return frozenset({word})
+        case _ if word in robot.of_arm:
+            return frozenset(link for link, arm in robot.arm_of_link.items() if arm == word)
         case _:
             raise NotObservable(f"there is no body '{word}' in this run")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from harness.core.types import BoolArray, FloatArray
@@ -21,19 +23,28 @@ MEASURED_WORDS = ("robot", "any")  # besides objects; those of a single link are
 
 
 def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArray]:
-    """Recorded distances that two words of `between` select, sorted by key."""
-    if first == "any" or (second == "robot" and first != "robot"):
+    """Recorded distances that two words of `between` select, sorted by key.
+
+    `any` is every object, and with one of several arms the other arms, too.
+    """
+    if first == "any" or (is_of_robot(run, second) and not is_of_robot(run, first)):
         first, second = second, first
     clearances = run.signals.clearances
     if second == "any":
         names = _names_of(run, first)
-        carried = {} if first == "robot" else carried_by_hand(run)
+        arms = run.robot.of_arm
+        of_arm = arms.get(first)
+        holder = run if of_arm is None else replace(run, robot=of_arm)
+        carried = {} if is_of_robot(run, first) else carried_by_hand(run)
         rows = {
-            key: np.where(
-                in_grip(run, key[1]) | carried.get(key[1], False), np.nan, clearances[key]
+            key: clearances[key]
+            if key[1] in arms
+            else np.where(
+                in_grip(holder, key[1]) | carried.get(key[1], False), np.nan, clearances[key]
             )
             for key in sorted(clearances)
-            if key[0] in names and key[1] not in ("robot", key[0])
+            if (key[0] in names and key[1] not in ("robot", key[0]))
+            or (key[1] == first and first in arms)
         }
         if not rows and first == "robot" and run.objects:
             raise NotObservable("no distances between the robot and objects were recorded")
@@ -49,12 +60,11 @@ def recorded_distances(run: Run, first: str, second: str) -> dict[Key, FloatArra
     }
     if rows:
         return rows
-    for name in (first, second):
-        if name != "robot" and not object_record(run, name).present:
+    objects = [name for name in (first, second) if not is_of_robot(run, name)]
+    for name in objects:
+        if not object_record(run, name).present:
             raise NotReached(f"{name} was never in the scene")
-    if "robot" not in (first, second) and not any(
-        attached(run, name).any() for name in (first, second)
-    ):
+    if len(objects) == 2 and not any(attached(run, name).any() for name in objects):
         raise NotReached(f"the robot held neither {first} nor {second}")
     raise NotObservable(f"the distance between {first} and {second} was not recorded")
 
@@ -67,13 +77,19 @@ def unknown_distances(run: Run, key: Key) -> BoolArray:
     """
     first, second = key
     exists: BoolArray = np.isnan(run.signals.clearances[key])
-    if first != "robot":
+    if not is_of_robot(run, first):
         exists &= present(run, first) & attached(run, first)
-    if second != "robot":
+    if not is_of_robot(run, second):
         exists &= present(run, second)
-    if second != "robot" and "attachments" not in run.unrecorded:
-        exists &= ~in_grip(run, second)
+        if "attachments" not in run.unrecorded:
+            of_arm = run.robot.of_arm.get(first)
+            exists &= ~in_grip(run if of_arm is None else replace(run, robot=of_arm), second)
     return exists
+
+
+def is_of_robot(run: Run, name: str) -> bool:
+    """Whether a name of a recorded distance is the robot, or one of its arms."""
+    return name == "robot" or name in run.robot.of_arm
 
 
 @fact

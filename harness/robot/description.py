@@ -19,7 +19,7 @@ from harness.core.geometry import Shape
 from harness.core.kinematics import LinkJoint, LinkPoses
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.robot.task_space import TaskSpace
+from harness.robot.task_space import TaskSpace, mechanism_rank
 
 ALL_ARMS = "arms"
 """Name of the planning group of the joints of all arms, of a robot with several."""
@@ -127,11 +127,6 @@ class PlanningGroup:
     joint_names: tuple[str, ...]
     base_link: str = ""
     tip_link: str = ""
-
-    @cached_property
-    def task_space(self) -> TaskSpace:
-        """The parts of its tip's pose that it can hold."""
-        return TaskSpace.of_joints(len(self.joint_names))
 
 
 @dataclass(frozen=True)
@@ -416,6 +411,22 @@ class RobotDescription:
             for arm in self.arms
         }
 
+    @cached_property
+    def arm_of_link(self) -> Mapping[str, str]:
+        """The arm that each link belongs to, of a robot with several; links of no arm are left out.
+
+        A link belongs to the arm that moves it last, or whose base carries it.
+        """
+        groups = {arm.name: set(self.group_joints(arm.name)) for arm in self.arms}
+        bases = [arm.base_link for arm in self.arms]
+        of_base = {arm.base_link: arm.name for arm in self.arms if bases.count(arm.base_link) == 1}
+        found: dict[str, str] = {}
+        for joint in self.joints:  # parents before children
+            movers = [arm for arm, names in groups.items() if joint.name in names]
+            default = of_base.get(joint.child, found.get(joint.parent, ""))
+            found[joint.child] = movers[0] if len(movers) == 1 else "" if movers else default
+        return {link: arm for link, arm in found.items() if arm}
+
     @property
     def recorded_tcp(self) -> str:
         """The link whose pose a run records as the TCP's."""
@@ -452,6 +463,26 @@ class RobotDescription:
     def group_joints(self, group: str) -> tuple[str, ...]:
         """Joints of a group, from base to tip; none where there is no such group."""
         return self.groups[group].joint_names if group in self.groups else ()
+
+    def task_space(self, group: str) -> TaskSpace:
+        """The parts of the pose of a group's tip that its joints can hold, by the mechanism.
+
+        A group without a tip holds what as many joints of an arm would.
+        """
+        if group not in self._task_spaces:
+            moving, tip, rank = self.group_indices(group), self.groups[group].tip_link, None
+            if tip and moving:
+                limits = np.array([(each.lower, each.upper) for each in self.movable_joints]).T
+                rank = mechanism_rank(self._poses_at, limits, np.array(moving), tip)
+            self._task_spaces[group] = TaskSpace.of_joints(len(moving), rank)
+        return self._task_spaces[group]
+
+    def _poses_at(self, joint_positions: FloatArray) -> LinkPoses:
+        return LinkPoses(self.joints, np.array([self.with_mimics(row) for row in joint_positions]))
+
+    @cached_property
+    def _task_spaces(self) -> dict[str, TaskSpace]:
+        return {}
 
     def group_indices(self, group: str) -> tuple[int, ...]:
         """Indices of a group's joints in description order."""

@@ -256,6 +256,8 @@ class _Compiler:
         description = self.sources.description
         if name in ("world", *description.link_names):
             return "a robot link's name"
+        if name in description.of_arm:
+            return "the name of an arm"
         return "a robot joint's name" if name in description.joint_names else ""
 
     def _objects(self, spec: ObjectSpec, pose: SE3, folder: Path) -> tuple[WorldObject, ...]:

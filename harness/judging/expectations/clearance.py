@@ -13,9 +13,16 @@ from harness.cell.scope import At
 from harness.core.amounts import amount, amounts
 from harness.core.types import FloatArray, IntArray
 from harness.judging.collision import colliding
-from harness.judging.contacts import attached, shapeless
-from harness.judging.distances import MEASURED_WORDS, Key, recorded_distances, unknown_distances
+from harness.judging.contacts import attached, bodies, shapeless
+from harness.judging.distances import (
+    MEASURED_WORDS,
+    Key,
+    is_of_robot,
+    recorded_distances,
+    unknown_distances,
+)
 from harness.judging.expectation import Predicate
+from harness.judging.hands import of_arm
 from harness.judging.margins import Evidence, MarginSignal, measured
 from harness.judging.observations import CLEARANCE_ROOM, Observations
 from harness.judging.poses import present
@@ -36,6 +43,9 @@ class Clearance(Predicate):
     `robot` is the robot's links. What its fingers hold, or carry on what they hold, is named on its
     own, whether or not a step has attached it; where it comes nearer to an object than the links
     may, a verdict that passes has a warning, unless it is taken from the object or put on it.
+    The name of one of several arms is that arm's links and gripper: `[left, right]` is the distance
+    between two arms, `[left, any]` that of one to the objects and the other arms, and what one hand
+    holds has a distance to the other arm.
 
     Links whose contact the SRDF excludes count as distances of the robot to itself where they are
     nearer than with every joint at zero, and apart there: what is near by design says nothing.
@@ -57,7 +67,8 @@ class Clearance(Predicate):
 
     between: tuple[Name, Name] = Field(
         default=("robot", "any"),
-        description="The two bodies: each `robot`, an object, the name of a held object, or `any`.",
+        description="The two bodies: each `robot`, one of several arms, an object, the name of a "
+        "held object, or `any`.",
     )
     at_least: NonNegativeLength | None = Field(
         default=None, description="The smallest distance that is allowed [m]."
@@ -69,9 +80,19 @@ class Clearance(Predicate):
     )
 
     def check(self, at: At) -> None:
+        arms = at.scope.description.of_arm
         for index, name in enumerate(self.between):
-            if name not in MEASURED_WORDS:
+            if name not in (*MEASURED_WORDS, *arms):
                 at.scope.check_object(name, at.key("between", index))
+        first, second = self.between
+        of_itself = first == second or "robot" in self.between
+        if arms.keys() & set(self.between) and of_itself and {first, second} <= {"robot", *arms}:
+            at.scope.problems.add(
+                at.key("between"),
+                f"'{first}' and '{second}' have links in common",
+                "name two different arms",
+                needs=("robot",),
+            )
 
     def observations(self) -> Observations:
         cutoff = (self.at_least or 0.0) + CLEARANCE_ROOM
@@ -115,7 +136,8 @@ class Clearance(Predicate):
 
         smallest = margins.min(axis=0)
         values = np.where(there & ~(unknown & (smallest >= 0)), smallest, np.nan)
-        links = window.run.robot.link_names if "robot" in self.between else ()
+        of_robot = {"robot", *window.run.robot.of_arm} & set(self.between)
+        links = frozenset[str]().union(*(bodies(window.run, word) for word in of_robot))
         warnings = (*shapeless(window.run, links), *self._held_nearer(window))
         return MarginSignal(values, "m", evidence, applies=there, warnings=warnings)
 
@@ -124,8 +146,10 @@ class Clearance(Predicate):
 
         Not of what it takes from the object or puts on it.
         """
-        others = set(self.between) - {"robot"}
-        run, is_one = window.run, "robot" in self.between and others and "any" not in others
+        words = [word for word in self.between if is_of_robot(window.run, word)]
+        others = set(self.between) - set(words)
+        run = of_arm(window.run, "" if words in ([], ["robot"]) else words[0])
+        is_one = words and others and "any" not in others
         if not (is_one and self.at_least) or "contact_forces" in run.unrecorded:
             return ()
         (other,) = others
@@ -156,7 +180,7 @@ class Clearance(Predicate):
                 f"planned distances of {' and '.join(missing[0])} were not recorded"
             )
         stack = np.stack([window.cut(planned[key] - values) for key, values in actual.items()])
-        names = {name for name, _ in actual} - {"robot"}
+        names = {name for name, _ in actual if not is_of_robot(run, name)}
         unplanned = {name: ~attached(run, name) for name in names}  # the plan does not carry it
         absent = np.stack(
             [

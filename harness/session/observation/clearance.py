@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -26,7 +27,12 @@ from harness.session.observation.body_tracks import (
     tracked_shapes,
 )
 from harness.session.observation.measured_clearance import MeasuredClearance
-from harness.session.observation.nearest import largest_travel, pairs_between, smallest_distances
+from harness.session.observation.nearest import (
+    ShapePair,
+    largest_travel,
+    pairs_between,
+    smallest_distances,
+)
 from harness.session.observation.sampled_clearance import (
     LARGEST_ERROR,
     around_smallest,
@@ -139,6 +145,25 @@ class _Robot:
         self.shapes = links_with_shapes({link.name: link.collisions for link in description.links})
         self.index = {name: index for index, name in enumerate(description.link_names)}
         self._model = RobotModel(description)
+        self._arms = tuple(arm.name for arm in description.arms)
+
+    def by_arms(self, pairs: Sequence[ShapePair], key: Pair) -> dict[Pair, list[ShapePair]]:
+        """Pairs of shapes by the arms that they are of.
+
+        Args:
+            pairs: The pairs of the robot and itself, or an object.
+            key: The names of both; pairs that are of no arm, or of one alone, stay under it.
+        """
+        arms, arm_of = self._arms, self.description.arm_of_link
+        is_self = key[1] == ROBOT
+        parts = combinations(arms, 2) if is_self else ((arm, key[1]) for arm in arms)
+        found: dict[Pair, list[ShapePair]] = {part: [] for part in (*parts, key)}
+        for pair in pairs:
+            first = arm_of.get(pair.first.body, "")
+            second = arm_of.get(pair.second.body, "") if is_self else key[1]
+            part = (first, second) if (first, second) in found else (second, first)
+            found[part if part in found else key].append(pair)
+        return found
 
     def is_self_pair(self, first: str, second: str) -> bool:
         """Whether the distance of two links says something: both move, and neither is allowed."""
@@ -274,11 +299,21 @@ class _Measurement:
             return
         every = [pair for each in some for pair in pairs_between(*each, cutoff)]
         count = int(np.count_nonzero(there))
-        distances, which = smallest_distances(every, cutoff, count)
-        index = self._scene.robot.index
-        of_pair = np.array([index.get(pair.first.body, -1) for pair in every] + [-1])
-        links = of_pair[which] if key[0] == ROBOT else None
-        found.put(key, there, distances, links, largest_travel(every, cutoff, count))
+        if key[0] != ROBOT:
+            distances, _ = smallest_distances(every, cutoff, count)
+            found.put(key, there, distances, None, largest_travel(every, cutoff, count))
+            return
+        nearest, links = np.full(count, cutoff), np.full(count, -1, dtype=np.int64)
+        for part, pairs in self._scene.robot.by_arms(every, key).items():
+            distances, which = smallest_distances(pairs, cutoff, count)
+            index = [self._scene.robot.index.get(pair.first.body, -1) for pair in pairs]
+            of_part = np.array([*index, -1])[which]
+            if part != key:
+                travels = largest_travel(pairs, cutoff, count)
+                found.put(part, there, distances, of_part, travels)
+            links = np.where(distances < nearest, of_part, links)
+            nearest = np.minimum(nearest, distances)
+        found.put(key, there, nearest, links, largest_travel(every, cutoff, count))
 
 
 def _held(name: str, attachments: Sequence[AttachmentRecord], motion: Motion) -> BoolArray:

@@ -36,11 +36,15 @@ def with_held_distances(run: Run, signals: Signals, observer: CoalClearance) -> 
 
 
 def _without_gripped(run: Run, signals: Signals) -> Signals:
-    """The signals without distances of the robot to what its hand grips."""
+    """The signals without distances of the robot, or an arm, to what its hand grips."""
     distances, links = dict(signals.clearances), dict(signals.clearance_links)
     names = {record.name for record in run.objects if record.in_simulation}
+    arms = run.robot.of_arm
+    holders = {"robot": run, **{arm: replace(run, robot=arms[arm]) for arm in arms}}
     for first, name in distances:
-        if first == "robot" and name in names and (mask := in_grip(run, name)).any():
+        if name not in names or first not in holders:
+            continue
+        if (mask := in_grip(holders[first], name)).any():
             distances[first, name] = np.where(mask, np.nan, distances[first, name])
             links[first, name] = np.where(mask, -1, links[first, name])
     return replace(signals, clearances=distances, clearance_links=links)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.kinematics import LinkPoses
-from harness.core.types import FloatArray, IntArray, Pair
+from harness.core.types import FloatArray, Pair
 from harness.planning.model.robot_model import RobotModel
 from harness.recording.run import Finding
 from harness.recording.signals import Signals
@@ -42,8 +42,7 @@ def with_excluded_links(signals: Signals, description: RobotDescription) -> Sign
     samples = knots(signals.times, (), ())
     moving = LinkPoses(description.joints, signals.joint_positions[samples])
     overlaps: dict[Pair, FloatArray] = {}
-    nearest = np.full(count, signals.clearance_cutoff)
-    links = np.full(count, -1)
+    found = signals
     for pair, at_zero in apart.items():
         cutoff = min(signals.clearance_cutoff, at_zero - LEAST_DEPTH)
         pairs = _shape_pairs(shapes, moving, *pair, cutoff=cutoff)
@@ -51,29 +50,36 @@ def with_excluded_links(signals: Signals, description: RobotDescription) -> Sign
         if float(distances.min()) >= cutoff:
             continue
         every = between(samples, distances, count)
-        counts = (every < cutoff) & (every < nearest)
-        nearest = np.where(counts, every, nearest)
-        links[counts] = description.link_names.index(pair[1])
+        link = description.link_names.index(pair[1])
+        for key in {SELF, _arms_of(pair, description) or SELF}:
+            found = _with_distances(found, key, np.where(every < cutoff, every, np.inf), link)
         if float(distances.min()) < -LEAST_DEPTH:
             overlaps[pair] = np.maximum(-every, 0.0)
-    found = replace(signals, link_overlaps=overlaps)
-    return found if (links < 0).all() else _with_self_distances(found, nearest, links)
+    return replace(found, link_overlaps=overlaps)
 
 
-def _with_self_distances(signals: Signals, nearest: FloatArray, links: IntArray) -> Signals:
-    """The signals with distances of the robot to itself, where they are the smallest.
+def _arms_of(pair: Pair, description: RobotDescription) -> Pair | None:
+    """The two arms that two links belong to, in the robot's order; None where they do not."""
+    owners = {description.arm_of_link.get(link, "") for link in pair}
+    names = [arm.name for arm in description.arms if arm.name in owners]
+    return (names[0], names[1]) if len(names) == 2 else None
+
+
+def _with_distances(signals: Signals, key: Pair, nearest: FloatArray, link: int) -> Signals:
+    """The signals with distances of the robot, or an arm, where they are the smallest.
 
     Args:
-        nearest: The distances [m], shape (N,).
-        links: The link that each is measured from, -1 where none is below the cutoff, shape (N,).
+        key: The names of both bodies.
+        nearest: The distances [m], inf where they are not known, shape (N,).
+        link: The link that they are measured from.
     """
-    known = signals.clearances.get(SELF, np.full(len(nearest), signals.clearance_cutoff))
-    of_link = signals.clearance_links.get(SELF, np.full(len(nearest), -1))
+    known = signals.clearances.get(key, np.full(len(nearest), signals.clearance_cutoff))
+    of_link = signals.clearance_links.get(key, np.full(len(nearest), -1))
     is_nearer = nearest < known
     return replace(
         signals,
-        clearances={**signals.clearances, SELF: np.where(is_nearer, nearest, known)},
-        clearance_links={**signals.clearance_links, SELF: np.where(is_nearer, links, of_link)},
+        clearances={**signals.clearances, key: np.where(is_nearer, nearest, known)},
+        clearance_links={**signals.clearance_links, key: np.where(is_nearer, link, of_link)},
     )
 
 

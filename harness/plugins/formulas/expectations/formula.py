@@ -64,7 +64,7 @@ class Formula(Expectation):
     def check(self, at: At) -> None:
         """Names of the formula's signals, each problem under its name."""
         robot = at.scope.description
-        bodies = (*SPECIAL_BODIES, *at.scope.objects, *robot.link_names)
+        bodies = (*SPECIAL_BODIES, *robot.of_arm, *at.scope.objects, *robot.link_names)
         frames = ("tcp", *at.scope.objects, *robot.link_names)
         root = parse_formula(self.formula)
         units = {joint.name: joint.position_unit for joint in robot.movable_joints}
@@ -79,7 +79,7 @@ class Formula(Expectation):
             if problem := _beyond_range(comparison, robot) or _unbreakable(comparison, robot):
                 at.scope.problems.add_in_text(at.key("formula"), comparison.start, *problem)
         known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
-        measured = (*MEASURED_WORDS, *at.scope.objects)
+        measured = (*MEASURED_WORDS, *robot.of_arm, *at.scope.objects)
         kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
         for signal in signals_of(root):
             kinds, _, _ = SIGNALS[signal.name]
