@@ -56,7 +56,7 @@ def group_of(cell: Cell, group: str | None) -> str:
 
 def task_space_of(description: RobotDescription, group: str | None) -> TaskSpace:
     """What a step's planning group can hold of a pose."""
-    return description.groups[description.default_group if group is None else group].task_space
+    return description.task_space(description.default_group if group is None else group)
 
 
 def resolve_goal(goal: GoalFields, group: str, cell: Cell) -> Goal:

@@ -239,7 +239,7 @@ def is_grasped_by_pitch(cell: Cell, group: str) -> bool:
 
     They do where the arm can hold no tilt, if the gripper points along that axis.
     """
-    if cell.description.groups[group].task_space.holds_tilt:
+    if cell.description.task_space(group).holds_tilt:
         return False
     return float(gripper_axes(cell)[0][0]) > math.cos(math.radians(MAX_LEAN))
 

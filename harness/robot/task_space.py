@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from harness.core.kinematics import LinkPoses
 from harness.core.spatial import SE3, pitch_of
+from harness.core.types import FloatArray, IntArray
 
 FREEDOMS = ("x", "y", "z", "pitch", "roll", "yaw")
 """Parts of a pose, in the order in which each further joint of an arm can hold one more; with three
@@ -26,10 +31,16 @@ class TaskSpace:
     has_choice: bool
 
     @classmethod
-    def of_joints(cls, count: int) -> TaskSpace:
-        """What an arm with a number of joints can hold in general."""
-        held = FREEDOMS[: max(3, count)]
-        return cls(held, count > len(FREEDOMS) or ("yaw" not in held and "roll" in held))
+    def of_joints(cls, count: int, rank: int | None = None) -> TaskSpace:
+        """What a group of joints can hold.
+
+        Args:
+            count: The number of joints.
+            rank: The number of ways in which they move the link, 6 at most; by default that of joints.
+        """
+        held = FREEDOMS[: max(3, count if rank is None else rank)]
+        is_redundant = count > (len(FREEDOMS) if rank is None else rank)
+        return cls(held, is_redundant or ("yaw" not in held and "roll" in held))
 
     @property
     def holds_pose(self) -> bool:
@@ -53,3 +64,41 @@ class TaskSpace:
         if self.holds_pitch:
             return abs(pitch_of(first.rotation) - pitch_of(second.rotation))
         return 0.0
+
+
+SAMPLES = 8  # configurations of a mechanism that show its rank; one is singular with probability 0
+LEAST_MOTION = 0.01
+"""The least singular value that counts, as a share of the largest.
+
+Joints that are a degree out of parallel move a link in another way by 0.02 of their own.
+"""
+DIFFERENCE = 1e-6  # of a joint, for the derivative of the link's pose [rad or m]
+
+
+def mechanism_rank(
+    poses_at: Callable[[FloatArray], LinkPoses], limits: FloatArray, moving: IntArray, link: str
+) -> int:
+    """In how many ways some joints move a link: the rank of its Jacobian, where it is largest.
+
+    Translations count as shares of the longest lever of a joint that turns.
+
+    Args:
+        poses_at: The poses of links at joint positions, shape (N, n).
+        limits: Lower and upper position limits of all joints, shape (2, n).
+        moving: The columns of those that move.
+        link: The link that they move.
+    """
+    lower, upper = np.maximum(limits[0], -np.pi), np.minimum(limits[1], np.pi)
+    samples = lower + np.random.default_rng(0).random((SAMPLES, len(lower))) * (upper - lower)
+    steps = np.vstack([np.zeros(len(lower)), DIFFERENCE * np.eye(len(lower))[moving]])
+    poses = poses_at((samples[:, None] + steps).reshape(-1, len(lower)))
+    places = poses.translations[link].reshape(SAMPLES, -1, 3)
+    turns = poses.rotations[link].reshape(SAMPLES, -1, 3, 3)
+    shifts = (places[:, 1:] - places[:, :1]) / DIFFERENCE  # (samples, joints, 3)
+    rates = (turns[:, 1:] @ np.swapaxes(turns[:, :1], 2, 3) - np.eye(3)) / DIFFERENCE
+    rotations = np.stack([rates[..., 2, 1], rates[..., 0, 2], rates[..., 1, 0]], axis=-1)
+    is_turning = np.linalg.norm(rotations, axis=2) > 0.5
+    lever = np.linalg.norm(shifts, axis=2)[is_turning].max(initial=0.0) or 1.0
+    jacobians = np.concatenate([shifts / lever, rotations], axis=2)
+    sizes = np.linalg.svd(jacobians, compute_uv=False)
+    return int((sizes > LEAST_MOTION * sizes[:, :1]).sum(axis=1).max())

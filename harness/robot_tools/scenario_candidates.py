@@ -153,7 +153,7 @@ class Candidates:
         axis = approach_axis(description, self._kinematics, self._scene, opened)
         cosine = -(rotations_of(self._tcps[:, 3:]) @ axis)[:, 2] / np.linalg.norm(axis)
         weights = np.exp(-((np.arccos(np.clip(cosine, -1.0, 1.0)) / DOWNWARD) ** 2))
-        if not description.groups[description.arm_group].task_space.holds_pose:
+        if not description.task_space(description.arm_group).holds_pose:
             weights[:] = 1.0
         reached = np.column_stack([np.hypot(away[:, 0], away[:, 1]), away[:, 2]])
 

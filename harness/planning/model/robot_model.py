@@ -113,7 +113,7 @@ class GroupSpace:
         self.robot = robot
         self.group = group
         self.joint_names = description.groups[group].joint_names
-        self.task_space = description.groups[group].task_space
+        self.task_space = description.task_space(group)
         joints = [description.joint_by_name[name] for name in self.joint_names]
         self.lower: FloatArray = np.array([joint.lower for joint in joints], dtype=float)
         self.upper: FloatArray = np.array([joint.upper for joint in joints], dtype=float)
