@@ -36,7 +36,7 @@ class TaskSpace:
 
         Args:
             count: The number of joints.
-            rank: The number of ways in which they move the link, 6 at most; by default that of joints.
+            rank: The number of ways in which they move the link, 6 at most; by default `count`.
         """
         held = FREEDOMS[: max(3, count if rank is None else rank)]
         is_redundant = count > (len(FREEDOMS) if rank is None else rank)
