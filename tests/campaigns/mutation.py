@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import copy
 import json
-import random
 import xml.etree.ElementTree as ET  # of files of the repository
 from collections.abc import Callable, Sequence
 from functools import cache
+from random import Random
 
 import yaml
 
@@ -19,7 +19,7 @@ TOKENS = (
     *("pi/0", "world"),
     *("\0", "\u2028", "../..", "/etc/passwd", "a" * 300, "package://x/y", "file:///dev/zero"),
 )  # fmt: skip
-Mutate = Callable[[Sequence[bytes], random.Random], bytes]
+Mutate = Callable[[Sequence[bytes], Random], bytes]
 
 
 def _text(data: bytes) -> str:
@@ -30,7 +30,7 @@ def _encoded(text: str) -> bytes:
     return text.encode("utf-8", errors="surrogatepass")
 
 
-def of_bytes(corpus: Sequence[bytes], rng: random.Random) -> bytes:
+def of_bytes(corpus: Sequence[bytes], rng: Random) -> bytes:
     """Bytes flipped, cut, repeated or exchanged with those of another file."""
     data = rng.choice(corpus)
     if rng.random() < 0.1:
@@ -41,7 +41,7 @@ def of_bytes(corpus: Sequence[bytes], rng: random.Random) -> bytes:
     return data
 
 
-def of_text(corpus: Sequence[bytes], rng: random.Random) -> bytes:
+def of_text(corpus: Sequence[bytes], rng: Random) -> bytes:
     """Words exchanged with others, with tokens, or with words of another file."""
     text = _text(rng.choice(corpus))
     for _ in range(rng.choice((1, 1, 2, 4))):
@@ -63,7 +63,7 @@ def _at(document: object, place: tuple) -> object:
     return document
 
 
-def _changed(document: object, others: Sequence[object], rng: random.Random) -> object:
+def _changed(document: object, others: Sequence[object], rng: Random) -> object:
     """A document with values and keys of this or another one in new places."""
     for _ in range(rng.choice((1, 1, 2, 3))):
         places = _parts(document)
@@ -99,7 +99,7 @@ def _parsed(data: bytes) -> object:
     return yaml.load(data, Loader=yaml.CSafeLoader)
 
 
-def of_yaml(corpus: Sequence[bytes], rng: random.Random) -> bytes:
+def of_yaml(corpus: Sequence[bytes], rng: Random) -> bytes:
     """A YAML document with exchanged values and keys; or its text."""
     if rng.random() < 0.3:
         return of_text(corpus, rng)
@@ -113,7 +113,7 @@ def of_yaml(corpus: Sequence[bytes], rng: random.Random) -> bytes:
         return _encoded(json.dumps(changed))
 
 
-def of_json(corpus: Sequence[bytes], rng: random.Random) -> bytes:
+def of_json(corpus: Sequence[bytes], rng: Random) -> bytes:
     """A JSON document with exchanged values and keys; or its text."""
     if rng.random() < 0.2:
         return of_text(corpus, rng)
@@ -121,7 +121,7 @@ def of_json(corpus: Sequence[bytes], rng: random.Random) -> bytes:
     return _encoded(json.dumps(_changed(documents[0], documents, rng)))
 
 
-def of_lines(corpus: Sequence[bytes], rng: random.Random) -> bytes:
+def of_lines(corpus: Sequence[bytes], rng: Random) -> bytes:
     """A line of JSON in a file of lines, changed; or the whole as text."""
     if rng.random() < 0.3:
         return of_text(corpus, rng)
@@ -133,7 +133,7 @@ def of_lines(corpus: Sequence[bytes], rng: random.Random) -> bytes:
     return b"".join(lines)
 
 
-def of_xml(corpus: Sequence[bytes], rng: random.Random) -> bytes:
+def of_xml(corpus: Sequence[bytes], rng: Random) -> bytes:
     """An XML document with exchanged elements, attributes and texts; or its text."""
     if rng.random() < 0.3:
         return of_text(corpus, rng)

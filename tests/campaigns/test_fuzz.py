@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.campaigns.fuzz import FEW, campaign
+from tests.campaigns.execution import FEW
+from tests.campaigns.fuzz import campaign
 from tests.campaigns.readers import READERS
 
 FAST = ("csv", "conditions", "rtps", "bridge", "scene", "submission")
