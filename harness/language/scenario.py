@@ -28,6 +28,7 @@ from harness.language.poses import Pose
 from harness.language.step import AnyStep
 from harness.language.variation import CaseKeys
 from harness.language.world import ObjectSpec
+from harness.language.wrench_sensors import WrenchSensorSpec
 
 
 class StartState(SpecModel):
@@ -166,6 +167,11 @@ class RobotSpec(SpecModel):
     named_states: dict[Name, dict[Name, dict[Name, JointValue]]] = Field(
         default_factory=dict,
         description="Additional group states: group -> state -> joint -> position.",
+    )
+    wrench_sensors: dict[Name, WrenchSensorSpec] = Field(
+        default_factory=dict,
+        description="Sensors of force and torque between links, by name; they are added to those "
+        "of the robot's files, or replace them.",
     )
     start_state: StartState | None = Field(
         default=None, description="The start state; the default comes from the robot's folder."

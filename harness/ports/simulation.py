@@ -142,6 +142,23 @@ class Simulator(Protocol):
         """
         ...
 
+    def wrench(self, sensor: str, span: float) -> FloatArray:
+        """What a sensor of force and torque reads, in its axes, shape (6,) [N, N m].
+
+        Args:
+            sensor: The name of the sensor.
+            span: The time until now over which the mean is taken [s].
+        """
+        ...
+
+    def tare(self, sensor: str, duration: float) -> FloatArray:
+        """Hold for some time [s], and take what a sensor reads meanwhile for zero from now on.
+
+        Returns:
+            The mean of its readings, without an earlier tare, shape (6,).
+        """
+        ...
+
     def command_gripper(
         self,
         position: float,

@@ -114,6 +114,8 @@ class Signals:
         pulls: Force of a suction cup's vacuum on another body (world xyz) [N], and the number of
             quarters of its rim that touch the body, (N, 4) each; zero where the valve is shut; keys
             (link of the cup, body).
+        wrenches: What each sensor of force and torque reads, in its axes: force [N], then torque
+            [N m], (N, 6) each; with its noise, held at its rate, less its tare.
         support_forces: Upward part of the normal force [N] that the first of two objects exerts on
             the second; negative where the second carries the first. (N,) each; keys as in
             `contact_forces`, of objects alone. A pair that is not in it was recorded without.
@@ -148,6 +150,7 @@ class Signals:
     presses: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     frictions: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     pulls: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
+    wrenches: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
     support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ from harness.core.camera import Camera
 from harness.core.errors import RobotError
 from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
+from harness.core.wrench_sensor import WrenchSensor
 from harness.robot.description import (
     WORLD,
     Arm,
@@ -31,6 +32,7 @@ from harness.robot.srdf.srdf import EndEffector, Srdf, write_srdf
 from harness.robot.tree import free_name, in_tree_order
 from harness.robot.urdf.urdf import Urdf
 from harness.robot.urdf.write import write_urdf
+from harness.robot.wrench_sensors import flaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,7 @@ class RobotPart:
         rejected_grippers: Why parts that look like grippers are none, a sentence each.
         arms: The arms of a robot with several; the facts are those of the first.
         default_arm: The arm that the scenario states; empty where it states none.
+        wrench_sensors: The sensors of force and torque in its file of another format, by name.
     """
 
     name: str
@@ -58,6 +61,7 @@ class RobotPart:
     rejected_grippers: tuple[str, ...] = ()
     arms: tuple[PartArm, ...] = ()
     default_arm: str = ""
+    wrench_sensors: Mapping[str, WrenchSensor] = field(default_factory=dict[str, WrenchSensor])
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +134,7 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         base_link=first.urdf.root,
         start_state=_start_state(parts, srdf),
         cameras=_cameras(parts, tree_links),
+        wrench_sensors=_wrench_sensors(parts, tree_links, tree_joints),
         tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
         controller_tolerances=None if bounds is None else TrackingTolerances(**bounds.model_dump()),
         ik_solver=first.facts.ik_solver,
@@ -274,6 +279,23 @@ def _cameras(parts: list[RobotPart], links: tuple[Link, ...]) -> dict[str, Camer
             pose = SE3.from_xyz_rpy(facts.pose.xyz, facts.pose.rpy)
             cameras[name] = facts.camera(name, facts.link, pose)
     return cameras
+
+
+def _wrench_sensors(
+    parts: list[RobotPart], links: tuple[Link, ...], joints: tuple[Joint, ...]
+) -> dict[str, WrenchSensor]:
+    """Sensors of every part's files, by name."""
+    sensors: dict[str, WrenchSensor] = {}
+    for part in parts:
+        own = {name: facts.sensor(name) for name, facts in part.facts.wrench_sensors.items()}
+        for name, sensor in own.items():
+            where = f"{Path(part.source) / 'robot.yaml'}: wrench_sensors.{name}"
+            if name in sensors:
+                raise RobotError(f"{where}: another sensor has the name '{name}'")
+            if reason := flaw(sensor, links, joints):
+                raise RobotError(f"{where}.link: {reason}")
+        sensors |= {**part.wrench_sensors, **own}
+    return sensors
 
 
 def _start_state(parts: list[RobotPart], srdf: Srdf) -> Mapping[str, float]:

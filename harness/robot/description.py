@@ -19,6 +19,7 @@ from harness.core.geometry import Shape
 from harness.core.kinematics import LinkJoint, LinkPoses
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.core.wrench_sensor import WrenchSensor
 from harness.robot.task_space import TaskSpace, mechanism_rank
 
 ALL_ARMS = "arms"
@@ -279,6 +280,7 @@ class RobotDescription:
         base_link: First link of the arm.
         start_state: Joint positions by name at the start of a run.
         cameras: Cameras on links, by name.
+        wrench_sensors: Sensors of force and torque between links, by name.
         tracking: Tolerances of the scenario's own motions.
         controller_tolerances: Tolerances of its ROS 2 controllers for trajectories of nodes; None
             where their file has none.
@@ -312,6 +314,7 @@ class RobotDescription:
     base_link: str
     start_state: Mapping[str, float]
     cameras: Mapping[str, Camera] = field(default_factory=dict)
+    wrench_sensors: Mapping[str, WrenchSensor] = field(default_factory=dict)
     tracking: TrackingTolerances = field(default_factory=TrackingTolerances)
     controller_tolerances: TrackingTolerances | None = None
     ik_solver: str = "numeric"

@@ -55,10 +55,12 @@ def read_robot(
     if key == "mjcf":
         found = read_foreign_robot(key, path, packages)
         urdf, states, excluded = found.urdf, found.states, found.disabled
+        sensors = found.wrench_sensors
     else:
         is_xacro = key == "xacro"
         document = render(path, spec.args, packages) if is_xacro else read_bounded(path)
         urdf, states, excluded = parse_urdf(document, path.parent, str(path), packages), (), {}
+        sensors = {}
     urdf = _without_world(urdf)
     urdf = replace(urdf, links=with_collision_modes(urdf.links, spec.collision, collision))
     srdf = None
@@ -73,7 +75,8 @@ def read_robot(
     urdf = with_estimated_masses(urdf)
     part = imported_part(spec, urdf, srdf, path, str(srdf_path or path))
     allowed = {**excluded, **part.srdf.disabled}
-    return replace(part, srdf=replace(part.srdf, disabled=allowed))
+    disabled = replace(part.srdf, disabled=allowed)
+    return replace(part, srdf=disabled, wrench_sensors=sensors)
 
 
 def _check_limits(spec: RobotSpec, urdf: Urdf, base_dir: Path) -> None:

@@ -15,6 +15,7 @@ from harness.robot.find_file import find_file
 from harness.robot.moveit_files import position_only_groups, with_joint_limits
 from harness.robot.srdf.srdf import parse_srdf, write_srdf
 from harness.robot.urdf.write import write_urdf
+from harness.robot.wrench_sensors import with_wrench_sensors
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
@@ -52,6 +53,8 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
         description = replace(description, ik_solver=spec.ik_solver)
     if spec.joint_controller is not None:
         description = replace(description, joint_controller=spec.joint_controller)
+    if spec.wrench_sensors:
+        description = with_wrench_sensors(description, spec.wrench_sensors)
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
 from harness.core.errors import RobotOptionError
 from harness.core.registry import Plugin, absent_plugins, registry
+from harness.core.wrench_sensor import WrenchSensor
 from harness.robot.description import NamedState
 from harness.robot.packages import PackagePath
 from harness.robot.urdf.urdf import Urdf
@@ -23,11 +24,13 @@ class FormatRobot:
         urdf: The tree of the robot.
         states: States of the driven joints; their group is empty.
         disabled: Pairs of links that are not checked for collisions, with the reason.
+        wrench_sensors: Sensors of force and torque by name.
     """
 
     urdf: Urdf
     states: tuple[NamedState, ...]
     disabled: Mapping[tuple[str, str], str]
+    wrench_sensors: Mapping[str, WrenchSensor] = field(default_factory=dict[str, WrenchSensor])
 
 
 class RobotFormat(Plugin, ABC):

@@ -16,6 +16,7 @@ from harness.language.cameras import CameraFields
 from harness.language.files.source import Loc, Source, SourceMap
 from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.scenario import IkSolverName, JointLimits, StartState
+from harness.language.wrench_sensors import WrenchSensorSpec
 
 FILE = "robot.yaml"
 
@@ -294,6 +295,10 @@ class RobotYaml(SpecModel):
     cameras: dict[Name, CameraFacts] = Field(
         default_factory=dict[str, CameraFacts],
         description="The cameras on links of the robot, by name.",
+    )
+    wrench_sensors: dict[Name, WrenchSensorSpec] = Field(
+        default_factory=dict[Name, WrenchSensorSpec],
+        description="The sensors of force and torque between links of the robot, by name.",
     )
     tracking: Tracking = Field(
         default=Tracking(), description="The tolerances of the scenario's own motions."

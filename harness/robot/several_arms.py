@@ -73,6 +73,7 @@ def joined_arms(robots: Mapping[str, RobotDescription]) -> RobotDescription:
         base_link=first.base_link,
         start_state={key: value for robot in renamed for key, value in robot.start_state.items()},
         cameras=cameras,
+        wrench_sensors={k: v for robot in renamed for k, v in robot.wrench_sensors.items()},
         tracking=_widest([robot.tracking for robot in renamed]),
         ik_solver=solvers.pop() if len(solvers) == 1 else "auto",
         position_only_groups=frozenset().union(*(robot.position_only_groups for robot in renamed)),
@@ -111,6 +112,10 @@ def _renamed(arm: str, robot: RobotDescription) -> RobotDescription:
         cameras={
             name(camera.name): replace(camera, name=name(camera.name), frame=name(camera.frame))
             for camera in robot.cameras.values()
+        },
+        wrench_sensors={
+            name(each.name): replace(each, name=name(each.name), link=name(each.link))
+            for each in robot.wrench_sensors.values()
         },
         position_only_groups=frozenset(map(group, robot.position_only_groups)),
         notes=tuple(f"{arm}: {note}" for note in robot.notes),

@@ -106,6 +106,15 @@ class DrySimulator:
         del span, held
         return float("inf")
 
+    def wrench(self, sensor: str, span: float) -> FloatArray:
+        """What a guarded move waits for happens."""
+        del sensor, span
+        return np.full(6, np.inf)
+
+    def tare(self, sensor: str, duration: float) -> FloatArray:
+        del sensor, duration
+        return np.zeros(6)
+
     def command_gripper(
         self,
         position: float,

@@ -93,6 +93,7 @@ def start_physics(
                 gravity=program.world.gravity,
                 timestep=program.world.timestep,
                 frames=frames,
+                seed=program.seed,
                 moving=partial((clock or Clock()).part, "simulate"),
             )
     except ModelRefused as refused:

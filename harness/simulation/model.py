@@ -26,6 +26,7 @@ from harness.simulation.robot_mjcf import add_robot, joint_range, link_friction
 from harness.simulation.servo import Servos, add_servos, design_servos
 from harness.simulation.step_state import allow_sleep
 from harness.simulation.world_mjcf import add_object, parking_pose
+from harness.simulation.wrench_sensors import add_wrench_sensors
 
 FRICTION_DAMPING_PER_STEP = 1.5
 """Share of a sliding velocity that friction removes in one physics step.
@@ -161,6 +162,7 @@ def _compiled(
                 objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
                 objname=joint.name,
             )
+    add_wrench_sensors(spec, description.wrench_sensors.values())
     return servos, compile_model(spec)
 
 

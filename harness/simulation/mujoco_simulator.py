@@ -39,6 +39,7 @@ from harness.simulation.snapshot import (
 from harness.simulation.step_state import refresh
 from harness.simulation.suction import Suction
 from harness.simulation.surfaces import Surfaces
+from harness.simulation.wrench_sensors import WrenchSensors
 
 CHECK_EVERY = 100
 """Samples between checks of the path tolerance; the record shows which sample exceeded it."""
@@ -70,6 +71,7 @@ class MujocoSimulator:
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.8),
         timestep: float = 0.001,
         frames: Sequence[str] = (),
+        seed: int = 0,
         moving: Callable[[], AbstractContextManager[None]] = nullcontext,
     ) -> None:
         """Build the model and record its start state as sample 0.
@@ -81,6 +83,7 @@ class MujocoSimulator:
             gravity: The gravitational acceleration [m/s^2].
             timestep: The physics step [s].
             frames: Links whose poses are recorded in addition to the TCP's.
+            seed: Source of the noise of sensors of force and torque.
             moving: Makes a context in which the physics advances, which measures its wall time.
 
         Raises:
@@ -108,7 +111,8 @@ class MujocoSimulator:
         self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
         self.faults = MujocoFaults(self, self.physics, self._data)
         self.suction = Suction(self.physics, self._data)
-        self._recording = Recording(self.physics, self._data, self.suction)
+        wrenches = WrenchSensors(description.wrench_sensors.values(), timestep, seed)
+        self._recording = Recording(self.physics, self._data, self.suction, wrenches)
         self._surfaces = Surfaces(self.physics, self._data, self._recording)
         refresh(self._model, self._data)
         self._refuse_unusable_start()
@@ -211,6 +215,21 @@ class MujocoSimulator:
         pairs = self._recording.contacts(first, last)
         forces = (force for pair, force in pairs.items() if (pair[0] in own) != (pair[1] in own))
         return float(sum(float(force.mean()) for force in forces))
+
+    def wrench(self, sensor: str, span: float) -> FloatArray:
+        """What a sensor of force and torque reads, in its axes, mean over `span`, shape (6,)."""
+        return self._wrench(sensor, span)
+
+    def tare(self, sensor: str, duration: float) -> FloatArray:
+        """Hold, and take the mean of a sensor's readings meanwhile for zero; returns it, (6,)."""
+        self.hold(duration)
+        zero = self._wrench(sensor, duration, tared=False)
+        self._recording.wrenches.tare(sensor, self._recording.count - 1, zero)
+        return zero
+
+    def _wrench(self, sensor: str, span: float, *, tared: bool = True) -> FloatArray:
+        first = max(0, self._recording.count - max(1, round(span / self._timestep)))
+        return self._recording.wrench(sensor, first, tared=tared).mean(axis=0)
 
     def command_gripper(
         self,

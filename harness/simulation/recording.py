@@ -18,6 +18,7 @@ from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactReco
 from harness.simulation.model import ObjectPlace, PhysicsModel
 from harness.simulation.step_state import refresh
 from harness.simulation.suction import Suction
+from harness.simulation.wrench_sensors import WrenchSensors
 
 MOST_BYTES = 2**30
 """Largest record of states, sensors and contacts; judging it takes about four times as much."""
@@ -36,10 +37,18 @@ class Recording:
 
     Attributes:
         longest: The most simulated time of the run [s].
+        wrenches: The sensors of force and torque.
     """
 
-    def __init__(self, physics: PhysicsModel, data: mujoco.MjData, suction: Suction) -> None:
+    def __init__(
+        self,
+        physics: PhysicsModel,
+        data: mujoco.MjData,
+        suction: Suction,
+        wrenches: WrenchSensors,
+    ) -> None:
         model = physics.model
+        self.wrenches = wrenches
         self._suction = suction
         self._physics = physics
         self._data = data
@@ -134,6 +143,7 @@ class Recording:
         self.count = count
         self._contacts.rewind(count)
         self._suction.rewind(count)
+        self.wrenches.rewind(count)
 
     def replace_last(self, command: FloatArray) -> None:
         """Make the last sample the current state, after a change that was not recorded."""
@@ -208,8 +218,18 @@ class Recording:
 
     def actuator_efforts(self) -> FloatArray:
         """Efforts of the actuated joints at the last sample, shape (m,)."""
+        return self._sensors[self.count - 1, self._effort_columns]
+
+    @property
+    def _effort_columns(self) -> slice:
+        """The efforts' columns of `_sensors`: after the frames, before the wrenches."""
         start = 7 * (1 + len(self._physics.frames))
-        return self._sensors[self.count - 1, start:]
+        return slice(start, start + len(self._physics.actuated))
+
+    def wrench(self, name: str, first: int, *, tared: bool = True) -> FloatArray:
+        """What a sensor of force and torque reads from a sample on, in its axes, shape (N, 6)."""
+        measured = self._sensors[:, self._effort_columns.stop :]
+        return self.wrenches.readings(name, measured, first, self.count - first, tared=tared)
 
     def contacts(self, first: int, last: int) -> Mapping[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""
@@ -245,7 +265,7 @@ class Recording:
         frame_end = 7 * (1 + len(physics.frames))
         commands[:, physics.actuated] = self._commands[:count]
         command_velocities[:, physics.actuated] = self._command_velocities[:count]
-        efforts[:, physics.actuated] = self._sensors[:count, frame_end:]
+        efforts[:, physics.actuated] = self._sensors[:count, self._effort_columns]
         frames = self._sensors[:count, :frame_end].reshape(count, -1, 7)
         contacts = self._contacts.forces(0, count)
         return Signals(
@@ -263,6 +283,7 @@ class Recording:
             presses=self._contacts.presses(0, count),
             frictions=self._contacts.frictions(count),
             pulls=self._suction.recorded(count),
+            wrenches={name: self.wrench(name, 0) for name in self.wrenches.sensors},
             slides=self._contacts.slides(
                 count, object_poses, self._moved_by_robot(contacts), surfaces
             ),

@@ -9,7 +9,11 @@ EPOCH = 1_800_000_000 * 10**9
 
 EVERYTHING = """\
 scenario: Something for every topic
-robot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}
+robot:
+  model: ur3e
+  gripper: rh_p12_rn_a
+  base: {xyz: [0, 0, 1.02]}
+  wrench_sensors: {ft: {link: rh_p12_rn_base, xyz: [0, 0, 0.01], rate: 50, force_noise: 0.1}}
 world: lesson_ur
 seed: 3
 cameras:

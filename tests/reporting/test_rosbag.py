@@ -39,6 +39,7 @@ TOPICS = LATCHED | {
     "/tcp_path",
     "/armharness/events",
     "/rosout",
+    "/ft/wrench",
     "/over_view/image/compressed",
     "/over_view/camera_info",
     "/wrist/image",
@@ -62,6 +63,21 @@ def stored(folder):
 @pytest.fixture(scope="module")
 def messages(folder):
     return decoded(folder / "bag")
+
+
+def test_a_sensor_of_force_and_torque_is_published_as_wrenches_in_its_frame(stored, messages):
+    sensor = stored.run.robot.wrench_sensors["ft"]
+    recorded = stored.run.signals.wrenches["ft"]
+    for time, each in messages["/ft/wrench"]:
+        force, torque = each.wrench.force, each.wrench.torque
+        read = [force.x, force.y, force.z, torque.x, torque.y, torque.z]
+        row = round(time / stored.run.timestep)
+        assert read == recorded[row].tolist()
+        assert each.header.frame_id == "ft_wrench_frame"
+    frames = [each for _, found in messages["/tf_static"] for each in found.transforms]
+    frame = next(each for each in frames if each.child_frame_id == "ft_wrench_frame")
+    assert frame.header.frame_id == "rh_p12_rn_base"
+    assert matrix(frame.transform) == pytest.approx(sensor.pose.matrix())
 
 
 def matrix(transform):

@@ -179,6 +179,9 @@ class LiveControl(HandOver):
             self._wiring.publish_feedback()
             self._manager.publish()
         self._states.publish(simulator.time, positions, velocities, efforts)
+        for sensor in self.robot.wrench_sensors:
+            wrench = simulator.wrench(sensor, simulator.timestep)
+            self._states.publish_wrench(simulator.time, sensor, wrench)
         self._cameras.publish(simulator.time, sample, positions, simulator.objects_now)
 
     def _look_at_names(self) -> None:

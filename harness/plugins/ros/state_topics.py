@@ -15,6 +15,7 @@ from harness.plugins.ros.interfaces import header, stamp
 from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.frames import Edge, robot_edges, transform_stamped
 from harness.reporting.rosbag.messages import message, pose_message
+from harness.reporting.rosbag.wrenches import WRENCH, wrench_message, wrench_topic
 from harness.robot.description import RobotDescription
 
 TF = "tf2_msgs/msg/TFMessage"
@@ -47,6 +48,9 @@ class StateTopics:
         self._path = graph.advertise("/trajectory", PATH)
         self._poses: deque[Any] = deque(maxlen=MOST_POSES)
         self._last = np.full(3, np.inf)
+        self._wrenches = {
+            name: graph.advertise(wrench_topic(name).name, WRENCH) for name in robot.wrench_sensors
+        }
 
     def publish(
         self, time: float, positions: FloatArray, velocities: FloatArray, efforts: FloatArray
@@ -69,6 +73,11 @@ class StateTopics:
                 for joint, position in zip(self._moved, positions, strict=True)
             ]
             self._tf.publish(message(TF, transforms=transforms))
+
+    def publish_wrench(self, time: float, name: str, wrench: FloatArray) -> None:
+        """Publish what a sensor of force and torque reads, shape (6,), at a simulated time [s]."""
+        sensor = self._robot.wrench_sensors[name]
+        self._wrenches[name].publish(wrench_message(time, sensor, wrench))
 
     def _publish_path(self, time: float, positions: FloatArray) -> None:
         """Publish where the TCP was: a pose for each distance that it moved."""

@@ -12,6 +12,8 @@ from harness.recording.link_poses import replayed_link_poses, tcp_tracks
 from harness.recording.run import Run
 from harness.reporting.html.plot_group import MOST_SERIES, Group
 
+MOST_SENSORS = 3  # of four series each in one plot
+
 
 def clearances(run: Run) -> Group:
     """The pairs that came nearest."""
@@ -52,6 +54,26 @@ def contacts(run: Run) -> Group:
         if peaks[pair] > 0
     }
     return Group("contact", "contact force", "N", series, least=0.1)
+
+
+def forces(run: Run) -> Group:
+    """Forces that sensors between links read, in their axes."""
+    return _read(run, "wrench_force", "wrist force", "N", 0)
+
+
+def torques(run: Run) -> Group:
+    """Torques that sensors between links read, in their axes."""
+    return _read(run, "wrench_torque", "wrist torque", "N m", 3)
+
+
+def _read(run: Run, name: str, title: str, unit: str, first: int) -> Group:
+    """Three components of the readings of every sensor, and their magnitude."""
+    series: dict[str, FloatArray] = {}
+    for sensor, rows in list(run.signals.wrenches.items())[:MOST_SENSORS]:
+        vector = rows[:, first : first + 3]
+        series |= {f"{sensor} {axis}": vector[:, i] for i, axis in enumerate("xyz")}
+        series[f"{sensor} magnitude"] = np.linalg.norm(vector, axis=1)
+    return Group(name, title, unit, series, least=0.1, measure=title, is_signed=True)
 
 
 def slip(run: Run) -> Group:

@@ -44,13 +44,18 @@ def static_edges(run: Run) -> list[Edge]:
 
 
 def robot_edges(robot: RobotDescription) -> list[Edge]:
-    """The root in the world, and the fixed joints."""
+    """The root in the world, the fixed joints, and the frames of sensors that are no links."""
     children = {joint.child for joint in robot.joints}
     roots = dict.fromkeys(each.parent for each in robot.joints if each.parent not in children)
     fixed = [joint for joint in robot.joints if not joint.is_movable]
     return [
         *(Edge(WORLD, root, IDENTITY) for root in roots if root != WORLD),
         *(Edge(joint.parent, joint.child, joint.pose.as_vector()) for joint in fixed),
+        *(
+            Edge(sensor.link, sensor.frame_id, sensor.pose.as_vector())
+            for sensor in robot.wrench_sensors.values()
+            if sensor.frame_id != sensor.link
+        ),
     ]
 
 

@@ -34,6 +34,7 @@ from harness.reporting.rosbag.topics import (
     Topic,
 )
 from harness.reporting.rosbag.urdf import MeshAddresses, urdf_of
+from harness.reporting.rosbag.wrenches import wrenches
 
 VERSION = 8
 """Of rosbag2's metadata. Version 9 says QoS in words, which Humble and Iron cannot read; Jazzy and
@@ -130,6 +131,7 @@ def _messages(stored: StoredRun, options: BagOptions) -> Iterator[Message]:
         _clock(run, indices),
         _measured_states(run, indices),
         _commanded(run, indices),
+        *(wrenches(run, each, indices) for each in run.robot.wrench_sensors.values()),
         moving_tf(run, indices),
         _in_order(planned(run)),
         scene_markers(run),

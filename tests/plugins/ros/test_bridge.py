@@ -169,6 +169,19 @@ def test_the_path_of_the_tcp_is_published_as_by_the_course_s_trajectory_server(t
     assert paths[-1].header.frame_id == "world"
 
 
+def test_a_sensor_of_force_and_torque_is_published(tmp_path):
+    arm = "{model: open_manipulator_x, wrench_sensors: {hand: link5}}"
+    with bridge(scenario(tmp_path, HOLD, robot=arm)) as (node, _):
+        wrenches = node.listen("/hand/wrench", "geometry_msgs/msg/WrenchStamped")
+        node.wait(lambda: len(wrenches) > 5)
+    force = wrenches[-1].wrench.force
+    links = {link.name: link for link in robot(model="open_manipulator_x").links}
+    carried = ("link5", "gripper_left_link", "gripper_right_link")
+    weight = 9.8 * sum(links[name].inertial.mass for name in carried)
+    assert np.linalg.norm([force.x, force.y, force.z]) == pytest.approx(weight, rel=0.01)
+    assert wrenches[-1].header.frame_id == "link5"
+
+
 @pytest.mark.nightly
 def test_cameras_send_pictures_while_someone_watches(tmp_path):
     with bridge(scenario(tmp_path)) as (node, _):

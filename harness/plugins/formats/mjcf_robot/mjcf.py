@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.core.wrench_sensor import WrenchSensor
 from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.mjcf_robot.compiled import compile_mjcf, driven_trees
 from harness.plugins.formats.mjcf_robot.files import read_tree
@@ -22,6 +23,7 @@ from harness.plugins.formats.mjcf_robot.joints import (
     with_mimics,
 )
 from harness.plugins.formats.mjcf_robot.links import body_link, links_between
+from harness.plugins.formats.mjcf_robot.wrench_sensors import FORCE, TORQUE, wrench_sensors
 from harness.robot.description import WORLD, Joint, Link, NamedState, fixed_joint
 from harness.robot.packages import PackagePath
 from harness.robot.robot_format import FormatRobot
@@ -57,7 +59,8 @@ def read_mjcf(path: Path, packages: PackagePath) -> FormatRobot:
     name = model.names.split(b"\0")[0].decode()
     name = "" if name == UNNAMED else name
     urdf = Urdf(name, *ordered, tuple(reader.notes), elements)
-    return FormatRobot(urdf, reader.states({joint.name for joint in joints}), reader.excluded())
+    states = reader.states({joint.name for joint in joints})
+    return FormatRobot(urdf, states, reader.excluded(), reader.wrench_sensors)
 
 
 @dataclass(eq=False)
@@ -69,6 +72,7 @@ class _Reader:
     folder: Path
     elements: Mapping[tuple[str, str], XmlElement]
     notes: list[str] = field(default_factory=list[str])
+    wrench_sensors: dict[str, WrenchSensor] = field(default_factory=dict[str, WrenchSensor])
 
     def tree(self) -> tuple[list[Link], list[Joint]]:
         model = self.model
@@ -104,6 +108,7 @@ class _Reader:
                 f"bodies that are free, or that no actuator moves, are left out: {names_out}"
             )
         self._sites(names, links, joints)
+        self.wrench_sensors |= wrench_sensors(model, names)
         self._count_ignored()
         return links, with_mimics(model, joints, self.notes)
 
@@ -147,7 +152,7 @@ class _Reader:
         for count, what in (
             (model.nu, "actuators are not used: the program drives every joint with its own servo"),
             (model.ntendon - len(pulled_pairs(model)), "tendons are ignored"),
-            (model.nsensor, "sensors are ignored"),
+            (_other_sensors(model), "sensors are ignored"),
             (_with_own_dynamics(model), "joints have an armature or a spring, which is ignored"),
             (int(model.body_geomnum[0]), "geoms of the world body are not part of the robot"),
         ):
@@ -186,6 +191,11 @@ def _passive_trees(model: Any) -> set[int]:
     """
     driven = driven_trees(model)
     return {int(tree) for tree in model.body_rootid[model.dof_bodyid]} - driven if driven else set()
+
+
+def _other_sensors(model: Any) -> int:
+    """Number of sensors of other things than force and torque."""
+    return sum(int(kind) not in (FORCE, TORQUE) for kind in model.sensor_type)
 
 
 def _with_own_dynamics(model: Any) -> int:

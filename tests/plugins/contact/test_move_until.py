@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import harness
-from harness.steps.move_until import GuardedMove
+from harness.plugins.contact.steps.move_until import GuardedMove
 from tests.simulation.test_pushing import GANTRY
 
 SCENARIO = """
@@ -73,8 +73,8 @@ def test_a_move_that_meets_nothing_fails_with_the_largest_force(tmp_path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("max_distance: 5 cm", "`force` and `contact`"),
-        ("force: 5, contact: true, max_distance: 5 cm", "`force` and `contact`"),
+        ("max_distance: 5 cm", "`force`, `torque` and `contact`"),
+        ("force: 5, contact: true, max_distance: 5 cm", "`force`, `torque` and `contact`"),
         ("contact: false, max_distance: 5 cm", "a move until no contact never ends"),
         ("force: -5, max_distance: 5 cm", "force"),
         ("contact: true", "max_distance"),

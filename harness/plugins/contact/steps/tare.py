@@ -1,0 +1,59 @@
+"""tare: a sensor of force and torque takes what it reads now for zero."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from pydantic import Field
+
+from harness.cell.cell import Cell
+from harness.cell.scope import At
+from harness.core.details import Detail
+from harness.core.types import Floats
+from harness.language.base import Name, PositiveDuration
+from harness.language.step import Step
+from harness.plugins.contact.sensors import check_sensor, sensor_of
+
+
+@dataclass(frozen=True)
+class Tared(Detail):
+    """What a sensor took for zero: force along x, y, z [N], then torque [N m], in its axes."""
+
+    sensor: str
+    zero: Floats
+
+
+class Tare(Step):
+    """Let a sensor of force and torque take what it reads now for zero.
+
+    The arm stands during `duration`, and the mean of the readings in it is subtracted from all
+    later ones, in place of an earlier tare. The weight of what the sensor carries is gone from its
+    readings only as long as the sensor keeps its orientation.
+    """
+
+    short = "sensor"
+    verb: ClassVar[str] = "tare"
+    synonyms = ("zero_ftsensor", "zero_sensor")
+    keeps_arm_still: ClassVar[bool] = True
+    results = (Tared,)
+
+    sensor: Name | None = Field(
+        default=None, description="The name of the sensor; the default is the only one."
+    )
+    duration: PositiveDuration = Field(
+        default=0.1, description="The readings are averaged over this duration [s]."
+    )
+
+    def summary(self) -> str:
+        return self.sensor or "the sensor"
+
+    def check(self, at: At) -> None:
+        check_sensor(self.sensor, at)
+        at.scope.take_time(self.duration, at.key("duration"))
+
+    def execute(self, cell: Cell) -> None:
+        """Hold, then take the mean of the readings for zero."""
+        sensor = sensor_of(cell.robot, self.sensor)
+        zero = cell.simulator.tare(sensor.name, self.duration)
+        cell.report(Tared(sensor.name, tuple(zero.tolist())))

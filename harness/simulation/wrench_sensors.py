@@ -1,0 +1,75 @@
+"""Readings of sensors of force and torque: MuJoCo's sums, held at a rate, with noise and tare."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import mujoco
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.core.wrench_sensor import WrenchSensor
+
+KINDS = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE
+
+
+def add_wrench_sensors(spec: mujoco.MjSpec, sensors: Iterable[WrenchSensor]) -> None:
+    """Add a site and two sensors of MuJoCo for each sensor, six numbers of each sample."""
+    for sensor in sensors:
+        site = spec.body(sensor.link).add_site(name=f"wrench {sensor.name}")
+        site.pos, site.quat = sensor.pose.translation, sensor.pose.quat_wxyz
+        for kind in KINDS:
+            spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=site.name)
+
+
+class WrenchSensors:
+    """The readings of all sensors, which follow from what MuJoCo measures at each sample.
+
+    A reading does not depend on when it is looked at: the noise of a sensor is one sequence from
+    the run's seed and the sensor's place, and each reading has its row of it.
+    """
+
+    def __init__(self, sensors: Iterable[WrenchSensor], timestep: float, seed: int) -> None:
+        self.sensors = {sensor.name: sensor for sensor in sensors}
+        self._timestep, self._seed = timestep, seed
+        self._tares: list[tuple[int, str, FloatArray]] = []  # since which sample, which sensor
+
+    def rewind(self, count: int) -> None:
+        """Forget the tares of all samples after the first `count`."""
+        self._tares = [tare for tare in self._tares if tare[0] < count]
+
+    def tare(self, name: str, row: int, wrench: FloatArray) -> None:
+        """Take a wrench for zero from a sample on, without earlier tares, shape (6,)."""
+        self._tares.append((row, name, wrench))
+
+    def readings(
+        self, name: str, measured: FloatArray, first: int, count: int, *, tared: bool = True
+    ) -> FloatArray:
+        """What a sensor reads from a sample on, as wrenches in its axes, shape (count, 6).
+
+        Args:
+            name: The name of the sensor.
+            measured: MuJoCo's numbers of all sensors at every sample, shape (N, 6 * sensors).
+            first: The first sample.
+            count: The number of samples.
+            tared: Whether tares are subtracted.
+        """
+        sensor = self.sensors[name]
+        column = 6 * list(self.sensors).index(name)
+        rows = np.arange(first, first + count)
+        numbers = rows
+        if sensor.rate * self._timestep < 1:
+            numbers = np.floor(rows * self._timestep * sensor.rate + 1e-9).astype(np.int64)
+            rows = np.ceil(numbers / (self._timestep * sensor.rate) - 1e-9).astype(np.int64)
+        wrenches = -measured[rows, column : column + 6]  # MuJoCo has the force of the link before
+        deviations = np.repeat([sensor.force_noise, sensor.torque_noise], 3)
+        if deviations.any():
+            generator = np.random.default_rng([self._seed, column])
+            wrenches += deviations * generator.standard_normal((numbers[-1] + 1, 6))[numbers]
+        zero = np.zeros_like(wrenches)
+        for since, which, wrench in self._tares if tared else ():
+            if which == name:
+                zero[max(0, since - first) :] = wrench
+        return wrenches - zero
