@@ -31,7 +31,7 @@ def flaw(sensor: WrenchSensor, links: Collection[Link], joints: Collection[Joint
     """Why a sensor cannot measure anything; empty where it can.
 
     Args:
-        sensor: The sensor.
+        sensor: The sensor that is checked.
         links: The links of the robot.
         joints: The joints of the robot, parents before children.
     """

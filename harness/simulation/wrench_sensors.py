@@ -52,8 +52,8 @@ class WrenchSensors:
         Args:
             name: The name of the sensor.
             measured: MuJoCo's numbers of all sensors at every sample, shape (N, 6 * sensors).
-            first: The first sample.
-            count: The number of samples.
+            first: The first sample that is read.
+            count: The number of samples that are read.
             tared: Whether tares are subtracted.
         """
         sensor = self.sensors[name]

@@ -15,7 +15,7 @@ def wrench_sensors(model: Any, links: Mapping[int, str]) -> dict[str, WrenchSens
     """The sensors by the names of their sites.
 
     Args:
-        model: The compiled model.
+        model: The compiled model of the file.
         links: The name of the link of each body that is part of the robot.
     """
     found: dict[str, WrenchSensor] = {}
