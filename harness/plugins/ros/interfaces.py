@@ -35,6 +35,7 @@ UUID = "unique_identifier_msgs/msg/UUID"
 
 MOVE = "moveit_msgs/action/MoveGroup"
 EXECUTE = "moveit_msgs/action/ExecuteTrajectory"
+SEQUENCE = "moveit_msgs/action/MoveGroupSequence"
 
 
 def _definitions() -> Iterator[tuple[str, str]]:
@@ -64,7 +65,7 @@ def _table() -> Iterator[tuple[str, str]]:
             parts = PARTS[f".{kind.split('/')[1]}"]
             for part, fields in zip(parts, text.split(" --- "), strict=True):
                 yield kind + part, fields.replace("; ", "\n")
-    for action in (MOVE, EXECUTE):
+    for action in (MOVE, EXECUTE, SEQUENCE):
         yield from _of_action(action)
 
 

@@ -461,3 +461,32 @@ def test_a_whole_scene_replaces_the_one_before_and_a_scene_of_a_plan_is_of_it_al
         assert names() == ["cube"]
         assert planned() == SUCCESS
     assert replay(folder).digest == results[0].case.digest
+
+
+def test_rviz_shows_plans_clears_octomaps_and_publishes_worlds(tmp_path):
+    """What RViz' MotionPlanning uses besides MoveGroupInterface."""
+    with bridge(scenario(tmp_path, HOLD, robot=UR)) as (node, _):
+        client = MoveGroupClient(node)
+        shown = node.listen("/display_planned_path", "moveit_msgs/msg/DisplayTrajectory")
+        cleared, empty = [], node.graph.client("/clear_octomap", "std_srvs/srv/Empty")
+        node.wait(empty.is_ready)
+        empty.call(message("std_srvs/srv/Empty_Request"), cleared.append)
+        worlds = node.graph.advertise("/planning_scene_world", "moveit_msgs/msg/PlanningSceneWorld")
+        node.wait(lambda: worlds.subscribers and cleared)
+        wall = box("wall", (0.4, 0.3, 0.3), (1, 0.02, 0.6))
+        worlds.publish(moveit("PlanningSceneWorld", collision_objects=[wall]))
+        names = []
+        node.wait(
+            lambda: (
+                "wall" in names
+                or names.extend(each.id for each in client.scene().world.collision_objects)
+            )
+        )
+        plan = client.move_to(joint_goal({"elbow_joint": 1.0}), plan_only=True).result
+        node.wait(lambda: shown)
+        lasts = [
+            each.joint_trajectory.points[-1].positions
+            for each in (*shown[-1].trajectory, plan.planned_trajectory)
+        ]
+        assert np.array_equal(*lasts)
+        assert shown[-1].trajectory_start.joint_state.name == plan.trajectory_start.joint_state.name

@@ -36,19 +36,19 @@ TIGHTEST = 1e-4
 """The least tolerance of a goal [m or rad]: what inverse kinematics reaches."""
 
 
-def goal_of(cell: Cell, group: str, constraints: Any) -> Goal | AnyGoal:
-    """The goal of a request: one of its `goal_constraints`.
+def goal_of(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal | AnyGoal:
+    """The goal of a request: one of its `goal_constraints`; joints without one stay at the start.
 
     Raises:
         StepFailed: There is none, or one of them is no goal that can be planned.
     """
-    goals = tuple(_goal(cell, group, each) for each in constraints)
+    goals = tuple(_goal(cell, group, each, start) for each in constraints)
     if not goals:
         _refuse("INVALID_GOAL_CONSTRAINTS", "the request has no goal_constraints")
     return goals[0] if len(goals) == 1 else AnyGoal(goals)
 
 
-def _goal(cell: Cell, group: str, constraints: Any) -> Goal:
+def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
     joints, places = constraints.joint_constraints, constraints.position_constraints
     turns = constraints.orientation_constraints
     if constraints.visibility_constraints:
@@ -56,7 +56,7 @@ def _goal(cell: Cell, group: str, constraints: Any) -> Goal:
     if joints:
         if places or turns:
             _refuse("UNRECOGNIZED_GOAL_TYPE", "a goal has joints, or a pose, and not both")
-        return _joint_goal(cell, group, joints)
+        return _joint_goal(cell, group, joints, start)
     if len(places) != 1 or len(turns) > 1:
         _refuse(
             "UNRECOGNIZED_GOAL_TYPE",
@@ -86,9 +86,9 @@ def _goal(cell: Cell, group: str, constraints: Any) -> Goal:
     )
 
 
-def _joint_goal(cell: Cell, group: str, constraints: Any) -> JointGoal:
+def _joint_goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> JointGoal:
     names = cell.description.groups[group].joint_names
-    start, index = cell.planning_start(), cell.description.joint_index
+    index = cell.description.joint_index
     requested = {name: float(start[index[name]]) for name in names}
     for each in constraints:
         name = str(each.joint_name)

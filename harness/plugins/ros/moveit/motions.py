@@ -10,8 +10,8 @@ from harness.core.errors import StepFailed
 from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.control.cell import CANCELED, PREEMPTED
 from harness.plugins.ros.control.controller import Outcome
-from harness.plugins.ros.interfaces import EXECUTE, MOVE
-from harness.plugins.ros.moveit.planning import Planned, plan_fields
+from harness.plugins.ros.interfaces import EXECUTE, MOVE, SEQUENCE
+from harness.plugins.ros.moveit.planning import Planned, plan_fields, sequence_response
 from harness.plugins.ros.moveit.requests import Requests
 from harness.plugins.ros.moveit.scene_changes import changes_of_scene
 from harness.plugins.ros.moveit.values import error_code
@@ -43,7 +43,7 @@ class _Goal:
 
 
 class Motions:
-    """Serves `move_action` and `execute_trajectory`."""
+    """Serves `move_action`, `execute_trajectory` and `sequence_move_group`."""
 
     def __init__(self, graph: Graph, requests: Requests) -> None:
         """Serve them on a graph."""
@@ -53,7 +53,11 @@ class Motions:
         self._servers = [
             ActionServer(graph, f"/{name}", kind, clock, partial(self._take, place), self._cancel)
             for place, (name, kind) in enumerate(
-                (("move_action", MOVE), ("execute_trajectory", EXECUTE))
+                (
+                    ("move_action", MOVE),
+                    ("execute_trajectory", EXECUTE),
+                    ("sequence_move_group", SEQUENCE),
+                )
             )
         ]
         graph.subscribe(EVENTS, "std_msgs/msg/String", self._take_event)
@@ -81,7 +85,7 @@ class Motions:
             return False
         server = self._servers[place]
         self._goals[goal] = _Goal(server, content, message(f"{server.kind}_Result"))
-        begin = self._plan if server.kind == MOVE else self._execute
+        begin = self._execute if server.kind == EXECUTE else self._plan
         self._requests.in_turn(lambda: begin(goal) if goal in self._goals else None)
         return True
 
@@ -100,11 +104,11 @@ class Motions:
 
     def _finish(self, goal: str, failure: StepFailed | None = None) -> None:
         known = self._goals.pop(goal)
-        known.result.error_code = error_code(failure)
+        getattr(known.result, "response", known.result).error_code = error_code(failure)
         known.server.finish(goal, failure is None, known.result)
 
     def _plan(self, goal: str) -> None:
-        """Plan a goal of `move_action`, and follow the plan unless it is requested alone."""
+        """Plan a goal, and follow the plan unless it is requested alone."""
         known, requests = self._goals[goal], self._requests
         options, cell = known.content.planning_options, requests.here.cell
         try:
@@ -115,16 +119,25 @@ class Motions:
             return
 
         def done(planned: Planned | None, code: Any, seconds: float) -> None:
-            fields, kind = plan_fields(cell, planned), f"{MOVE}_Result"
-            known.result = message(kind, error_code=code, planning_time=seconds, **fields)
+            planned_fields, kind = plan_fields(cell, planned), known.server.kind
+            if kind == SEQUENCE:
+                fields = {"response": sequence_response(cell, planned, code, seconds)}
+            else:
+                fields = {"error_code": code, "planning_time": seconds, **planned_fields}
+            known.result = message(f"{kind}_Result", **fields)
             if planned is None or options.plan_only:
                 self._goals.pop(goal)
                 known.server.finish(goal, planned is not None, known.result)
                 return
-            known.result.executed_trajectory = known.result.planned_trajectory
-            self._follow(goal, known.result.planned_trajectory)
+            trajectory = planned_fields["planned_trajectory"]
+            if kind == MOVE:
+                known.result.executed_trajectory = trajectory
+            self._follow(goal, trajectory)
 
         content = known.content.request
+        if known.server.kind == SEQUENCE and not content.items:  # as MoveIt
+            self._finish(goal)
+            return
         requests.plan(content, done, diff=diff, is_awaited=lambda: goal in self._goals)
 
     def _execute(self, goal: str) -> None:

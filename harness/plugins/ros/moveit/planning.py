@@ -32,6 +32,7 @@ from harness.ports.motions import (
     JumpThreshold,
     LinearMotion,
     PlannedMotion,
+    SequenceItem,
     WaypointMotion,
 )
 from harness.recording.motion_failures import SearchFailure
@@ -77,6 +78,29 @@ def plan_fields(cell: Cell, planned: Planned | None) -> dict[str, Any]:
     }
 
 
+def display_trajectory(cell: Cell, planned: Planned) -> Any:
+    """A DisplayTrajectory."""
+    fields = plan_fields(cell, planned)
+    return message(
+        "moveit_msgs/msg/DisplayTrajectory",
+        model_id=cell.description.name,
+        trajectory_start=fields["trajectory_start"],
+        trajectory=[fields["planned_trajectory"]],
+    )
+
+
+def sequence_response(cell: Cell, planned: Planned | None, code: Any, seconds: float) -> Any:
+    """A MotionSequenceResponse."""
+    fields = plan_fields(cell, planned)
+    return message(
+        "moveit_msgs/msg/MotionSequenceResponse",
+        error_code=code,
+        sequence_start=fields["trajectory_start"],
+        planned_trajectories=[fields["planned_trajectory"]] if planned else [],
+        planning_time=seconds,
+    )
+
+
 def plan_motion(cell: Cell, request: Any) -> Planned:
     """Plan a MotionPlanRequest.
 
@@ -85,12 +109,20 @@ def plan_motion(cell: Cell, request: Any) -> Planned:
             TIMED_OUT, when its `allowed_planning_time` is used up.
     """
     cell.sync_scene()
+    return plan_from(cell, request, positions_of(cell, request.start_state))
+
+
+def plan_from(cell: Cell, request: Any, start: FloatArray) -> Planned:
+    """Plan a MotionPlanRequest from joint positions in description order.
+
+    Raises:
+        StepFailed: As `plan_motion` does.
+    """
     group = group_of(cell, request.group_name)
     if request.trajectory_constraints.constraints or request.reference_trajectories:
         reason = "trajectory constraints and reference trajectories are not kept"
         raise StepFailed("FAILURE", reason)
-    start = positions_of(cell, request.start_state)
-    options = _budgeted(_scaled(cell, request), request)
+    options = _budgeted(scaled(cell, request), request)
     pipeline = str(request.pipeline_id) or "ompl"
     if pipeline not in PLANNERS:
         known = ", ".join(PLANNERS)
@@ -134,24 +166,40 @@ def unknown_planner(request: Any) -> str:
 
 
 def _motion(cell: Cell, request: Any, group: str, start: FloatArray) -> PlannedMotion:
-    goal = goal_of(cell, group, request.goal_constraints)
     if str(request.pipeline_id) != PILZ:
+        goal = goal_of(cell, group, request.goal_constraints, start)
         return FreeMotion(goal, path_constraints_of(cell, request.path_constraints))
-    planner = str(request.planner_id)
-    if planner not in PLANNERS[PILZ]:
-        raise StepFailed("FAILURE", f"Pilz has no planner '{planner[:80]}', but PTP, LIN and CIRC")
-    if isinstance(goal, AnyGoal):
-        raise StepFailed("INVALID_GOAL_CONSTRAINTS", "Pilz takes one goal")
-    if planner == "LIN":
+    item = pilz_item(cell, request, group, start)
+    goal = item.goal
+    if item.kind == "lin":
         return LinearMotion(goal)
-    if planner == "CIRC":
-        return CircularMotion(goal, arc_point_of(cell, request.path_constraints))
+    if item.point is not None:
+        return CircularMotion(goal, item.point)
     if isinstance(goal, JointGoal):
         return JointMotion(goal.positions)
     solutions = cell.kinematics.solve(group, goal, start, cell.current.options.seed)
     if not solutions:
         raise PlanningFailed("NO_IK_SOLUTION", "no joint positions reach the goal")
     return JointMotion(solutions[0])
+
+
+def pilz_item(
+    cell: Cell, request: Any, group: str, start: FloatArray, blend_radius: float = 0.0
+) -> SequenceItem:
+    """The motion that Pilz would plan for a request.
+
+    Raises:
+        StepFailed: Pilz has no such planner, or takes no such goal.
+    """
+    goal, planner = goal_of(cell, group, request.goal_constraints, start), str(request.planner_id)
+    if planner not in PLANNERS[PILZ]:
+        raise StepFailed("FAILURE", f"Pilz has no planner '{planner[:80]}', but PTP, LIN and CIRC")
+    if isinstance(goal, AnyGoal):
+        raise StepFailed("INVALID_GOAL_CONSTRAINTS", "Pilz takes one goal")
+    if planner == "CIRC":
+        point = arc_point_of(cell, request.path_constraints)
+        return SequenceItem("circ", goal, point, blend_radius)
+    return SequenceItem("lin" if planner == "LIN" else "ptp", goal, None, blend_radius)
 
 
 def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float]:
@@ -180,7 +228,7 @@ def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float
     start = positions_of(cell, request.start_state)
     motion = WaypointMotion(goals, path)
     try:
-        plan = cell.planner.plan(MotionRequest(group, start, motion, _scaled(cell, request)))
+        plan = cell.planner.plan(MotionRequest(group, start, motion, scaled(cell, request)))
     except PlanningFailed as failure:
         followed = failure.details.find(CartesianPathResult)
         if followed is None:
@@ -228,7 +276,7 @@ def group_of(cell: Cell, name: str) -> str:
     return group
 
 
-def _scaled(cell: Cell, request: Any) -> PlanningOptions:
+def scaled(cell: Cell, request: Any) -> PlanningOptions:
     """The step's options with the scaling factors of a request; 0 and what exceeds 1 is 1."""
     factors = request.max_velocity_scaling_factor, request.max_acceleration_scaling_factor
     velocity, acceleration = (float(each) if 0 < each <= 1 else 1.0 for each in factors)

@@ -14,8 +14,14 @@ from harness.core.errors import HarnessError, StepFailed
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.endpoints import Reply
 from harness.plugins.ros.moveit.client_scene import ClientScene
-from harness.plugins.ros.moveit.planning import Planned, plan_motion, unknown_planner
+from harness.plugins.ros.moveit.planning import (
+    Planned,
+    display_trajectory,
+    plan_motion,
+    unknown_planner,
+)
 from harness.plugins.ros.moveit.scene_changes import Change
+from harness.plugins.ros.moveit.sequence import plan_sequence
 from harness.plugins.ros.moveit.values import error_code
 from harness.recording.commands import CommandRecord
 from harness.recording.explanation import Explanation
@@ -48,6 +54,7 @@ class Requests:
         note: Takes each command that a client gave.
         scene: The planning scene; None while the arm is not handed over.
         on_scene: Called with the planning scene as a message, after each change.
+        on_plan: Called with each plan as a DisplayTrajectory, which RViz shows.
     """
 
     def __init__(
@@ -66,6 +73,7 @@ class Requests:
         self.control, self.note, self._say = control, note, say
         self.scene: ClientScene | None = None
         self.on_scene: Callable[[Any], None] = lambda _: None
+        self.on_plan: Callable[[Any], None] = lambda _: None
         self._waiting: deque[Callable[[], object]] = deque()
         self._turns: deque[Callable[[], object]] = deque()
         self._work: _Work | None = None
@@ -183,7 +191,7 @@ class Requests:
         diff: Iterable[Change] = (),
         is_awaited: Callable[[], bool] = lambda: True,
     ) -> None:
-        """Plan what a MotionPlanRequest describes, in its turn.
+        """Plan what a MotionPlanRequest or a MotionSequenceRequest describes, in its turn.
 
         Args:
             done: Takes the plan, its error code, and the wall time that it took [s].
@@ -191,17 +199,22 @@ class Requests:
             is_awaited: Whether somebody still waits for it.
         """
         begin, scene = time.monotonic(), self.here
-        if note := unknown_planner(request):
+        items = getattr(request, "items", None)
+        motions = [request] if items is None else [each.req for each in items]
+        for note in filter(None, map(unknown_planner, motions)):
             self.report(f"{note}; the default plans instead, as with MoveIt")
 
         def work() -> Planned:
             scene.apply([*diff])
-            return plan_motion(scene.cell, request)
+            plan = plan_motion if items is None else plan_sequence
+            return plan(scene.cell, request)
 
         def end(result: Planned | StepFailed) -> None:
             failure = result if isinstance(result, StepFailed) else None
             planned = None if isinstance(result, StepFailed) else result
-            self._record(str(request.group_name), failure)
+            self._record(str(motions[0].group_name), failure)
+            if planned is not None:
+                self.on_plan(display_trajectory(scene.cell, planned))
             done(planned, error_code(failure), time.monotonic() - begin)
 
         self.compute(work, end, is_awaited)

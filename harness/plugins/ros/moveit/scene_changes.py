@@ -36,18 +36,27 @@ def changes_of_scene(cell: Cell, scene: Any) -> list[Change]:
     Raises:
         StepFailed: A part of it cannot be taken.
     """
-    if scene.world.octomap.octomap.data.size:
-        raise StepFailed("FAILURE", "an octomap is not taken; send shapes or meshes")
     if scene.link_padding or scene.link_scale:
         raise StepFailed("FAILURE", "padding and scale of links are the scenario's `planning`")
     changes = [] if scene.is_diff or is_empty(scene) else [*_replaced(cell, scene)]
-    for each in scene.world.collision_objects:
-        changes += changes_of(cell, each)
+    changes += changes_of_world(cell, scene.world)
     for each in scene.robot_state.attached_collision_objects:
         changes += changes_of_attached(cell, each)
     if len(scene.allowed_collision_matrix.entry_names):
         changes.append({"change": "allow", "pairs": _allowed(scene.allowed_collision_matrix)})
     return changes
+
+
+def changes_of_world(cell: Cell, world: Any) -> Iterator[Change]:
+    """The changes that a PlanningSceneWorld message makes.
+
+    Raises:
+        StepFailed: A part of it cannot be taken.
+    """
+    if world.octomap.octomap.data.size:
+        raise StepFailed("FAILURE", "an octomap is not taken; send shapes or meshes")
+    for each in world.collision_objects:
+        yield from changes_of(cell, each)
 
 
 def changes_of(cell: Cell, obj: Any) -> Iterator[Change]:

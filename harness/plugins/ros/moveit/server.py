@@ -16,12 +16,14 @@ from harness.plugins.ros.moveit.scene_changes import (
     changes_of,
     changes_of_attached,
     changes_of_scene,
+    changes_of_world,
 )
 from harness.plugins.ros.rtps.graph import Graph
 from harness.recording.commands import CommandRecord
 from harness.reporting.rosbag.messages import message
 
 SCENE = "moveit_msgs/msg/PlanningScene"
+DISPLAY = "moveit_msgs/msg/DisplayTrajectory"
 
 
 class MoveGroup:
@@ -49,11 +51,13 @@ class MoveGroup:
         self._motions = Motions(graph, requests)
         for topic, kind, read in (
             ("planning_scene", "PlanningScene", changes_of_scene),
+            ("planning_scene_world", "PlanningSceneWorld", changes_of_world),
             ("collision_object", "CollisionObject", changes_of),
             ("attached_collision_object", "AttachedCollisionObject", changes_of_attached),
         ):
             graph.subscribe(f"/{topic}", f"moveit_msgs/msg/{kind}", requests.topic(read))
         requests.on_scene = graph.advertise("/monitored_planning_scene", SCENE, LATCHED).publish
+        requests.on_plan = graph.advertise("/display_planned_path", DISPLAY).publish
         semantic = graph.advertise("/robot_description_semantic", "std_msgs/msg/String", LATCHED)
         semantic.publish(message("std_msgs/msg/String", data=cell.description.srdf))
 

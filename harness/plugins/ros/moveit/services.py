@@ -15,6 +15,7 @@ from harness.plugins.ros.moveit.planning import (
     Planned,
     plan_cartesian_path,
     plan_fields,
+    sequence_response,
     solve_pose,
 )
 from harness.plugins.ros.moveit.requests import Requests
@@ -30,6 +31,7 @@ from harness.plugins.ros.rtps.graph import Graph
 from harness.reporting.rosbag.messages import message, pose_message
 
 SRV = "moveit_msgs/srv/"
+EMPTY = "std_srvs/srv/Empty"
 Begin = Callable[[Requests, Any, Reply], None]
 """Begins what takes long, of a request, and replies once it is known."""
 
@@ -46,9 +48,12 @@ def serve(graph: Graph, requests: Requests) -> None:
         ("apply_planning_scene", "ApplyPlanningScene", partial(_apply, requests)),
     ):
         graph.serve(f"/{name}", SRV + kind, requests.service(answer))
+    empty = f"{EMPTY}_Response"
+    graph.serve("/clear_octomap", EMPTY, lambda _, reply: reply(message(empty)))  # there is none
     for name, kind, begin in (
         ("plan_kinematic_path", "GetMotionPlan", _plan),
         ("compute_cartesian_path", "GetCartesianPath", _cartesian),
+        ("plan_sequence_path", "GetMotionSequence", _sequence),
     ):
         graph.serve(f"/{name}", SRV + kind, partial(_in_turn, requests, begin))
 
@@ -136,6 +141,18 @@ def _plan(requests: Requests, request: Any, reply: Reply) -> None:
         reply(message(f"{SRV}GetMotionPlan_Response", motion_plan_response=response))
 
     requests.plan(request.motion_plan_request, done)
+
+
+def _sequence(requests: Requests, request: Any, reply: Reply) -> None:
+    kind, cell = f"{SRV}GetMotionSequence_Response", requests.here.cell
+
+    def done(planned: Planned | None, code: Any, seconds: float) -> None:
+        reply(message(kind, response=sequence_response(cell, planned, code, seconds)))
+
+    if request.request.items:
+        requests.plan(request.request, done)
+    else:  # as MoveIt
+        done(None, error_code(None), 0.0)
 
 
 def _cartesian(requests: Requests, request: Any, reply: Reply) -> None:
