@@ -13,9 +13,11 @@ from pathlib import Path
 import pytest
 
 from docs import ROOT
+from docs.generate import GENERATED
+from docs.generators.examples import comparable
 from harness.recording.read_run import read_run
 from tests.commands import harness
-from tests.docs.test_examples import EVERY_PAGE, PAGES, harness_commands, page_id
+from tests.docs.test_examples import EVERY_PAGE, PAGES, blocks, harness_commands, page_id
 from tests.plugins.grading.recordings import SCENARIO, students_recording
 
 PICK = """\
@@ -92,18 +94,30 @@ GUIDES = [
 ]
 
 
+def outputs(page):
+    """The output that a page shows of a command, by its words; `...` stands for more lines."""
+    for block in blocks(page):
+        if block["text"].startswith("$ harness ") and page_id(page) not in GENERATED:
+            command, _, printed = block["text"].partition("\n")
+            yield tuple(shlex.split(command)[2:]), printed
+
+
 @pytest.mark.nightly(but=["docs/reference/commands.md", "docs/guides/reports.md"])
 @pytest.mark.parametrize("page", GUIDES, ids=page_id)
 def test_the_commands_of_a_guide_run(page, tmp_path, recorded_run):
     files_of(page, tmp_path, recorded_run)
+    shown = dict(outputs(page))
     for words in harness_commands(page):
         if any(set(each) <= set(words) for each in CANNOT_RUN):
             continue
+        parts = shown.get(tuple(words), "").split("...\n")
         words = [IN_PLACE.get(word, word) for word in words]
         done = harness(*words, cwd=tmp_path, **ENVIRONMENT)
         expected = (2,) if "typo.scenario.yaml" in words else (0, 1)
         assert done.returncode in expected, f"{shlex.join(words)}\n{done.stdout}\n{done.stderr}"
         assert "Traceback" not in done.stdout + done.stderr, words
+        for part in parts:
+            assert comparable(part) in comparable(done.stdout), words
 
 
 def test_every_reason_not_to_run_a_command_is_still_needed():

@@ -64,7 +64,7 @@ class ShrunkMargin:
     def __str__(self) -> str:
         if self.is_gone:
             return f"{self.expectation} is expected no more, or in other words: {self.change}"
-        return f"the margin of {self.expectation} shrank: {self.change}"
+        return f"the margin of '{self.expectation}' shrank: {self.change}"
 
 
 def shrunk_margins(

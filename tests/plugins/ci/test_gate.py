@@ -111,7 +111,7 @@ def test_what_shrank_is_reported_at_its_line_with_both_numbers(folder, capsys, m
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(folder / "summary.md"))
     assert gate() == 1
     said = capsys.readouterr().err
-    assert "a/pick.scenario.yaml:9: the margin of lifted cube shrank: 40 -> 6 mm" in said
+    assert "a/pick.scenario.yaml:9: the margin of 'lifted cube' shrank: 40 -> 6 mm" in said
     assert "::error file=a/pick.scenario.yaml,line=9,title=" in said
     assert "| lifted cube | a/pick.scenario.yaml \\[c0\\] | 40 -\\> 6 mm |" in (
         folder / "summary.md"
@@ -301,7 +301,7 @@ def test_a_run_of_one_case_compares_its_margins(folder, capsys):
     assert main(run) == 0
     (folder / "margins.json").write_text(text.replace(margin, f"9 {margin.split()[1]}"))
     assert main(run) == 1
-    assert f"the margin of {expectation} shrank" in capsys.readouterr().err
+    assert f"the margin of '{expectation}' shrank" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("option", [["--no-report"], ["--shard", "1/2"], ["--repeat", "2"]])

@@ -129,8 +129,12 @@ def test_a_project_is_green_then_red_before_anything_collides_then_green_again(p
     place_wall(MARGIN_6_MM)
     done = script(run, project)
     assert done.returncode == 1
-    assert "scenarios/near.scenario.yaml:8: the margin of clearance" in done.stderr
+    assert "scenarios/near.scenario.yaml:8: the margin of 'clearance" in done.stderr
     assert re.search(r"shrank: 40 -> 6(\.\d+)? mm", done.stderr)
+    guide = (ROOT / "docs/guides/pipelines.md").read_text()
+    [shown] = re.findall(r"(?s)```text\n(.*?)```", guide)
+    printed = re.sub(r"6\.\d mm", "6 mm", done.stderr)
+    assert all(line in printed for line in shown.splitlines()), done.stderr
     assert "::error file=scenarios/near.scenario.yaml,line=8," in done.stderr
     accept_margins()
     assert run_here() == 0

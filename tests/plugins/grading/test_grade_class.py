@@ -75,7 +75,7 @@ def test_students_see_margins_of_hidden_cases_and_not_the_cases(graded):
     texts = [page(graded, name) for name in ("constant", "perfect", "low")]
     assert all("0.31" not in text and "hidden" not in text.partition("<body>")[2].lower()
                .replace("hidden cases: margins", "") for text in texts)  # fmt: skip
-    margin = re.search(r'class="number">(-0\.0\d+ m)', page(graded, "constant"))
+    margin = re.search(r'class="number">(-\d+\.\d mm)', page(graded, "constant"))
     assert margin is not None
     for file in (graded / "students").rglob("*.yaml"):
         assert "0.31" not in file.read_text(), file

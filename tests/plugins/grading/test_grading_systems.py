@@ -150,7 +150,7 @@ def test_gradescope_gets_points_reasons_and_margins_of_hidden_cases():
     [failed] = [each for each in document["tests"] if each["status"] == "failed"]
     assert (failed["name"], failed["output"]) == (
         "hidden case 1: it is lifted",
-        "margin -0.017 m",
+        "margin -17.0 mm",
     )
     assert gradescope(NOTHING) == {**gradescope(NOTHING), "score": 0}
     assert "tests" not in gradescope(NOTHING)

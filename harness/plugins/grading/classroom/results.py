@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from harness.core.amounts import amount
 from harness.core.errors import Problem, SpecError
 from harness.judging.placed import describe
 from harness.language.reading.load import load_scenario
@@ -66,8 +67,8 @@ class Mark:
         verdict = self.verdict
         if verdict is None or math.isnan(verdict.margin):
             return ""
-        unit = "" if verdict.unit == "1" else f" {verdict.unit}"
-        return f"{verdict.margin:+.4g}{unit}"
+        sign = "+" if verdict.margin >= 0 else ""
+        return f"{sign}{amount(verdict.margin, verdict.unit)}"
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,7 @@ class StudentGrade:
                     f"{step.summary}: {step.error_code}: {step.message}"
                     for step in root_failures(run.result.steps)
                 ]
-                return (failed or [lost.reason])[0].splitlines()[0]
+                return (failed or [f"{lost.criterion.text}: {lost.reason}"])[0].splitlines()[0]
         return ""
 
 
