@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.cell.approach import approach_axis
 from harness.cell.cell import Cell
-from harness.cell.suction import suction_grasps, suction_grasps_at
+from harness.cell.grip import grip_of
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Plane, Shape, Sphere, reach
 from harness.core.pose_arrays import rotations_about
@@ -142,8 +142,8 @@ def top_grasps(obj: WorldObject, object_pose: SE3, cell: Cell) -> list[SE3]:
         StepFailed: INVALID_OBJECT_NAME, when the object leans, or its shape says too little;
             GOAL_STATE_INVALID, when no level side fits between the pads.
     """
-    if cell.gripper.cups:
-        return suction_grasps(obj, object_pose, cell)
+    if grip := grip_of(cell.gripper):
+        return grip.grasps(obj, object_pose, cell)
     shape, at, size, vertical, level = _standing(obj, object_pose, cell)
     check_opening(obj, object_pose, cell)
     side = at.rotation[:, level[0]].copy()
@@ -182,8 +182,8 @@ def top_grasps_at(point: FloatArray, obj: WorldObject, object_pose: SE3, cell: C
 
     Where the object leans, or is not one simple shape, at every eighth of a turn.
     """
-    if cell.gripper.cups:
-        return suction_grasps_at(point)
+    if grip := grip_of(cell.gripper):
+        return grip.grasps_at(point)
     if has_simple_shape(obj):
         try:
             return [SE3(each.rotation, point) for each in top_grasps(obj, object_pose, cell)]

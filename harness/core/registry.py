@@ -53,6 +53,9 @@ BUILT_IN = {
     "robot_format": "",
     "world_format": "",
     "reporter": "harness.reporting.reporters",
+    "grip": "",
+    "adhesion": "",
+    "tracker": "",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.errors import RobotError
+from harness.core.registry import absent_plugins, registry
 from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.core.wrench_sensor import WrenchSensor
@@ -236,6 +237,8 @@ def _allowed(
 
 
 def _gripper(facts: GripperFacts) -> Gripper:
+    if facts.cups and "suction" not in registry("grip"):
+        raise RobotError("; ".join(["no plug-in holds by `cups` here", *absent_plugins()]))
     axis = None if facts.approach_axis is None else np.array(facts.approach_axis)
     return Gripper(
         group=facts.group,

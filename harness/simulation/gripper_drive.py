@@ -97,7 +97,7 @@ class GripperDrive:
             contacts=self._contacts(),
             between=self._between(),
             forces=self._forces(),
-            unsealed=simulator.suction.unsealed(self._recording.count - 1, self._gripper),
+            unsealed=self._unsealed(),
         )
 
     def _ramp(self, position: float) -> SetPoints:
@@ -139,12 +139,17 @@ class GripperDrive:
                     forces[side][second] = forces[side].get(second, 0.0) + float(force[0])
         return forces
 
+    def _unsealed(self) -> dict[str, str]:
+        adhesion = self._simulator.adhesion
+        return (
+            {} if adhesion is None else adhesion.unsealed(self._recording.count - 1, self._gripper)
+        )
+
     def _between(self) -> tuple[str, ...]:
         """Objects that cups hold, or two finger sides press from opposite sides, at the end."""
-        if self._gripper.cups:
-            return tuple(
-                sorted(self._simulator.suction.held(self._recording.count - 1, self._gripper))
-            )
+        adhesion = self._simulator.adhesion
+        if adhesion is not None and self._gripper.cups:
+            return tuple(sorted(adhesion.held(self._recording.count - 1, self._gripper)))
         presses = self._recording.presses(max(0, self._recording.count - CHECK_EVERY))
         found: list[str] = []
         for name, place in self._simulator.physics.objects.items():

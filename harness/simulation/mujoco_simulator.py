@@ -21,6 +21,7 @@ from harness.recording.execution_failures import ContactForce, ControlFailure, U
 from harness.recording.motion import Motion
 from harness.recording.signals import Signals
 from harness.robot.description import RobotDescription
+from harness.simulation.adhesion import adhesion_of
 from harness.simulation.contact_record import BodyPair
 from harness.simulation.faults import MujocoFaults
 from harness.simulation.gripper_drive import GripperDrive
@@ -37,7 +38,6 @@ from harness.simulation.snapshot import (
     saved_state,
 )
 from harness.simulation.step_state import refresh
-from harness.simulation.suction import Suction
 from harness.simulation.surfaces import Surfaces
 from harness.simulation.wrench_sensors import WrenchSensors
 
@@ -56,7 +56,7 @@ class MujocoSimulator:
 
     Attributes:
         overlaps_at_start: Pairs of bodies that overlap at the start, deepest first.
-        suction: The suction cups of the gripper, if it has any.
+        adhesion: The forces of its suction cups; None of a robot without.
         unrecorded: Signals that are not recorded: none.
     """
 
@@ -110,9 +110,9 @@ class MujocoSimulator:
         self._data.ctrl[:] = self._control
         self._grips: dict[int, float] = {}  # effort limits of grippers, by actuator
         self.faults = MujocoFaults(self, self.physics, self._data)
-        self.suction = Suction(self.physics, self._data)
+        self.adhesion = adhesion_of(self.physics, self._data)
         wrenches = WrenchSensors(description.wrench_sensors.values(), timestep, seed)
-        self._recording = Recording(self.physics, self._data, self.suction, wrenches)
+        self._recording = Recording(self.physics, self._data, wrenches, self.adhesion)
         self._surfaces = Surfaces(self.physics, self._data, self._recording)
         refresh(self._model, self._data)
         self._refuse_unusable_start()

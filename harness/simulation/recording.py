@@ -14,10 +14,10 @@ from harness.core.types import FloatArray
 from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.signals import Signals
+from harness.simulation.adhesion import Adhesion
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
 from harness.simulation.model import ObjectPlace, PhysicsModel
 from harness.simulation.step_state import refresh
-from harness.simulation.suction import Suction
 from harness.simulation.wrench_sensors import WrenchSensors
 
 MOST_BYTES = 2**30
@@ -44,12 +44,12 @@ class Recording:
         self,
         physics: PhysicsModel,
         data: mujoco.MjData,
-        suction: Suction,
         wrenches: WrenchSensors,
+        adhesion: Adhesion | None,
     ) -> None:
         model = physics.model
         self.wrenches = wrenches
-        self._suction = suction
+        self._adhesion = adhesion
         self._physics = physics
         self._data = data
         self._qpos = np.empty((ROWS, model.nq))
@@ -94,15 +94,15 @@ class Recording:
         control, qpos, qvel, sensors = data.ctrl, data.qpos, data.qvel, data.sensordata
         positions, velocities, sensed = self._qpos, self._qvel, self._sensors
         keep_contacts = self._contacts.keep
-        suction = self._suction if self._suction.cups else None
+        adhesion = self._adhesion
         for row in range(first, first + steps):
             control[:] = controls[row - first]
             forward(model, data)
             if row > first:
                 sensed[row - 1] = sensors
                 keep_contacts(row - 1)
-            if suction is not None:
-                suction.apply(row)
+            if adhesion is not None:
+                adhesion.apply(row)
             check(model, data)
             integrate(model, data)
             positions[row] = qpos
@@ -142,8 +142,9 @@ class Recording:
         """Forget all samples after the first `count`; the physics stands at the last one kept."""
         self.count = count
         self._contacts.rewind(count)
-        self._suction.rewind(count)
         self.wrenches.rewind(count)
+        if self._adhesion is not None:
+            self._adhesion.rewind(count)
 
     def replace_last(self, command: FloatArray) -> None:
         """Make the last sample the current state, after a change that was not recorded."""
@@ -282,7 +283,7 @@ class Recording:
             support_forces=self._contacts.support_forces(count),
             presses=self._contacts.presses(0, count),
             frictions=self._contacts.frictions(count),
-            pulls=self._suction.recorded(count),
+            pulls={} if self._adhesion is None else self._adhesion.recorded(count),
             wrenches={name: self.wrench(name, 0) for name in self.wrenches.sensors},
             slides=self._contacts.slides(
                 count, object_poses, self._moved_by_robot(contacts), surfaces

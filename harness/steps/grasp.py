@@ -9,8 +9,8 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.closing import closing_obstacles, higher_grasp, position_around
+from harness.cell.grip import grip_of
 from harness.cell.scope import At
-from harness.cell.suction import EARTH, why_not_held
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
@@ -110,11 +110,10 @@ class Grasp(Step):
 def check_graspable(name: str, at: At, mode: str, *, by_all_cups: bool) -> None:
     """Report an object that is not there, cannot be held, or is unknown to the planner."""
     scope = at.scope
-    gripper = scope.description.gripper
-    if gripper is not None and gripper.cups:
-        _check_suction(name, at, mode, by_all_cups)
-    scope.check_present(name, at.key("object"))
     obj = scope.objects.get(name)
+    if grip := grip_of(scope.description.gripper):
+        grip.check(obj, at, mode, by_all_cups=by_all_cups)
+    scope.check_present(name, at.key("object"))
     if obj is not None:
         scope.check_object(name, at.key("object"), simulated=True)
     if obj is not None and obj.is_static:
@@ -124,21 +123,6 @@ def check_graspable(name: str, at: At, mode: str, *, by_all_cups: bool) -> None:
             at.key("object"),
             f"'{name}' is unknown to the planner, so it cannot be attached",
             "name an object that is `in: both`",
-        )
-
-
-def _check_suction(name: str, at: At, mode: str, by_all: bool) -> None:
-    """Report what no suction cup can hold, and a weld in its place."""
-    obj = at.scope.objects.get(name)
-    why = "" if obj is None else why_not_held(obj, at.scope.description, EARTH, by_all=by_all)
-    if why:
-        hint = "take a smaller load, or a gripper with other cups"
-        at.scope.problems.add(at.key("object"), why, hint)
-    if mode == "weld":
-        at.scope.problems.add(
-            at.key("mode"),
-            "suction cups hold by their vacuum alone: a weld would hold what they cannot",
-            "leave out `mode`",
         )
 
 

@@ -40,7 +40,7 @@ from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
 from harness.ports.goals import PoseGoal
 from harness.recording.explanation import ApproachFailure, Explanation, NearestState
-from harness.steps._pick_in_motion import Interception, pick_in_motion
+from harness.steps._tracker import check_track, tracker
 from harness.steps.grasp import Grasp, GripperAction, HoldingEffort, check_graspable
 from harness.steps.gripper import Gripper
 from harness.steps.lin import Lin
@@ -112,7 +112,7 @@ class Pick(Step):
     short = "object"
 
     verb: ClassVar[str] = "pick"
-    results = (GraspChoice, Interception)
+    results = (GraspChoice,)
 
     object: Name = Field(description="The name of the object.")
     grasp_pose: Pose | None = Field(
@@ -172,6 +172,7 @@ class Pick(Step):
             )
         check_travel(self.approach, at, "approach")
         check_travel(self.lift, at, "lift")
+        check_track(self.track, at)
         at.scope.attached[self.object] = None
 
     def execute(self, cell: Cell) -> None:
@@ -180,7 +181,7 @@ class Pick(Step):
         lift = relative_step(self.lift, Direction(xyz=(0, 0, 1)), self.group)
         if self.track:
             step = self.model_copy(update={"approach": self.approach or APPROACH_IN_MOTION})
-            pick_in_motion(grasp, lift, lambda: chosen_approach(step, lift, cell), cell)
+            tracker().pick(grasp, lift, lambda: chosen_approach(step, lift, cell), cell)
             return
         open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
         with cell.unpadded_gripper(self.object):

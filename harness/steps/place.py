@@ -33,7 +33,7 @@ from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.recording.explanation import Explanation
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
-from harness.steps._place_in_motion import place_in_motion
+from harness.steps._tracker import check_track, tracker
 from harness.steps.lin import Lin
 from harness.steps.move_to import MoveTo
 from harness.steps.pick import (
@@ -128,6 +128,7 @@ class Place(Step):
             _check_support(self.on, self.object, at)
         check_travel(self.approach, at, "approach")
         check_travel(self.retreat, at, "retreat")
+        check_track(self.track, at)
         group = at.scope.check_group(self.group, at.key("group"))
         known = group in at.scope.description.groups
         if self.track and known and not task_space_of(at.scope.description, group).holds_pose:
@@ -162,7 +163,7 @@ class Place(Step):
             back = relative_step(self.retreat or DEFAULT_RETREAT, up, self.group)
             distance = back.distance or back.max_distance or 0.0
             targets, group = _targets(name, self, cell), group_of(cell, self.group)
-            place_in_motion(name, targets, distance, group, cell)
+            tracker().place(name, targets, distance, group, cell)
             return
         backwards = _retreat_direction(cell)
         children = [

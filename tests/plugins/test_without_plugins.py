@@ -81,6 +81,18 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert done.returncode == 2
     assert "formula.scenario.yaml:1:15" in done.stdout + done.stderr
     assert "lacks the built-in plug-ins" in done.stdout + done.stderr
+    file.write_text("scenario: t\nrobot: {model: suction_cup}\nsteps: [{gripper: on}]\n")
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:2:8" in done.stdout + done.stderr
+    assert "no plug-in holds by `cups` here" in done.stdout + done.stderr
+    file.write_text(
+        "scenario: t\nrobot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}\n"
+        "world: lesson_ur\nsteps: [{pick: {object: green_cylinder, track: true}}]\n"
+    )
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
     part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
     assert part.returncode == 2
     assert "--shard" in part.stderr

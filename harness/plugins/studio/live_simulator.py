@@ -41,11 +41,11 @@ class LiveSimulator(MujocoSimulator):
     def idle(self, samples: int) -> None:
         """Step without a record; set points stay where they are."""
         self._data.ctrl[:] = self._control
-        if self.suction.cups:
+        if self.adhesion is not None:
             for _ in range(samples):
-                self.suction.apply(self.sample_count, anew=True)
+                self.adhesion.apply(self.sample_count, anew=True)
                 mujoco.mj_step(self._model, self._data)
-            self.suction.rewind(self.sample_count)
+            self.adhesion.rewind(self.sample_count)
         else:
             mujoco.mj_step(self._model, self._data, nstep=samples)
         refresh(self._model, self._data)

@@ -9,11 +9,11 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach, with_arm
-from harness.cell.ride import LOOK_AHEAD, Ride
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.plugins.belts.ride import LOOK_AHEAD, Ride
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion, TimedLinkMotion

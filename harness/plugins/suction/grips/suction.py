@@ -5,10 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from harness.cell.cell import Cell
+from harness.cell.grip import Grip
+from harness.cell.scope import At
 from harness.core.errors import StepFailed
 from harness.core.geometry import Box, Cylinder, Geometry, Sphere
 from harness.core.pose_arrays import rotations_about
@@ -166,41 +169,51 @@ def _in_face(turn: float) -> FloatArray:
     return rotations_about(np.array([0.0, 0.0, 1.0]), turn) @ np.diag([1.0, -1.0, -1.0])
 
 
-def suction_grasps(obj: WorldObject, pose: SE3, cell: Cell) -> list[SE3]:
-    """T_world_tcp with every rim on a face of an object: on one that looks up, else on a side.
+class SuctionGrip(Grip):
+    """Hold a face with room for all rims, or one of curvature that the cups close on."""
 
-    Raises:
-        StepFailed: GOAL_STATE_INVALID, when no face has room; INVALID_OBJECT_NAME, when the object
-            has no face that is known.
-    """
-    faces, gripper = list(faces_of(obj)), cell.gripper
-    if not faces:
+    name: ClassVar[str] = "suction"
+
+    def check(self, obj: WorldObject | None, at: At, mode: str, *, by_all_cups: bool) -> None:
+        description = at.scope.description
+        why = "" if obj is None else why_not_held(obj, description, EARTH, by_all=by_all_cups)
+        if why:
+            hint = "take a smaller load, or a gripper with other cups"
+            at.scope.problems.add(at.key("object"), why, hint)
+        if mode == "weld":
+            at.scope.problems.add(
+                at.key("mode"),
+                "suction cups hold by their vacuum alone: a weld would hold what they cannot",
+                "leave out `mode`",
+            )
+
+    def grasps(self, obj: WorldObject, pose: SE3, cell: Cell) -> list[SE3]:
+        faces, gripper = list(faces_of(obj)), cell.gripper
+        if not faces:
+            raise StepFailed(
+                "INVALID_OBJECT_NAME",
+                f"'{obj.name}' has no box, cylinder or sphere whose face the cups could hold",
+                Explanation(advice="give a `grasp_pose`: the TCP's z axis points at the face"),
+            )
+        places = cup_places(cell.description)
+        ups = {id(face): float((pose @ face.frame).rotation[2, 2]) for face in faces}
+        highest = sorted(faces, key=lambda face: -round(ups[id(face)], 6))
+        for level in sorted({round(up, 3) for up in ups.values()}, reverse=True):
+            if level < -UPRIGHT:
+                break
+            grasps = [
+                pose @ face.frame @ SE3(_in_face(turn), np.array([0.0, 0.0, STANDOFF - sunk]))
+                for face in highest
+                if round(ups[id(face)], 3) == level
+                for turn, sunk in _turns(face, places, gripper.cups)
+            ]
+            if grasps:
+                return grasps
         raise StepFailed(
-            "INVALID_OBJECT_NAME",
-            f"'{obj.name}' has no box, cylinder or sphere whose face the cups could hold",
-            Explanation(advice="give a `grasp_pose`: the TCP's z axis points at the face"),
+            "GOAL_STATE_INVALID",
+            f"no face of '{obj.name}' that looks up or to the side has room for the suction cups",
+            Explanation(advice="give a `grasp_pose`, or take a gripper with smaller cups"),
         )
-    places = cup_places(cell.description)
-    ups = {id(face): float((pose @ face.frame).rotation[2, 2]) for face in faces}
-    highest = sorted(faces, key=lambda face: -round(ups[id(face)], 6))
-    for level in sorted({round(up, 3) for up in ups.values()}, reverse=True):
-        if level < -UPRIGHT:
-            break
-        grasps = [
-            pose @ face.frame @ SE3(_in_face(turn), np.array([0.0, 0.0, STANDOFF - sunk]))
-            for face in highest
-            if round(ups[id(face)], 3) == level
-            for turn, sunk in _turns(face, places, gripper.cups)
-        ]
-        if grasps:
-            return grasps
-    raise StepFailed(
-        "GOAL_STATE_INVALID",
-        f"no face of '{obj.name}' that looks up or to the side has room for the suction cups",
-        Explanation(advice="give a `grasp_pose`, or take a gripper with smaller cups"),
-    )
 
-
-def suction_grasps_at(point: FloatArray) -> list[SE3]:
-    """T_world_tcp at a point with the cups downwards, in every eighth of a turn."""
-    return [SE3(_in_face(turn), point) for turn in TURNS]
+    def grasps_at(self, point: FloatArray) -> list[SE3]:
+        return [SE3(_in_face(turn), point) for turn in TURNS]

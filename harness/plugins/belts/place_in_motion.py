@@ -9,17 +9,17 @@ from pydantic import PrivateAttr
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import with_arm
 from harness.cell.grasping import UP, gripper_axes, position_for_width
-from harness.cell.interception import PACES, Company, company_plan, divided
-from harness.cell.ride import Ride, ride_of
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.poses import Pose
+from harness.plugins.belts.interception import PACES, Company, company_plan, divided
+from harness.plugins.belts.pick_in_motion import AJAR, BUILD_UP, PlannedLin
+from harness.plugins.belts.ride import Ride, ride_of
 from harness.ports.goals import PoseGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion
 from harness.robot.gripper.closing_speed import closing_time
-from harness.steps._pick_in_motion import AJAR, BUILD_UP, PlannedLin
 from harness.steps.move_to import MoveTo
 from harness.steps.release import Release
 
@@ -47,19 +47,7 @@ class _ReleaseInMotion(Release):
 def place_in_motion(
     name: str, targets: Sequence[SE3], retreat: float, group: str, cell: Cell
 ) -> None:
-    """Lower an object at the speed of the belt under it, open, go back, verify.
-
-    Args:
-        name: The object that is held.
-        targets: T_world_object of each pose at which it may be let go.
-        retreat: The length of the retreat along the gripper [m].
-        group: The name of the planning group.
-        cell: The cell with the belt.
-
-    Raises:
-        PlanningFailed: The arm can follow the belt at none of the poses.
-        StepFailed: INVALID_OBJECT_NAME, when there is no belt under them.
-    """
+    """Lower an object at the speed of the belt under it, open, go back, verify."""
     failures: list[PlanningFailed] = []
     opened, opening = _opened(cell)
     for target in targets:

@@ -6,13 +6,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import takewhile
-from typing import Any
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray
 from harness.robot.description import Cup, Gripper, seal_words
+from harness.simulation.adhesion import Adhesion
 from harness.simulation.model import PhysicsModel
 
 QUARTER = 3  # rays along each quarter of a rim
@@ -48,7 +49,7 @@ class _Entry:
     force: FloatArray
 
 
-class Suction:
+class Suction(Adhesion):
     """The cups of all grippers: their seal at each sample, and the forces that follow from it.
 
     A cup is sealed where every ray along its rim meets the same body within its lip, and every ray
@@ -57,6 +58,8 @@ class Suction:
     the vacuum times the area; the cup is pressed with the opposite force. MuJoCo's adhesion
     actuator pulls at contacts instead, also at a single one in a corner.
     """
+
+    name: ClassVar[str] = "suction"
 
     def __init__(self, physics: PhysicsModel, data: mujoco.MjData) -> None:
         model, description = physics.model, physics.description
@@ -81,12 +84,6 @@ class Suction:
         return hand.vacuum * min(share, 1.0) if share > OPEN_SHARE else 0.0
 
     def apply(self, row: int, *, anew: bool = False) -> None:
-        """Set the forces at a sample from the poses of the one before, whose forces are known.
-
-        Args:
-            row: The sample, at which no forces are computed yet.
-            anew: Whether the seals are looked at, even if this is not one of `SEAL_EVERY` samples.
-        """
         self._data.qfrc_applied[:] = 0.0
         before = takewhile(lambda entry: entry.row == row - 1, reversed(self._log))
         known = (
@@ -101,17 +98,14 @@ class Suction:
         self._log += entries
 
     def rewind(self, count: int) -> None:
-        """Forget all samples after the first `count`."""
         self._log = [entry for entry in self._log if entry.row < count]
 
     def held(self, row: int, gripper: Gripper) -> set[str]:
-        """Names of the bodies that the cups of a gripper hold at a sample."""
         names = self._physics.body_names
         seals = self._seals(row, gripper).values()
         return {names[seal.body] for seal in seals if seal is not None and seal.is_sealed}
 
     def unsealed(self, row: int, gripper: Gripper) -> dict[str, str]:
-        """Why each cup of a gripper that holds nothing at a sample does not, by its name."""
         return {
             cup: seal_words(None if seal is None else seal.quarters)
             for cup, seal in self._seals(row, gripper).items()
@@ -125,7 +119,6 @@ class Suction:
         return {self.cups[number].name: seals.get(number) for number in numbers}
 
     def recorded(self, count: int) -> dict[tuple[str, str], FloatArray]:
-        """The force of each cup on each body and the quarters that touch, shape (count, 4) each."""
         pulls: dict[tuple[str, str], FloatArray] = {}
         for entry in self._log:
             if entry.seal.body < 0:

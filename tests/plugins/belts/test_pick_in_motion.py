@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from harness.cell.interception import Company
-from harness.cell.ride import Ride
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
+from harness.plugins.belts.interception import Company
+from harness.plugins.belts.ride import Ride
 from harness.recording.read_run import read_run
 from tests.running import run_case
 

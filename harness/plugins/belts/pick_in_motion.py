@@ -12,12 +12,19 @@ from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.grasp_choice import ChosenApproach
 from harness.cell.grasping import least_gap, level_sides, position_for_width
-from harness.cell.interception import Company, Meeting, Search, company_plan, divided, find_meeting
-from harness.cell.ride import ride_of
 from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.language.poses import Direction
+from harness.plugins.belts.interception import (
+    Company,
+    Meeting,
+    Search,
+    company_plan,
+    divided,
+    find_meeting,
+)
+from harness.plugins.belts.ride import ride_of
 from harness.ports.motion_planning import MotionPlan
 from harness.robot.gripper.closing_speed import closing_time
 from harness.steps.grasp import Grasp
@@ -98,18 +105,7 @@ class _GraspInMotion(Grasp):
 def pick_in_motion(
     grasp: Grasp, lift: MoveRelative, choose: Callable[[], ChosenApproach], cell: Cell
 ) -> None:
-    """Meet the object where its belt takes it, move with it, close, lift; then verify the grasp.
-
-    Args:
-        grasp: The grasp, with the name of the object.
-        lift: The straight move after it.
-        choose: Chooses the approach to the object where the cell expects it.
-        cell: The cell with the object on a belt.
-
-    Raises:
-        PlanningFailed: The arm cannot meet the object before it leaves the belt.
-        StepFailed: INVALID_OBJECT_NAME, when it lies on no belt.
-    """
+    """Meet the object where its belt takes it, move with it, close, lift; then verify the grasp."""
     name, hand = grasp.object, cell.gripper
     ajar, squeezed = _ajar_and_closed(name, cell)
     start = cell.planning_start()

@@ -1,0 +1,1 @@
+"""Belts and turntables: a step that drives them, picking and placing in motion."""

@@ -1,0 +1,1 @@
+"""How arms follow what moves on belts."""

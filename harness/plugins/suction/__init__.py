@@ -1,0 +1,1 @@
+"""Suction cups: where they hold an object, and with which force."""

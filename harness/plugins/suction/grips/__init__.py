@@ -1,0 +1,1 @@
+"""Grips by suction."""

@@ -1,0 +1,68 @@
+"""How an arm picks from a surface that moves and places onto one, as plug-ins."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from typing import ClassVar
+
+from harness.cell.cell import Cell
+from harness.cell.grasp_choice import ChosenApproach
+from harness.cell.scope import At
+from harness.core.registry import Plugin, absent_plugins, registry
+from harness.core.spatial import SE3
+from harness.steps.grasp import Grasp
+from harness.steps.move_relative import MoveRelative
+
+
+class Tracker(Plugin, ABC):
+    """Picks and places in motion, for `track: true`."""
+
+    plugin_kind: ClassVar[str] = "tracker"
+
+    @abstractmethod
+    def pick(
+        self, grasp: Grasp, lift: MoveRelative, choose: Callable[[], ChosenApproach], cell: Cell
+    ) -> None:
+        """Meet an object, move with it while the fingers close, lift it, verify the grasp.
+
+        Args:
+            grasp: The grasp, with the name of the object.
+            lift: The straight move after it.
+            choose: Chooses the approach to the object where the cell expects it.
+            cell: The cell with the object.
+
+        Raises:
+            PlanningFailed: The arm cannot meet the object.
+            StepFailed: INVALID_OBJECT_NAME, when nothing carries it.
+        """
+
+    @abstractmethod
+    def place(
+        self, name: str, targets: Sequence[SE3], retreat: float, group: str, cell: Cell
+    ) -> None:
+        """Lower an object at the speed of what is under it, open, go back, verify.
+
+        Args:
+            name: The object that is held.
+            targets: T_world_object of each pose at which it may be let go.
+            retreat: The length of the retreat along the gripper [m].
+            group: The name of the planning group.
+            cell: The cell.
+
+        Raises:
+            PlanningFailed: The arm can follow the surface at none of the poses.
+            StepFailed: INVALID_OBJECT_NAME, when no surface moves under them.
+        """
+
+
+def tracker() -> Tracker:
+    """The plug-in that follows belts and turntables."""
+    return registry(Tracker.plugin_kind).find("belt")()
+
+
+def check_track(track: bool, at: At) -> None:
+    """Report `track: true` where no plug-in follows belts."""
+    if track and "belt" not in registry(Tracker.plugin_kind):
+        hint = "; ".join(absent_plugins())
+        at.scope.problems.add(at.key("track"), "no plug-in tracks belts here", hint)
