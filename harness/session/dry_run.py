@@ -20,6 +20,7 @@ from harness.core.types import FloatArray
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
 from harness.ports.motions import FreeMotion, JointMotion, TimedMotion
+from harness.ports.scene import PlanningScene
 from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
@@ -56,7 +57,9 @@ class DrySimulator:
 
     faults = DryFaults()
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, scene: PlanningScene) -> None:
+        """Stand at the start state; what an arm holds in the planning scene moves with it."""
+        self._scene = scene
         self._missing: list[str] = []
         self._description = program.description
         self._positions = program.description.start_positions()
@@ -94,6 +97,8 @@ class DrySimulator:
         return np.array(self._positions)
 
     def object_pose(self, name: str) -> SE3:
+        if name in self._scene.attached():
+            return self._scene.object_pose(name, self._positions)
         return self._poses[name]
 
     def track(self, trajectory: JointTrajectory) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from harness.cell.cell import Belief, Cell, Presence, StepNotes
+from harness.cell.cell import Cell
 from harness.cell.program import Program, ProgramStep
+from harness.cell.scene_state import Belief, Presence, StepNotes
+from harness.cell.together import follow_together
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.ports.external import ExternalControl
@@ -77,7 +79,7 @@ class _Runner:
         finally:
             motions, cell.waiting = cell.waiting, None
             cell.step, cell.notes = around
-        delays = cell.follow_together(motions)
+        delays = follow_together(cell, motions)
         ends = {"end_time": cell.simulator.time, "end_index": cell.simulator.sample_count}
         self.records[first:] = [replace(each, **ends) for each in self.records[first:]]
         return delays

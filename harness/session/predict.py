@@ -22,7 +22,7 @@ def predict(
         The records, and by the path of a step T_world_tcp at its start and at its end; a step that
         is not reached has none.
     """
-    simulator = DrySimulator(program)
+    simulator = DrySimulator(program, ports.scene)
     poses: dict[str, tuple[SE3, SE3]] = {}
 
     def watch(step: ProgramStep, record: StepRecord | None) -> None:

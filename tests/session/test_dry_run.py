@@ -44,7 +44,7 @@ def simulator(**changes):
         world=SimpleNamespace(objects=objects[:1]),
         all_objects=lambda: objects,
     )
-    return DrySimulator(program)
+    return DrySimulator(program, SimpleNamespace(attached=dict))
 
 
 @pytest.mark.parametrize(

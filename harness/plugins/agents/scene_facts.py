@@ -184,7 +184,8 @@ def scene_facts(prepared: Prepared, file: str) -> SceneFacts:
         file: The name of its file.
     """
     program = prepared.program
-    execution = ProgramExecution(program, prepared.ports, DrySimulator(program), lambda *_: None)
+    simulator = DrySimulator(program, prepared.ports.scene)
+    execution = ProgramExecution(program, prepared.ports, simulator, lambda *_: None)
     clearances = _clearances(prepared.ports, program)
     return SceneFacts(
         format=FORMAT,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from harness.cell.cell import Belief, Held, Presence
+from harness.cell.holding import Held
+from harness.cell.scene_state import Belief, Presence
 from harness.core.types import FloatArray
 from harness.planning.collision.collision_model import SceneState
 from harness.planning.collision.scene import CoalScene

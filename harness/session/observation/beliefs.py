@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from harness.cell.cell import Belief
+from harness.cell.scene_state import Belief
 from harness.core.pose_arrays import compose
 from harness.core.types import FloatArray
 from harness.ports.kinematics import Kinematics

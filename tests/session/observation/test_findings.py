@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from harness.cell.cell import Belief
 from harness.cell.program import Program
+from harness.cell.scene_state import Belief
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject

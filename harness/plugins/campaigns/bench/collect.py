@@ -69,7 +69,7 @@ def collect(
     """
     prepared = prepare(path, overrides)
     bench = _BenchPlanner(prepared, str(path), planners, seeds, on_motion)
-    simulator = DrySimulator(prepared.program)
+    simulator = DrySimulator(prepared.program, prepared.ports.scene)
 
     def watch(step: ProgramStep, record: StepRecord | None) -> None:
         simulator.watch(step, record)
