@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import deepcopy
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -15,9 +15,6 @@ from harness.core.types import FloatArray
 from harness.simulation.geoms import set_smaller_frictions
 from harness.simulation.model import PhysicsModel
 from harness.simulation.step_state import wake
-
-if TYPE_CHECKING:
-    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 STALL_SOLREF = (0.002, 1.0)
 """Time constant [s] and damping ratio of the stop that holds a stalled joint."""
@@ -34,9 +31,21 @@ class MujocoFaults:
     """The active faults; the simulator passes its controls through `distorted`."""
 
     def __init__(
-        self, simulator: MujocoSimulator, physics: PhysicsModel, data: mujoco.MjData
+        self,
+        physics: PhysicsModel,
+        data: mujoco.MjData,
+        hold: Callable[[float], None],
+        weaken: Callable[[str, float], float],
     ) -> None:
-        self._simulator = simulator
+        """Begin without faults.
+
+        Args:
+            physics: The model.
+            data: Its state.
+            hold: Keeps the last commands for a duration [s].
+            weaken: Leaves the gripper with a joint a share of its effort; returns that before.
+        """
+        self._hold, self._weaken = hold, weaken
         self._physics = physics
         self._data = data
         self.grip_share: dict[int, float] = {}  # by the actuator of the gripper
@@ -70,7 +79,7 @@ class MujocoFaults:
 
     def weaken_gripper(self, share: float, joint: str = "") -> float:
         """Limit a gripper to a share of its effort, now and for every later command."""
-        return self._simulator.weaken_gripper(joint, share)
+        return self._weaken(joint, share)
 
     def stall_joint(self, joint: str) -> bool:
         """Hold a joint at its position by closing its range; its motor keeps pulling."""
@@ -89,7 +98,7 @@ class MujocoFaults:
         """Push free objects at their centres of mass, all at the same time."""
         bodies = [self._physics.objects[name].body for name in forces]
         self._data.xfrc_applied[bodies, :3] = list(forces.values())
-        self._simulator.hold(duration)
+        self._hold(duration)
         self._data.xfrc_applied[bodies] = 0.0
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:

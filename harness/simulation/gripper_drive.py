@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +10,9 @@ from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.ports.simulation import GripperResult
 from harness.robot.description import Gripper, Joint
 from harness.robot.gripper.closing_speed import joint_speed
+from harness.simulation.motors import Motors
 from harness.simulation.recording import Recording
 from harness.simulation.set_points import SetPoints, ramp
-
-if TYPE_CHECKING:
-    from harness.simulation.mujoco_simulator import MujocoSimulator
 
 GOAL_TOLERANCE = 0.004
 """Largest position error at which the joint has reached its goal, as a share of its range."""
@@ -28,12 +25,12 @@ CHECK_EVERY = 10  # Samples between two checks whether the joint reached its goa
 class GripperDrive:
     """The gripper's joint under a force-limited servo; after a stall it keeps squeezing."""
 
-    def __init__(self, simulator: MujocoSimulator, recording: Recording, gripper: Gripper) -> None:
+    def __init__(self, simulator: Motors, recording: Recording, gripper: Gripper) -> None:
         self._simulator = simulator
         self._recording = recording
         self._gripper = gripper
         self._joint = simulator.description.joint_index[gripper.joint]
-        self.actuator = int(np.searchsorted(simulator.physics.actuated, self._joint))
+        self.actuator = simulator.actuator_of(gripper)
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
         simulator.limit_grip(self.actuator, gripper.grip_effort)
