@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from harness.cli.arguments import pair
 
 if TYPE_CHECKING:
-    from harness.robot_tools.robot_source import RobotSource
+    from harness.robot.robot_source import RobotSource
 
 ROBOT = "a bundled name; a URDF, xacro or MJCF file, also as package://name/path; a robot's folder"
 
@@ -30,7 +30,7 @@ def add_robot_options(command: argparse.ArgumentParser) -> None:
 
 def source_of(arguments: argparse.Namespace) -> RobotSource:
     """Which robot the options say."""
-    from harness.robot_tools.robot_source import RobotSource
+    from harness.robot.robot_source import RobotSource
 
     return RobotSource(
         arguments.robot,

@@ -105,7 +105,8 @@ def test_no_page_and_no_message_installs_the_distribution_from_an_index():
         *(ROOT / "docs").rglob("*.md"),
         *(ROOT / "scenarios").rglob("*.md"),
     ]
-    sources = [*(ROOT / "harness").rglob("*.py"), *(ROOT / "harness/cli/templates").rglob("*.*")]
+    templates = ROOT / "harness/plugins/authoring/templates"
+    sources = [*(ROOT / "harness").rglob("*.py"), *templates.rglob("*.*")]
     for file in [*pages, *sources]:
         found = re.findall(r"pip install [^\n`]*?armharness\b(?! @)\S*", file.read_text("utf-8"))
         assert [each for each in found if "./armharness" not in each] == [], file

@@ -16,7 +16,7 @@ from harness.language.scenario import RobotSpec
 from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.recording.read_run import read_run
 from harness.robot.load import load_robot
-from harness.robot_tools.robot_source import RobotSource, load_source
+from harness.robot.robot_source import RobotSource, load_source
 
 pytestmark = pytest.mark.needs_packages
 

@@ -13,12 +13,12 @@ import pinocchio as pin
 from harness.core.errors import HarnessError, SpecError
 from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
+from harness.plugins.authoring.first_scenario import first_scenario
+from harness.plugins.authoring.robot_check import check_robot
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.load import load_robot
-from harness.robot_tools.first_scenario import first_scenario
-from harness.robot_tools.robot_check import check_robot
-from harness.robot_tools.robot_source import RobotSource, load_source
+from harness.robot.robot_source import RobotSource, load_source
 from harness.simulation.servo import bare_robot
 from tests.packages.arms import PackageArm
 from tests.running import run_case

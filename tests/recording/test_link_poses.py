@@ -9,11 +9,11 @@ import pytest
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.plugins.authoring.agreement import link_poses_in_physics
 from harness.recording.consistency import run_flaws
 from harness.recording.link_poses import replayed_link_poses
 from harness.robot.description import Link, fixed_joint
 from harness.robot.load import load_robot
-from harness.simulation.agreement import link_poses_in_physics
 from tests.judging.synthetic_run import ROBOT, make_run
 
 POSE = SE3.from_xyz_rpy((0.0, 0.0, 0.1))

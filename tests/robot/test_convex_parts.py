@@ -16,6 +16,7 @@ from harness.core.errors import RobotError
 from harness.core.geometry import Mesh, Shape, undivided
 from harness.core.user_cache import cache_folder
 from harness.language.scenario import RobotSpec
+from harness.plugins.authoring.robot_check import check_robot
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.decomposition.convex_parts import stored_decomposition
 from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
@@ -27,7 +28,6 @@ from harness.robot.mesh_file import (
     hull_points,
     read_triangles,
 )
-from harness.robot_tools.robot_check import check_robot
 from tests.robot.arm_files import SHAPE, SRDF, URDF
 from tests.robot.vessels import vessel, write_obj
 

@@ -12,8 +12,8 @@ from harness.core.errors import RobotError, SpecError
 from harness.language.scenario import RobotSpec
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.plugins.authoring.robot_check import check_robot
 from harness.robot.load import load_robot
-from harness.robot_tools.robot_check import check_robot
 from tests.robot.arm_files import SRDF, URDF, load_arm, write_arm
 from tests.robot.hands import (
     FINGER,

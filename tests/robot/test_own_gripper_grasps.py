@@ -5,7 +5,7 @@ import pytest
 
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.planning.collision.scene import CoalScene
-from harness.robot_tools.robot_findings import states
+from harness.plugins.authoring.robot_findings import states
 from tests.planning.seven_joints import SRDF as SEVEN_SRDF
 from tests.planning.seven_joints import seven_joint_urdf
 from tests.robot.arm_files import load_arm, write_arm

@@ -71,7 +71,9 @@ def test_the_wheel_holds_package_data_and_licence_and_nothing_else(wheel):
     platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     assert wheel.name.endswith(f"-py3-none-{platform}.whl")
     assert any(name.endswith("licenses/LICENSE") for name in inside)
-    assert {"harness/cli/templates/new.scenario.yaml", "harness/py.typed"} <= set(inside)
+    assert {"harness/plugins/authoring/templates/new.scenario.yaml", "harness/py.typed"} <= set(
+        inside
+    )
     assert not [name for name in inside if "__pycache__" in name or "/reports/" in name]
     for kind in ("robots", "worlds", "scenarios"):
         ours = {

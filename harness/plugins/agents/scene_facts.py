@@ -21,7 +21,6 @@ from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports.planning import PlanningPorts
 from harness.recording.explanation import Explanation
-from harness.robot_tools.robot_findings import reach
 from harness.session.dry_run import DrySimulator
 from harness.session.execute import ProgramExecution
 from harness.session.predict import predict
@@ -239,11 +238,11 @@ def _reach(program: Program, ports: PlanningPorts) -> ReachFacts | None:
         return None
     assert isinstance(kinematics, PinocchioKinematics)
     samples = sample_robot_positions(description, REACH_SAMPLES, np.random.default_rng(0))
-    found = reach(description, kinematics, samples).values
-    low, high = np.asarray(found["workspace"])
-    return ReachFacts(
-        round(float(np.asarray(found["reach"])), 3), _numbers(low, 3), _numbers(high, 3)
-    )
+    links = (description.base_link, description.tcp_link)
+    points = kinematics.link_poses(samples, links)[:, :, :3]
+    away = float(np.linalg.norm(points[:, 1] - points[:, 0], axis=1).max())
+    low, high = points[:, 1].min(axis=0), points[:, 1].max(axis=0)
+    return ReachFacts(round(away, 3), _numbers(low, 3), _numbers(high, 3))
 
 
 def _clearances(ports: PlanningPorts, program: Program) -> dict[str, ClearanceFacts]:

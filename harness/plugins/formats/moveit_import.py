@@ -22,8 +22,8 @@ from harness.plugins.formats.world_text import world_text
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.robot.packages import PackagePath
+from harness.robot.robot_source import RobotSource
 from harness.robot.yaml_data import read_data
-from harness.robot_tools.robot_source import RobotSource
 from harness.world.notes import Note
 
 SOURCE_KEYS = ("urdf", "xacro", "mjcf", "srdf")  # keys of `robot:` that hold a path

@@ -18,7 +18,7 @@ from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.tasks import natural_task
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.kinematics import IkRequest, IkSolver
-from harness.robot_tools.robot_source import RobotSource, load_source
+from harness.robot.robot_source import RobotSource, load_source
 
 Solutions = Sequence[FloatArray]
 

@@ -37,7 +37,7 @@ from harness.plugins.iktest.strategies.poses import Target
 from harness.plugins.iktest.strategies.tasks import ROWS
 from harness.plugins.iktest.text import report_lines
 from harness.plugins.iktest.trial import COSTS, Flaw, SolverTrial
-from harness.robot_tools.robot_source import RobotSource, load_source
+from harness.robot.robot_source import RobotSource, load_source
 
 MOSTLY = 0.5  # share of right answers from which a function counts as its contract says
 LEAST_TARGETS = 5  # number of answered targets from which answers show how a function counts

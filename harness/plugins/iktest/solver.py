@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from harness.plugins.iktest.calls import CallOutcome, call
 from harness.plugins.iktest.contract import UnusableSolver, Value, parameter_words
 from harness.plugins.iktest.worker import serve
-from harness.robot_tools.robot_source import RobotSource
+from harness.robot.robot_source import RobotSource
 from harness.suite.warm import Ended, WarmServer
 
 IMPORT_SECONDS = 60.0  # wall time that importing the function may take

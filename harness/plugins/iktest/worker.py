@@ -21,7 +21,7 @@ from harness.core.resources import existing_or_bundled
 from harness.core.suggestion import did_you_mean
 from harness.plugins.iktest.calls import call
 from harness.plugins.iktest.contract import UnusableSolver, parameter_words
-from harness.robot_tools.robot_source import RobotSource
+from harness.robot.robot_source import RobotSource
 
 OWN = "own"  # in place of a function's name: the solver that this program plans with
 SOLVERS = "ik_solver"  # the kind of plug-in whose names are solvers too

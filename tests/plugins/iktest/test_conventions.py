@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.plugins.iktest import IkTest, run_ik_test
-from harness.robot_tools.robot_source import RobotSource
+from harness.robot.robot_source import RobotSource
 from tests.plugins.iktest.arms import OM, correct
 from tests.plugins.iktest.test_joint_limits import spherical
 from tests.robot.arm_files import write_arm

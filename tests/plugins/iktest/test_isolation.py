@@ -11,7 +11,7 @@ from docs import ROOT
 from harness.plugins.iktest import IkTest, run_ik_test
 from harness.plugins.iktest.contract import UnusableSolver
 from harness.plugins.iktest.solver import Isolated
-from harness.robot_tools.robot_source import RobotSource
+from harness.robot.robot_source import RobotSource
 from tests.plugins.iktest.arms import EXAMPLES, OM
 from tests.waiting import wait_for
 

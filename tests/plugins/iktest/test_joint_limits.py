@@ -7,7 +7,7 @@ import pytest
 
 from harness.plugins.iktest import IkTest, run_ik_test
 from harness.plugins.iktest.text import report_lines
-from harness.robot_tools.robot_source import RobotSource
+from harness.robot.robot_source import RobotSource
 from tests.plugins.iktest.arms import OM, correct
 from tests.robot.arm_files import SRDF, URDF, write_arm
 

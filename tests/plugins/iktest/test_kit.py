@@ -14,7 +14,7 @@ from harness.plugins.iktest import IkTest, check_ik, run_ik_test
 from harness.plugins.iktest.contract import UnusableSolver
 from harness.plugins.iktest.strategies import load_chain
 from harness.plugins.iktest.text import report_lines
-from harness.robot_tools.robot_source import RobotSource
+from harness.robot.robot_source import RobotSource
 from tests.plugins.iktest.arms import OM, correct
 
 HOME = load_chain(OM).home

@@ -10,7 +10,7 @@ from harness.plugins.iktest import IkTest, check_ik, run_ik_test
 from harness.plugins.iktest.builtin_ik import own_solver
 from harness.plugins.iktest.chain import Chain
 from harness.ports.goals import PoseGoal
-from harness.robot_tools.robot_source import RobotSource, load_source
+from harness.robot.robot_source import RobotSource, load_source
 
 
 @pytest.mark.nightly

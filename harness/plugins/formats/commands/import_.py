@@ -104,7 +104,7 @@ def _robot(arguments: argparse.Namespace) -> int:
         raise UsageError(f"'{folder}' is no folder: robot.yaml, URDF and SRDF are written into one")
     from harness.language.scenario import RobotSpec
     from harness.plugins.formats.robot_folder import robot_folder
-    from harness.robot_tools.robot_source import KINDS
+    from harness.robot.robot_source import KINDS
 
     robot = source_of(argparse.Namespace(**{**vars(arguments), "srdf": arguments.file}))
     if robot.kind not in KINDS.values():

@@ -132,7 +132,7 @@ def start_of(arguments: argparse.Namespace) -> tuple[Path, str, float | None]:
 
 def _text(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     from harness.robot.load import robot_names
-    from harness.robot_tools.robot_source import RobotSource
+    from harness.robot.robot_source import RobotSource
 
     kind = RobotSource(word).kind
     is_file = kind not in ("model", "scenario") or (Path(word) / "robot.yaml").is_file()

@@ -14,8 +14,8 @@ from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.plugins.authoring.robot_findings import moving_mass
 from harness.robot.description import Gripper, RobotDescription
-from harness.robot_tools.robot_findings import moving_mass
 
 SAMPLES = 5000  # Random configurations that measure the reach
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.command import SCENARIOS, Command
-from harness.cli.new_project import SCHEMA, write_project
 from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.core.registry import registry
 from harness.core.resources import data_folder
+from harness.plugins.authoring.new_project import SCHEMA, write_project
 from harness.suite.discovery import SUFFIX, UsageError
 
 TEMPLATE = Path(__file__).parents[1] / "templates" / "new.scenario.yaml"
@@ -116,7 +116,7 @@ def _content(arguments: argparse.Namespace, file: Path) -> tuple[str, list[str]]
             if getattr(arguments, option):
                 raise UsageError(f"--{option.replace('_', '-')} goes with --robot")
         return TEMPLATE.read_text(encoding="utf-8"), []
-    from harness.robot_tools.first_scenario import first_scenario
+    from harness.plugins.authoring.first_scenario import first_scenario
 
     source = source_of(arguments)
     if source.kind == "scenario":

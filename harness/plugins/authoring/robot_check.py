@@ -19,10 +19,10 @@ from harness.planning.collision.pair_statistics import (
 )
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.trial import try_ik
-from harness.reporting.robot_report import ArmLine, GroupLine, RobotFinding, RobotReport
+from harness.plugins.authoring import robot_findings as look_at
+from harness.plugins.authoring.ik_trial import try_ik
+from harness.plugins.authoring.robot_report import ArmLine, GroupLine, RobotFinding, RobotReport
 from harness.robot.description import Joint, RobotDescription
-from harness.robot_tools import robot_findings as look_at
 
 KINEMATIC_SAMPLES = 20
 IK_SAMPLES = 100

@@ -11,13 +11,13 @@ from harness.core.types import FloatArray
 from harness.planning.collision.pair_statistics import SelfTouches
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.trial import IkTrial
-from harness.reporting.robot_report import RobotFinding
+from harness.plugins.authoring.agreement import link_poses_in_physics
+from harness.plugins.authoring.ik_trial import IkTrial
+from harness.plugins.authoring.robot_report import RobotFinding
 from harness.robot.collision_shapes import mesh_shapes
 from harness.robot.description import Link, RobotDescription
 from harness.robot.link_masses import mass_notes, mass_problems
 from harness.robot.solids import box_corners, coal_geometry
-from harness.simulation.agreement import link_poses_in_physics
 
 AGREEMENT = 1e-9  # [m], of the two libraries, and in parts of a quaternion and of the mass
 

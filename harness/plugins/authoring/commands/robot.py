@@ -68,11 +68,11 @@ def _check(arguments: argparse.Namespace) -> int:
     srdf = Path(arguments.write_srdf) if arguments.write_srdf else None
     if srdf is not None:
         refuse_existing(srdf, is_forced=arguments.force)
-    from harness.reporting.robot_report import page
+    from harness.plugins.authoring.robot_check import check_robot
+    from harness.plugins.authoring.robot_report import page
+    from harness.plugins.authoring.srdf_proposal import proposed_srdf
     from harness.reporting.terminal import Style
-    from harness.robot_tools.robot_check import check_robot
-    from harness.robot_tools.robot_source import load_source
-    from harness.robot_tools.srdf_proposal import proposed_srdf
+    from harness.robot.robot_source import load_source
 
     source = source_of(arguments)
     description = load_source(source)
@@ -102,7 +102,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from harness.robot_tools.robot_source import load_source
+    from harness.robot.robot_source import load_source
 
     name = Path(arguments.robot).name.split(".")[0] or "robot"
     image = _picture(arguments.image or f"{name}.png")
@@ -114,7 +114,7 @@ def _show(arguments: argparse.Namespace) -> int:
 def _draw(description: RobotDescription, state: str, image: Path) -> list[str]:
     """Write a picture; returns the lines to print."""
     from harness.cameras.robot_pictures import save_robot_picture
-    from harness.robot_tools.robot_source import positions_of
+    from harness.robot.robot_source import positions_of
 
     positions = positions_of(description, state)
     with refusing_unwritable():

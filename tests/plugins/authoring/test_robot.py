@@ -13,9 +13,9 @@ from harness.core.resources import data_folder
 from harness.core.spatial import SE3
 from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.planning.ik.kinematics import PinocchioKinematics
+from harness.plugins.authoring import robot_check, robot_findings
 from harness.robot.description import Inertial
 from harness.robot.srdf.srdf import parse_srdf
-from harness.robot_tools import robot_check, robot_findings
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
 from tests.robot.models import Arm, robot
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
+from harness.plugins.authoring.scenario_candidates import Candidates
 from harness.robot.description import RobotDescription
-from harness.robot_tools.robot_source import RobotSource, load_source
-from harness.robot_tools.scenario_candidates import Candidates
+from harness.robot.robot_source import RobotSource, load_source
 from harness.session.check import check_file
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest

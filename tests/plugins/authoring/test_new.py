@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
-from harness.cli.new_project import requirement_lines
 from harness.language.reading.load import load_scenario
-from harness.robot_tools import first_scenario
-from harness.robot_tools.first_scenario import _trouble
+from harness.plugins.authoring import first_scenario
+from harness.plugins.authoring.first_scenario import _trouble
+from harness.plugins.authoring.new_project import requirement_lines
 from tests.robot.arm_files import SRDF, URDF, write_arm
 from tests.robot.hands import (
     FIVE_WITH_TURNING_JAW,

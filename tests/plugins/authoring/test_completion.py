@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from harness.cli.commands.completion import SCRIPTS
 from harness.cli.main import main
 from harness.core.registry import registry
+from harness.plugins.authoring.commands.completion import SCRIPTS
 from harness.suite.discovery import bundled_scenarios
 
 BINARIES = Path(sys.executable).parent

@@ -1,0 +1,1 @@
+"""Examines robots, and begins scenarios and projects."""
