@@ -40,8 +40,8 @@ class MujocoFaults:
         """Begin without faults.
 
         Args:
-            physics: The model.
-            data: Its state.
+            physics: The model of MuJoCo with its names.
+            data: The state of that model now.
             hold: Keeps the last commands for a duration [s].
             weaken: Leaves the gripper with a joint a share of its effort; returns that before.
         """

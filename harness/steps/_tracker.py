@@ -48,7 +48,7 @@ class Tracker(Plugin, ABC):
             targets: T_world_object of each pose at which it may be let go.
             retreat: The length of the retreat along the gripper [m].
             group: The name of the planning group.
-            cell: The cell.
+            cell: The cell with the surface under the places.
 
         Raises:
             PlanningFailed: The arm can follow the surface at none of the poses.
