@@ -20,6 +20,12 @@ from tests.plugins.ros.bridging import PYTHON, bridge, require_control_msgs, sce
 
 pytestmark = pytest.mark.needs_ros
 STUDENT = Path(__file__).parent / "student"
+SERVED = {
+    "robot": "{model: ur5e, gripper: rh_p12_rn_a}",
+    "rest": "objects:\n  - {name: cube, box: {size: [4 cm, 4 cm, 4 cm]}, mass: 0.1, "
+    "pose: {xyz: [0.4, 0.3, 0.02]}}\nexpect: [{always: within_limits}]",
+}
+"""An arm and a cube for clients of MoveIt."""
 
 
 @pytest.fixture(scope="module")
@@ -28,12 +34,17 @@ def _control_msgs():
 
 
 def run_node(folder, name, **served):
-    """What a node prints as its last line while a bridge serves the OpenMANIPULATOR-X."""
+    """What a node of rclpy prints as its last line while a bridge serves a robot."""
+    return run_program(folder, [PYTHON, STUDENT / name], **served)
+
+
+def run_program(folder, command, environment=os.environ, **served):
+    """What a program prints as its last line while a bridge serves the OpenMANIPULATOR-X."""
     options = {"run": {"report_dir": folder / "run"}}
     with bridge(scenario(folder, "- external: {}", **served), **options) as (node, _):
         done = subprocess.run(
-            [PYTHON, STUDENT / name],
-            env={**os.environ, "ROS_DOMAIN_ID": str(node.graph.participant.domain)},
+            command,
+            env={**environment, "ROS_DOMAIN_ID": str(node.graph.participant.domain)},
             capture_output=True,
             text=True,
             timeout=120,
@@ -134,10 +145,7 @@ def test_joint_angles_that_are_sent_ten_times_a_second_arrive(tmp_path):
 
 def test_a_client_of_moveit_on_rclpy_plans_moves_and_attaches_and_its_run_replays(tmp_path):
     require_control_msgs("moveit_msgs.srv")
-    rest = "objects:\n  - {name: cube, box: {size: [4 cm, 4 cm, 4 cm]}, mass: 0.1, "
-    rest += "pose: {xyz: [0.4, 0.3, 0.02]}}\nexpect: [{always: within_limits}]"
-    served = {"robot": "{model: ur5e, gripper: rh_p12_rn_a}", "rest": rest}
-    said = run_node(tmp_path, "move_group.py", **served)
+    said = run_node(tmp_path, "move_group.py", **SERVED)
     times = said.pop("milliseconds")
     assert all(0 < each < 5000 for each in times.values())
     assert said == {
@@ -155,3 +163,65 @@ def test_a_client_of_moveit_on_rclpy_plans_moves_and_attaches_and_its_run_replay
     }
     stored = read_run(tmp_path / "run")
     assert replay(tmp_path / "run").digest == stored.digest
+
+
+def test_rviz_s_requests_are_answered_and_the_run_replays(tmp_path):
+    require_control_msgs("moveit_msgs.srv", "std_srvs.srv")
+    assert run_node(tmp_path, "rviz.py", **SERVED) == {
+        "descriptions": ["<?xml ", "<?xml "],
+        "pipelines": ["ompl", "pilz_industrial_motion_planner"],
+        "plan": [4, 1],
+        "shown": 1,
+        "execute": [4, 1],
+        "plan and execute": [4, 1],
+        "line": 1,
+        "added": ["Box_0"],
+    }
+    assert replay(tmp_path / "run").digest == read_run(tmp_path / "run").digest
+
+
+LIBRARIES = (
+    *("rcl", "rcl_action", "rcutils", "rmw", "rosidl_runtime_c"),
+    *(
+        f"{package}__{part}"
+        for package in ("moveit_msgs", "std_msgs", "geometry_msgs")
+        for part in ("rosidl_typesupport_c", "rosidl_generator_c")
+    ),
+)
+
+
+def test_a_client_in_cpp_plans_executes_attaches_and_stops_and_its_run_replays(tmp_path):
+    """The wheels' libraries find each other by LD_LIBRARY_PATH, and some refer to Python's."""
+    require_control_msgs("moveit_msgs.srv")
+    paths = "import sys, sysconfig; print(sys.prefix, sysconfig.get_config_var('LIBDIR'),"
+    paths += " sysconfig.get_config_var('LDLIBRARY'))"
+    found = subprocess.run([PYTHON, "-c", paths], capture_output=True, text=True, check=True)
+    prefix, folder, python = found.stdout.split()
+    if not python.endswith(".so"):
+        pytest.skip(f"{PYTHON} has no shared library, which the wheels of rcl need")
+    client = tmp_path / "move_group"
+    subprocess.run(
+        ["g++", "-std=c++17", *(f"-I{each}" for each in Path(prefix, "include").glob("*")),
+         STUDENT / "move_group.cpp", "-o", client, f"-L{prefix}/lib",
+         "-Wl,--unresolved-symbols=ignore-in-shared-libs", *(f"-l{each}" for each in LIBRARIES)],
+        check=True,
+        capture_output=True,
+    )  # fmt: skip
+    libraries = [f"{prefix}/lib", folder, *map(str, Path(prefix).rglob("*.libs"))]
+    environment = {
+        **os.environ,
+        "AMENT_PREFIX_PATH": prefix,
+        "LD_LIBRARY_PATH": ":".join(libraries),
+        "LD_PRELOAD": str(Path(folder, python)),
+    }
+    assert run_program(tmp_path, [client], environment, **SERVED) == {
+        "planners": 2,
+        "plan": [4, 1],
+        "points": True,
+        "executed": [4, 1],
+        "line": 1,
+        "stopped": [6, -7],
+    }
+    run = read_run(tmp_path / "run")
+    assert [each.object for each in run.run.attachments] == ["cube"]
+    assert replay(tmp_path / "run").digest == run.digest
