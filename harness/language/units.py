@@ -59,6 +59,10 @@ MEANINGS = {
     "rad/s**2": ("a turning acceleration", "rad/s**2, deg/s**2"),
     "m/s**3": ("a jerk", "m/s**3"),
     "rad/s**3": ("a turning jerk", "rad/s**3, deg/s**3"),
+    "N/m": ("a stiffness", "N/m"),
+    "N*m/rad": ("a stiffness of turns", "N*m/rad"),
+    "N*s/m": ("a damping", "N*s/m"),
+    "N*m*s/rad": ("a damping of turns", "N*m*s/rad"),
     "1": ("a share", "%"),
 }
 """SI unit -> what it measures, and what a person would write."""

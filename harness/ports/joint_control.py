@@ -8,7 +8,21 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from harness.core.registry import Plugin
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LinkMotion:
+    """Where a link is at some joint positions, and how the joints move it there.
+
+    Attributes:
+        pose: The pose T_world_link of the link.
+        jacobian: Its velocity by those of the joints: linear, then angular, in world axes, (6, m).
+    """
+
+    pose: SE3
+    jacobian: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +46,9 @@ class ControlRequest:
         effort_limits: The largest efforts [N m or N], shape (m,); the physics enforces them.
         feed_forward: Efforts that the set points take, of the robot without payload, (N + 1, m).
         inverse_dynamics: The same for other positions, velocities and accelerations, (k, m) each.
+        link_motion: Where a link is at joint positions, shape (m,), and how the joints move it.
+        inertia: The inertia of the robot without payload at the measured positions, (m, m).
+        gravity: The gravitational acceleration in the world [m/s^2], shape (3,).
     """
 
     joint_names: tuple[str, ...]
@@ -47,6 +64,9 @@ class ControlRequest:
     effort_limits: FloatArray
     feed_forward: Callable[[], FloatArray]
     inverse_dynamics: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+    link_motion: Callable[[str, FloatArray], LinkMotion]
+    inertia: Callable[[], FloatArray]
+    gravity: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +97,12 @@ class JointController(Plugin, ABC):
     Attributes:
         period: Simulated time between two calls [s]; None: one call for each stretch of set points,
             of a controller that needs no measurement.
+        is_compliant: Whether joints may stray from their set points, which else ends a motion.
     """
 
     plugin_kind: ClassVar[str] = "controller"
     period: ClassVar[float | None] = None
+    is_compliant: ClassVar[bool] = False
 
     @abstractmethod
     def control(self, request: ControlRequest) -> ControlResult:

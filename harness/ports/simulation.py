@@ -10,6 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.ports.joint_control import JointController
 from harness.ports.scene import Touch
 from harness.recording.signals import Signals
 
@@ -130,6 +131,14 @@ class Simulator(Protocol):
         Raises:
             StepFailed: CONTROL_FAILED, when a joint leaves the controller's tolerances; says which
                 joint, by how much, what it touched.
+        """
+        ...
+
+    def use_controller(self, controller: JointController | None) -> None:
+        """Let a controller move the arm's joints from now on.
+
+        Args:
+            controller: The controller; None for the robot's own, which holds the arm where it is.
         """
         ...
 

@@ -18,6 +18,7 @@ from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.ports.goals import JointGoal
+from harness.ports.joint_control import JointController
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
 from harness.ports.motions import FreeMotion, JointMotion, TimedMotion
 from harness.ports.scene import PlanningScene
@@ -105,6 +106,9 @@ class DrySimulator:
         for name, position in zip(trajectory.joint_names, trajectory.positions[-1], strict=True):
             self._positions[self._description.joint_index[name]] = position
         self._positions = self._description.with_mimics(self._positions)
+
+    def use_controller(self, controller: JointController | None) -> None:
+        del controller
 
     def force_on_robot(self, span: float, held: Collection[str]) -> float:
         """What a guarded move waits for happens."""

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from harness.core.errors import StepFailed
 from harness.core.registry import described, raised, registry
 from harness.core.types import FloatArray
-from harness.ports.joint_control import ControlRequest, ControlResult, JointController
+from harness.ports.joint_control import ControlRequest, ControlResult, JointController, LinkMotion
 from harness.simulation.model import PhysicsModel
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.servo import FeedForward
@@ -28,7 +29,8 @@ class JointDrive:
 
     Attributes:
         position_share: 1 for a motor whose servo has a stiffness, else 0, shape (m,).
-        cycle: Physics steps between two calls of the controller; None: it needs no measurement.
+        controller: The controller of the arm's joints.
+        arm: Indices of the joints that it moves among the actuated ones: all but grippers'.
     """
 
     def __init__(
@@ -40,24 +42,33 @@ class JointDrive:
     ) -> None:
         description = physics.description
         self._physics, self._data, self._timestep = physics, data, timestep
+        self._gravity = np.array(gravity)
         self._feed_forward = FeedForward(description, physics.servos, gravity)
         self._coupling = coupling(description)
         self._offsets = description.with_mimics(np.zeros(len(description.joint_names)))
         names = [description.joint_names[place] for place in physics.actuated]
         hands = {gripper.joint for gripper in description.grippers}
         is_hand = np.array([name in hands for name in names], dtype=bool)
-        self._arm, self._hand = np.flatnonzero(~is_hand), np.flatnonzero(is_hand)
-        self._joint_names = tuple(names[index] for index in self._arm)
+        self.arm, self._hand = np.flatnonzero(~is_hand), np.flatnonzero(is_hand)
+        self._joint_names = tuple(names[index] for index in self.arm)
         kind = registry(JointController.plugin_kind).find(description.joint_controller)
-        self.controller: JointController = kind()
         self._stiffness = physics.servos.stiffness.copy()
         self._damping = physics.servos.damping.copy()
         self.position_share = np.ones(len(names))
-        period = self.controller.period if len(self._arm) else None
-        self.cycle = None if period is None else max(1, round(period / timestep))
+        self._own: JointController = kind()
+        self.use(None)
+
+    def use(self, controller: JointController | None) -> None:
+        """Let a controller move the arm's joints from now on; None: the robot's own."""
+        self.controller = controller or self._own
         if self.cycle is not None:
-            still = np.zeros(len(self._arm))
-            self._set_servos(ControlResult(still))
+            self._set_servos(ControlResult(np.zeros(len(self.arm))))
+
+    @property
+    def cycle(self) -> int | None:
+        """Physics steps between two calls of the controller; None: it needs no measurement."""
+        period = self.controller.period if len(self.arm) else None
+        return None if period is None else max(1, round(period / self._timestep))
 
     def weight(self, positions: FloatArray) -> FloatArray:
         """Efforts that hold the robot still at positions of every movable joint, shape (m,)."""
@@ -75,11 +86,11 @@ class JointDrive:
             StepFailed: CONTROL_FAILED; the controller raised an error, or its answer is unusable.
         """
         efforts = _Efforts(self._efforts, points)
-        if len(self._arm):
+        if len(self.arm):
             answer = self._answer(self._request(points, efforts, noise), len(points))
             self._set_servos(answer)
             whole = np.zeros_like(points.positions)
-            whole[:, self._arm] = answer.efforts
+            whole[:, self.arm] = answer.efforts
             if len(self._hand):
                 whole[:, self._hand] = efforts.of_set_points()[:, self._hand]
         else:
@@ -95,7 +106,7 @@ class JointDrive:
     def restore(self, controller: JointController) -> None:
         """Go on with a copy of a controller; the model's servos have been restored already."""
         self.controller = deepcopy(controller)
-        model, arm = self._physics.model, self._arm
+        model, arm = self._physics.model, self.arm
         self._stiffness[arm] = -model.actuator_biasprm[arm, 1]
         self._damping[arm] = -model.actuator_biasprm[arm, 2]
         self.position_share = np.where(self._stiffness > 0, 1.0, 0.0)
@@ -113,7 +124,7 @@ class JointDrive:
     def _request(
         self, points: SetPoints, efforts: _Efforts, noise: FloatArray | None
     ) -> ControlRequest:
-        arm, physics = self._arm, self._physics
+        arm, physics = self.arm, self._physics
         measured = self._data.qpos[physics.qpos][physics.actuated]
         speeds = self._data.qvel[physics.dof][physics.actuated]
         seen = measured if noise is None else measured + noise
@@ -124,6 +135,19 @@ class JointDrive:
             for full, given in zip(whole, rows, strict=True):
                 full[:, arm] = given
             return self._efforts(*whole)[:, arm]
+
+        def whole_positions(positions: FloatArray) -> FloatArray:
+            actuated = measured.copy()
+            actuated[arm] = positions
+            return self._coupling @ actuated + self._offsets
+
+        def inertia() -> FloatArray:
+            dense = self._feed_forward.inertia(whole_positions(measured[arm]))
+            return dense[np.ix_(arm, arm)]
+
+        def link_motion(link: str, positions: FloatArray) -> LinkMotion:
+            found = self._feed_forward.link_motion(link, whole_positions(positions))
+            return replace(found, jacobian=found.jacobian[:, arm])
 
         return ControlRequest(
             joint_names=self._joint_names,
@@ -139,14 +163,22 @@ class JointDrive:
             effort_limits=physics.servos.effort[arm],
             feed_forward=lambda: efforts.of_set_points()[:, arm],
             inverse_dynamics=inverse_dynamics,
+            link_motion=link_motion,
+            inertia=inertia,
+            gravity=self._gravity,
         )
 
     def _answer(self, request: ControlRequest, rows: int) -> ControlResult:
         """The answer of the controller, with arrays of the right shapes."""
-        who = described(JointController.plugin_kind, self.controller.name)
+        name = self.controller.name
+        who = (
+            described(JointController.plugin_kind, name) if name else type(self.controller).__name__
+        )
         try:
             found = self.controller.control(request)
             answer = _shaped(found, rows, len(request.joint_names))
+        except StepFailed:
+            raise
         except Exception as error:
             raise StepFailed("CONTROL_FAILED", f"{who} failed: {raised(error)}") from error
         if not np.isfinite(request.set_positions).all():
@@ -159,10 +191,10 @@ class JointDrive:
 
     def _set_servos(self, answer: ControlResult) -> None:
         """Give the motors of the arm the stiffness and damping of an answer."""
-        none = np.zeros(len(self._arm))
+        none = np.zeros(len(self.arm))
         stiffness = none if answer.stiffness is None else answer.stiffness
         damping = none if answer.damping is None else answer.damping
-        arm = self._arm
+        arm = self.arm
         known = self._stiffness[arm], self._damping[arm]
         if np.array_equal(known[0], stiffness) and np.array_equal(known[1], damping):
             return

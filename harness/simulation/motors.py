@@ -13,6 +13,7 @@ import numpy as np
 from harness.core.errors import ModelRefused, StepFailed
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
+from harness.ports.joint_control import JointController
 from harness.robot.description import Gripper, RobotDescription
 from harness.simulation.adhesion import adhesion_of
 from harness.simulation.faults import MujocoFaults
@@ -131,6 +132,20 @@ class Motors:
     def sample_count(self) -> int:
         """Number of recorded samples; the last one is the current state."""
         return self._recording.count
+
+    def use_controller(self, controller: JointController | None) -> None:
+        """Let a controller move the arm's joints from now on.
+
+        Args:
+            controller: The controller; None for the robot's own, which holds the arm where it is.
+        """
+        if controller is None:
+            arm = self._drive.arm
+            self._command = self._command.copy()
+            self._command[arm] = self.joint_positions()[self.physics.actuated[arm]]
+        self._drive.use(controller)
+        self.command(self._command)
+        self.hold_samples(1)
 
     def joint_positions(self) -> FloatArray:
         """The measured joint positions, in description order."""

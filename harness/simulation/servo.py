@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.ports.joint_control import LinkMotion
 from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model
 from harness.simulation.robot_mjcf import add_robot, coupling
@@ -163,6 +165,28 @@ class FeedForward:
             inverse(model, data)
             efforts[row] = effort
         return efforts[:, self._velocities] @ self._coupling
+
+    def link_motion(self, link: str, positions: FloatArray) -> LinkMotion:
+        """Where a link is at positions of all movable joints, and how actuated ones move it."""
+        model, data = self._model, self._data
+        data.qpos[self._positions] = positions
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        body, jacobian = model.body(link).id, np.empty((6, model.nv))
+        mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
+        pose = SE3(data.xmat[body].reshape(3, 3).copy(), data.xpos[body].copy())
+        return LinkMotion(pose, jacobian[:, self._velocities] @ self._coupling)
+
+    def inertia(self, positions: FloatArray) -> FloatArray:
+        """The mass matrix in the actuated joints at positions of every movable joint, (m, m)."""
+        model, data = self._model, self._data
+        data.qpos[self._positions] = positions
+        dense = np.zeros((model.nv, model.nv))
+        for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_crb):
+            stage(model, data)
+        mujoco.mj_fullM(model, data, dense)
+        ordered = dense[np.ix_(self._velocities, self._velocities)]
+        return self._coupling.T @ ordered @ self._coupling
 
 
 def set_rotor_inertia(spec: mujoco.MjSpec, description: RobotDescription, servos: Servos) -> None:

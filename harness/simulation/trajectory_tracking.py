@@ -47,12 +47,14 @@ class TrajectoryTracking(Motors):
             first = self._recording.count
             self._advance(whole.part(begin, end), controls[begin : end + 1])
             self._command = whole.positions[end]
-            self._refuse_lag(first, whole.positions[begin + 1 : end + 1, columns], columns)
+            if not self._drive.controller.is_compliant:
+                self._refuse_lag(first, whole.positions[begin + 1 : end + 1, columns], columns)
         if trajectory.velocities[-1].any():
             self._control = controls[-1]
             return
         self.command(whole.positions[-1])
-        self._wait_for_goal(whole.positions[-1, columns], columns)
+        if not self._drive.controller.is_compliant:
+            self._wait_for_goal(whole.positions[-1, columns], columns)
 
     def _refuse_lag(self, first: int, commanded: FloatArray, columns: IntArray) -> None:
         tolerance = self.description.tracking.trajectory

@@ -201,6 +201,7 @@ class RemoteArm:
     move_object = _refuses("an object cannot be moved in the real cell by a program")
     drive_surface = _refuses("a belt of the real cell is not driven by a scenario")
     force_on_robot = _refuses("the forces on a ROS 2 robot are not known here")
+    use_controller = _refuses("a robot of ROS 2 keeps the joint controller that it has")
     wrench = _refuses("the sensors of a ROS 2 robot are not read here")
     tare = _refuses("the sensors of a ROS 2 robot are not set to zero here")
     weld = _refuses("an object cannot be welded to the gripper of a real robot")
