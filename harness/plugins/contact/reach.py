@@ -45,10 +45,10 @@ class Postures:
 
     def can_yield(self, axis: int) -> bool:
         """Whether the link can move along or about one axis alone in some posture."""
-        wanted = np.eye(6)[axis]
+        requested = np.eye(6)[axis]
         for jacobian in self._jacobians:
-            moved = jacobian @ (np.linalg.pinv(jacobian, 1e-3) @ wanted)
-            if np.linalg.norm(moved - wanted) < REST:
+            moved = jacobian @ (np.linalg.pinv(jacobian, 1e-3) @ requested)
+            if np.linalg.norm(moved - requested) < REST:
                 return True
         return False
 
