@@ -175,7 +175,7 @@ def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
     """A model's schema without its tag, and the bare value that may stand for it."""
     properties: dict[str, Schema] = definition.get("properties", {})
     is_step, is_check = issubclass(model, Step), issubclass(model, ExpectationFields)
-    hidden = KEYS_BY_VERB if is_step else ()
+    hidden = {*KEYS_BY_VERB} - {*model.keys_inside} if issubclass(model, Step) else ()
     kept = {key: value for key, value in properties.items() if key not in hidden}
     mapping = {**definition, "properties": kept}
     branches: list[Schema] = [mapping]

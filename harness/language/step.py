@@ -57,6 +57,7 @@ class Step(SpecModel):
         keeps_arm_still: Whether the arm keeps its place during the step.
         moves_objects: Whether the step lets objects appear, vanish or jump.
         detaches_object: Whether the step detaches what the gripper holds.
+        keys_inside: Keys next to the verb that may stand inside its content as well.
         results: The types of the parts that the step reports with `cell.report`, besides those of
             the cell's own methods; a saved run is read back with them.
     """
@@ -71,6 +72,7 @@ class Step(SpecModel):
     keeps_arm_still: ClassVar[bool] = False
     moves_objects: ClassVar[bool] = False
     detaches_object: ClassVar[bool] = False
+    keys_inside: ClassVar[tuple[str, ...]] = ()
     results: ClassVar[tuple[type[Detail], ...]] = ()
 
     id: Name | None = Field(

@@ -29,6 +29,7 @@ class External(Step):
     """
 
     verb: ClassVar[str] = "external"
+    keys_inside: ClassVar[tuple[str, ...]] = ("timeout",)
     results = (ExternalResult,)
 
     timeout: PositiveDuration | None = Field(

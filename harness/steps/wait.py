@@ -26,8 +26,8 @@ look reads the whole record."""
 class Wait(Step):
     """Let simulated time pass: for a duration, or until an expectation holds.
 
-    With `until`, the step fails after its `timeout`, a minute if that is not given. The
-    expectation is evaluated every 20 ms of simulated time, and after two seconds whenever the step
+    With `until`, the step fails after its `timeout`, a minute if that is not given; it may stand
+    inside `wait:`, too. The expectation is evaluated every 20 ms of simulated time, and after two seconds whenever the step
     has become a hundredth longer.
     """
 
@@ -37,6 +37,7 @@ class Wait(Step):
     verb: ClassVar[str] = "wait"
     synonyms = ("sleep", "delay", "pause")
     keeps_arm_still: ClassVar[bool] = True
+    keys_inside: ClassVar[tuple[str, ...]] = ("timeout",)
 
     duration: PositiveDuration | None = Field(
         default=None, description="This much simulated time passes [s]."

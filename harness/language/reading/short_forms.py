@@ -117,7 +117,8 @@ class _Shaper:
         if not isinstance(item.value, dict):
             return item
         keys = keys_of(model)
-        inside = [key for key in keys if not (issubclass(model, Step) and key in KEYS_BY_VERB)]
+        outside = {*KEYS_BY_VERB} - {*model.keys_inside} if issubclass(model, Step) else ()
+        inside = [key for key in keys if key not in outside]
         entries: dict[str, Entry] = {}
         for key, entry in item.value.items():
             if key in inside:
@@ -175,11 +176,11 @@ class _Shaper:
         if not isinstance(content.value, dict):
             self._not_content(found, content, model)
             content = Located({}, content.place)
-        siblings = {
-            key: Entry(entry.key, self.field(entry.value, keys_of(model)[key]))
-            for key, entry in found.siblings.items()
-        }
-        return _tagged(TAG, found, content.mapping() | siblings)
+        entries = dict(content.mapping())
+        for key, entry in found.siblings.items():
+            shaped = self.field(entry.value, keys_of(model)[key])
+            self._put(entries, key, Entry(entry.key, shaped))
+        return _tagged(TAG, found, entries)
 
     def expectation(self, item: Located) -> Located:
         words = (*KEYS_BY_PREDICATE, UNTIL)
