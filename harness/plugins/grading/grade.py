@@ -125,7 +125,8 @@ def grade_bag(
         title=program.title,
         gravity=program.world.gravity,
     )
-    run = run_of_bag(bag, topics or BagTopics(), known)
+    arms = {arm: program.description.joint_names for arm in program.description.of_arm}
+    run = run_of_bag(bag, replace(topics or BagTopics(), arms=arms), known)
     notes = [finding.message for finding in run.findings]
     doubts = [
         finding.values

@@ -89,6 +89,8 @@ class BagTopics:
         joint_names: The scenario's name of a joint, by its recorded name.
         objects: Topics whose messages contain object names and poses.
         object_poses: Topic of the pose of one object, by the object's name.
+        arms: The joints of each of several arms. `/ARM` before a topic of joints is that of one arm,
+            whose recorded joints may lack the arm's name and `_`.
         csv_period: Time between the rows of a CSV without a column of times [s].
     """
 
@@ -97,4 +99,5 @@ class BagTopics:
     joint_names: Mapping[str, str] = field(default_factory=dict[str, str])
     objects: tuple[str, ...] = ()
     object_poses: Mapping[str, str] = field(default_factory=dict[str, str])
+    arms: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     csv_period: float = 0.01

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -108,30 +109,33 @@ class _Reader:
             self._content.notes.append(reason)
 
     def _handler(self, message: RawMessage) -> Callable[[Any, RawMessage], None] | None:
-        topic, msgtype = message.topic, message.msgtype
+        arm, topic = self._of_arm(message.topic)
+        msgtype = message.msgtype
         if topic in self._topics.objects:
             return {TF: self._named_frames, MODEL_STATES: self._models}.get(msgtype)
         if topic in self._objects:
             return self._pose if msgtype in SINGLE_POSES else None
         match topic, msgtype:
             case (self._topics.joint_states, "sensor_msgs/msg/JointState"):
-                return self._joints
+                return partial(self._put_joints, self._content.joints, arm)
             case ("/joint_commands", "sensor_msgs/msg/JointState"):
-                return self._commands
+                return partial(self._put_joints, self._content.commands, arm)
             case ("/tf" | "/tf_static", "tf2_msgs/msg/TFMessage"):
                 return self._frames
             case ("/armharness/events", "std_msgs/msg/String"):
                 return self._event
         return None
 
-    def _joints(self, content: Any, message: RawMessage) -> None:
-        self._put_joints(self._content.joints, content, message)
+    def _of_arm(self, topic: str) -> tuple[str, str]:
+        """The arm that a topic of joints is of, and the topic without its name."""
+        for arm in self._topics.arms:
+            whole = topic.removeprefix(f"/{arm}")
+            if whole in (self._topics.joint_states, "/joint_commands") and whole != topic:
+                return arm, whole
+        return "", topic
 
-    def _commands(self, content: Any, message: RawMessage) -> None:
-        self._put_joints(self._content.commands, content, message)
-
-    def _put_joints(self, tracks: Tracks, content: Any, message: RawMessage) -> None:
-        names = tuple(map(self._joint, content.name))
+    def _put_joints(self, tracks: Tracks, arm: str, content: Any, message: RawMessage) -> None:
+        names = tuple(self._joint(name, arm) for name in content.name)
         count = len(names)
         if not count:
             raise _Unusable("it names no joint")
@@ -147,10 +151,12 @@ class _Reader:
             raise _Unusable("it has infinite numbers")
         self._put(self._track(tracks, names, 3 * count), content.header, message, row)
 
-    def _joint(self, name: str) -> str:
-        """The scenario's name of a joint."""
+    def _joint(self, name: str, arm: str) -> str:
+        """The scenario's name of a joint, on the topic of an arm or of the whole robot."""
         known = self._topics.joint_names
-        return known[name] if name in known else name.removeprefix(self._topics.joint_prefix)
+        found = known[name] if name in known else name.removeprefix(self._topics.joint_prefix)
+        is_short = arm and f"{arm}_{found}" in self._topics.arms[arm]
+        return f"{arm}_{found}" if is_short else found
 
     def _frames(self, content: Any, message: RawMessage) -> None:
         is_static = FRAMES[message.topic]
