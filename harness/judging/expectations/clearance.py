@@ -81,9 +81,11 @@ class Clearance(Predicate):
 
     def check(self, at: At) -> None:
         arms = at.scope.description.of_arm
+        known = (*MEASURED_WORDS, *arms, *at.scope.objects)
         for index, name in enumerate(self.between):
-            if name not in (*MEASURED_WORDS, *arms):
-                at.scope.check_object(name, at.key("between", index))
+            if name not in known:
+                what = "object or arm" if arms else "object"
+                at.scope.problems.unknown(at.key("between", index), what, name, known)
         first, second = self.between
         of_itself = first == second or "robot" in self.between
         if arms.keys() & set(self.between) and of_itself and {first, second} <= {"robot", *arms}:
