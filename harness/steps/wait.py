@@ -27,8 +27,8 @@ class Wait(Step):
     """Let simulated time pass: for a duration, or until an expectation holds.
 
     With `until`, the step fails after its `timeout`, a minute if that is not given; it may stand
-    inside `wait:`, too. The expectation is evaluated every 20 ms of simulated time, and after two seconds whenever the step
-    has become a hundredth longer.
+    inside `wait:`, too. The expectation is evaluated every 20 ms of simulated time, and after two
+    seconds whenever the step has become a hundredth longer.
     """
 
     short = "duration"

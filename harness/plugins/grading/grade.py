@@ -125,7 +125,7 @@ def grade_bag(
         title=program.title,
         gravity=program.world.gravity,
     )
-    arms = {arm: program.description.joint_names for arm in program.description.of_arm}
+    arms = dict.fromkeys(program.description.of_arm, program.description.joint_names)
     run = run_of_bag(bag, replace(topics or BagTopics(), arms=arms), known)
     notes = [finding.message for finding in run.findings]
     doubts = [

@@ -89,8 +89,8 @@ class BagTopics:
         joint_names: The scenario's name of a joint, by its recorded name.
         objects: Topics whose messages contain object names and poses.
         object_poses: Topic of the pose of one object, by the object's name.
-        arms: The joints of each of several arms. `/ARM` before a topic of joints is that of one arm,
-            whose recorded joints may lack the arm's name and `_`.
+        arms: The joints of the robot, by the name of each of several arms. A topic of joints below
+            `/ARM` is that of one arm, whose recorded joints may lack the arm's name and `_`.
         csv_period: Time between the rows of a CSV without a column of times [s].
     """
 
