@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -79,6 +80,13 @@ def _nearest(run: Run, step: StepRecord) -> dict[str, Any] | None:
         "place": _numbers(nearest.pose, 7),
         "target": _target(nearest.target),
     }
+
+
+def explained_points(plans: Sequence[Mapping[str, Any]]) -> list[list[float]]:
+    """Where the states that explain failures have the robot's links, and their goals."""
+    states = [plan["nearest"] for plan in plans if plan["nearest"] is not None]
+    poses = [pose for each in states for pose in (*each["bodies"].values(), each["target"])]
+    return [pose[:3] for pose in poses if pose is not None]
 
 
 def _target(target: Floats | None) -> list[float] | None:

@@ -17,23 +17,18 @@ from harness.core.geometry import (
     Plane,
     Shape,
     Sphere,
-    bounding_radius,
 )
 from harness.core.types import FloatArray, IntArray
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.mesh_record import MeshRecord
-from harness.recording.run import ObjectRecord, Run
+from harness.recording.run import Run
+from harness.reporting.html.first_view import FARTHEST, first_view, rounded
 from harness.reporting.html.packing import Packer, differences, zigzag
 
 FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0  # poses a second, with straight lines between them
 MOST_FRAMES = 6000
-FARTHEST = 20.0  # [m]; what fell off the world is drawn there
 STILL = 1e-5
 FULL = 32700
-LARGE = 0.6  # [m]: a table does not widen the first view
-NEARBY = 4.0  # of the arm's size from its base: what falls off the table widens no view
-DIRECTIONS = 64  # in each of which the first view holds what is farthest
-THINNEST_ARM = 0.1  # [m]: a hand alone is no smaller than its frames
 
 MeshKey = tuple[Path, tuple[float, float, float]]
 
@@ -48,13 +43,19 @@ def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
     return step, np.minimum(samples, len(times) - 1)
 
 
-def pack_scene(run: Run, packer: Packer, named: Collection[str] = ()) -> dict[str, Any]:
+def pack_scene(
+    run: Run,
+    packer: Packer,
+    named: Collection[str] = (),
+    explained: Sequence[Sequence[float]] = (),
+) -> dict[str, Any]:
     """Bodies, meshes, frames and what the first view holds.
 
     Args:
         run: The run that is shown.
         packer: Takes poses and meshes.
         named: Objects that the first view holds even if the robot did not touch them.
+        explained: Points that it holds because they explain a failure.
     """
     step, samples = frame_samples(run.signals.times)
     poses = replayed_link_poses(run.robot, run.signals.joint_positions[samples])
@@ -65,7 +66,7 @@ def pack_scene(run: Run, packer: Packer, named: Collection[str] = ()) -> dict[st
     def add(name: str, shapes: Sequence[Shape], rows: FloatArray, **more: Any) -> None:
         body = {"name": name, "shapes": [_shape(shape, meshes) for shape in shapes], **more}
         moves = len(rows) > 1 and bool(np.ptp(rows, axis=0).max() > STILL)
-        body["fixed"] = None if moves else _rounded(rows[0])
+        body["fixed"] = None if moves else rounded(rows[0])
         if moves:
             body["column"] = len(columns)
             columns.append(rows)
@@ -115,7 +116,7 @@ def pack_scene(run: Run, packer: Packer, named: Collection[str] = ()) -> dict[st
     _pack_apart(
         [poses[name] for name in moving], [commanded[name] for name in moving], unit, packer
     )
-    focus, bounds = _views(run, poses, named)
+    focus, bounds = first_view(run, poses, named, explained)
     return {
         "bodies": bodies,
         "meshes": [pack_mesh(mesh, number, packer) for number, mesh in enumerate(run.meshes)],
@@ -130,15 +131,15 @@ def _mesh_parts(run: Run) -> dict[MeshKey, list[list[Any]]]:
     """For each mesh file: the numbers of its parts, with their colours."""
     parts: dict[MeshKey, list[list[Any]]] = {}
     for number, mesh in enumerate(run.meshes):
-        colour = None if mesh.rgba is None else _rounded(mesh.rgba, 3)
+        colour = None if mesh.rgba is None else rounded(mesh.rgba, 3)
         parts.setdefault((mesh.path, mesh.scale), []).append([number, colour])
     return parts
 
 
 def _shape(shape: Shape, meshes: Mapping[MeshKey, list[list[Any]]]) -> dict[str, Any]:
     plain: dict[str, Any] = {
-        "pose": _rounded(shape.pose.as_vector()),
-        "color": _rounded(shape.rgba, 3),
+        "pose": rounded(shape.pose.as_vector()),
+        "color": rounded(shape.rgba, 3),
     }
     match shape.geometry:
         case Box(size=size):
@@ -210,75 +211,6 @@ def line_of(source: str, name: str) -> int:
     defines = re.compile(rf"""\bname:\s*["']?{word}["']?\s*(?:[,}}#]|$)|^[\s-]*["']?{word}["']?:""")
     lines = source.splitlines()
     return next((number for number, line in enumerate(lines, 1) if defines.search(line)), 0)
-
-
-def _views(
-    run: Run, poses: Mapping[str, FloatArray], named: Collection[str]
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What the first view holds, and a sphere around what the sun's shadow covers.
-
-    The first view holds the arm wherever it was, and what it touched.
-    """
-    base = poses[run.robot.base_link][0, :3] if run.robot.base_link in poses else np.zeros(3)
-    near = [rows[:, :3] for rows in poses.values()]
-    near = [points for points in near if np.abs(points).max(initial=0.0) > 0]
-    near.append(run.signals.tcp_pose[:: max(1, len(run.signals.times) // 500), :3])
-    arm = max(float(np.linalg.norm(points - base, axis=1).max(initial=0.0)) for points in near)
-    touched = {*named, *_touched(run)}
-    wide: list[FloatArray] = []
-    for obj in run.objects:
-        if any(isinstance(shape.geometry, Plane) for shape in obj.looks):
-            continue
-        centres, reach = _extent(run, obj)
-        if reach < LARGE and obj.name in touched:
-            seen = centres[np.linalg.norm(centres - base, axis=1) < NEARBY * arm]
-            near += [seen - reach, seen + reach]
-        corners = np.concatenate([centres - reach, centres + reach])
-        wide.append(np.clip(corners, base - 2.5, base + 2.5))
-    focus = {"points": _outermost(np.concatenate(near)), "arm": round(max(THINNEST_ARM, arm), 4)}
-    return focus, _sphere([*near, *wide])
-
-
-def _touched(run: Run) -> set[str]:
-    """Objects that the robot touched or carried; where there are none, those that can move."""
-    links = set(run.robot.link_names)
-    pairs = [contact.pair for contact in run.contacts if links & set(contact.pair)]
-    touched = {name for pair in pairs for name in pair if name not in links}
-    touched |= {held.represents for held in run.attachments}
-    return touched or {obj.name for obj in run.objects if not obj.is_static}
-
-
-def _outermost(points: FloatArray) -> list[list[float]]:
-    """The points of a cloud that are farthest in directions all around."""
-    known = points[np.isfinite(points).all(axis=1)]
-    if not len(known):
-        return [[0.0, 0.0, 0.0]]
-    number = np.arange(DIRECTIONS)
-    height, turn = 1 - (2 * number + 1) / DIRECTIONS, number * np.pi * (3 - 5**0.5)
-    flat = np.sqrt(1 - height**2)
-    around = np.stack([flat * np.cos(turn), flat * np.sin(turn), height])
-    return [_rounded(known[row], 4) for row in np.unique(np.argmax(known @ around, axis=0))]
-
-
-def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
-    """Where an object's centre was, a few times, and how far it reaches from there [m]."""
-    reach = max((bounding_radius(shape) for shape in obj.looks), default=0.0)
-    recorded = run.signals.object_poses.get(obj.name)
-    rows = np.array([obj.pose or (0.0,) * 7]) if recorded is None else recorded
-    rows = rows[:: max(1, len(rows) // 20)]
-    centres = rows[np.isfinite(rows).all(axis=1), :3]
-    return np.clip(centres, -FARTHEST, FARTHEST), reach if np.isfinite(reach) else 0.3
-
-
-def _sphere(clouds: Sequence[FloatArray]) -> dict[str, Any]:
-    points = np.concatenate([cloud for cloud in clouds if len(cloud)] or [np.zeros((1, 3))])
-    low, high = points.min(axis=0), points.max(axis=0)
-    radius = max(0.15, 0.5 * float(np.linalg.norm(high - low)))
-    return {"center": _rounded((low + high) / 2), "radius": round(radius, 4)}
-
-
-def _rounded(values: Any, digits: int = 6) -> list[float]:
-    return [round(float(value), digits) for value in values]
 
 
 SMALLEST = 1e-9

@@ -12,7 +12,7 @@ from harness.reporting.html import bundle
 from harness.reporting.html.bundle import rendered
 from harness.reporting.html.groups import pack_groups
 from harness.reporting.html.packing import Packer
-from harness.reporting.html.paths import pack_plan, pack_tcp_path
+from harness.reporting.html.paths import explained_points, pack_plan, pack_tcp_path
 from harness.reporting.html.pictures import pack_cameras
 from harness.reporting.html.presses import pack_presses
 from harness.reporting.html.scene import pack_scene
@@ -98,7 +98,7 @@ class Page:
                 "source": run.source,
                 **self._facts,
                 "cameras": pack_cameras(run, packer),
-                **pack_scene(run, packer, blamed),
+                **pack_scene(run, packer, blamed, explained_points(self._plans)),
             }
         )
 
