@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.types import BoolArray
+from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import balls_of
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
 from harness.recording.run import Finding, ObjectRecord
@@ -162,7 +162,7 @@ class _Record:
         )
 
     def _push(self, fault: InjectedFault, rows: slice) -> Effect:
-        speed = self._speed(fault.target, rows)
+        speed = self._speed(fault.target, rows, along=np.array(fault.after, dtype=float))
         before, fastest = float(speed[0]) if rows.start else 0.0, float(speed.max())
         if fastest - before <= MOVING:
             return Effect(False, "it did not move: friction or a hand held it")
@@ -196,9 +196,21 @@ class _Record:
                 touched |= force[rows] > 0
         return touched
 
-    def _speed(self, name: str, rows: slice) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Speed of an object's fastest point between samples [m/s], for every row."""
+    def _speed(
+        self, name: str, rows: slice, along: FloatArray | None = None
+    ) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """Speed of an object's fastest point between samples [m/s], for every row.
+
+        Args:
+            name: The name of the object.
+            rows: The samples that are looked at.
+            along: The direction in which its origin counts as moved: what settles by its weight is
+                not moved by a push from the side.
+        """
         record, poses = self.objects[name], self.signals.object_poses[name]
+        if along is not None:
+            axis = along / np.linalg.norm(along)
+            poses = np.hstack([np.outer(poses[:, :3] @ axis, axis), poses[:, 3:]])
         steps = balls_of(record).moved(poses[:-1], poses[1:])
         steps[record.put_samples(self.signals.times) - 1] = 0.0
         within = np.append(steps[rows][: len(poses[rows]) - 1], 0.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.recording.faults import InjectedFault, faults_of
+from harness.recording.faults import InjectedFault, InjectedFaults, faults_of
 from harness.session.observation.fault_effects import COMMANDED, with_receipts
 from tests.approved import SAID, finding_text
 from tests.judging.synthetic_run import BOX, DT, ROBOT, TABLE, at, force, make_run, step
@@ -75,6 +75,22 @@ def test_a_push_lands_where_the_object_gains_more_than_a_millimetre_a_second(spe
     before = receipt(PUSH, object_poses={"box": going(0.5, 0, 90)})
     assert before.receipt == "no_effect", "it moved as fast before"
     assert "0.25 m/s" in receipt(PUSH, object_poses={"box": going(0.25)}).evidence
+
+
+@pytest.mark.parametrize("direction", [(1, 0, 0), (0.3, -2, 0)])
+def test_what_settles_while_it_is_pushed_from_the_side_is_not_moved_by_the_push(direction):
+    """Objects fall by 0.1 mm at the start of a run."""
+    settling = at(N, (0, 0, 0.02))
+    settling[:, 2] -= 1e-4 * np.clip(np.arange(N) / 5, 0, 1)
+    first = step("first", 0, 10, "inject", result={"faults": [PUSH.plain()]})
+    push = InjectedFault("push", "box", (0, 0, 0), direction)
+    first = replace(first, result=first.result.replaced(InjectedFaults((push,))))
+    pushed = settling.copy()
+    pushed[:, :3] += np.outer(0.01 * DT * np.arange(N), direction)
+    for poses, receipt_of in ((settling, "no_effect"), (pushed, "landed")):
+        run = make_run(N, object_poses={"box": poses})
+        steps, _ = with_receipts((first,), run.signals, ROBOT, (TABLE, BOX))
+        assert faults_of(steps[0])[0].receipt == receipt_of
 
 
 @pytest.mark.parametrize("start", [0, 10])
