@@ -6,7 +6,8 @@ import math
 
 from harness.core.quantity import distinct
 
-FINEST_ANGLE = 1e-4  # [deg], a smaller angle is written as 0.0
+FINEST = 1e-3  # [mm, mm/s, N ...], what is smaller is written as 0
+FINEST_ANGLE = 1e-4  # [deg]
 
 
 def amount(value: float, unit: str, more_digits: int = 0) -> str:
@@ -31,12 +32,17 @@ def amounts(value: float, limit: float, unit: str) -> tuple[str, str]:
     return distinct(value, limit, lambda number, more: amount(number, unit, more))
 
 
+def is_exact(value: float, limit: float, unit: str) -> bool:
+    """Whether an error is so small that people read it as none: it is written as 0."""
+    return amounts(value, limit, unit)[0].partition(" ")[0] == "0"
+
+
 def percentages(value: float, limit: float) -> tuple[str, str]:
     """Two shares in percent, in digits that differ where the two do."""
     return distinct(value, limit, lambda share, more: f"{100 * share:.{1 + more}f} %")
 
 
-def _short(value: float, more_digits: int, finest: float = 1e-3) -> str:
+def _short(value: float, more_digits: int, finest: float = FINEST) -> str:
     if not math.isfinite(value):
         return str(value)
     if more_digits:
@@ -45,5 +51,6 @@ def _short(value: float, more_digits: int, finest: float = 1e-3) -> str:
         return f"{value:.2g}"
     if finest <= abs(value) < 1e-3:
         return f"{value:.4f}"
-    value = 0.0 if abs(value) < finest else value
+    if abs(value) < finest:
+        return "0"
     return f"{value:.1f}" if abs(value) < 100 else f"{value:.0f}"

@@ -33,6 +33,22 @@ def rotation_from_rpy(rpy: Vector) -> FloatArray:
     )
 
 
+def rpy_from_rotation(rotation: FloatArray) -> FloatArray:
+    """Fixed-axis roll, pitch, yaw of a rotation, stable at pitch ±π/2, shape (3,).
+
+    Roll is computed after undoing yaw, so that it compensates for the error of yaw near the
+    singularity.
+    """
+    yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+    sine, cosine = np.sin(yaw), np.cos(yaw)
+    pitch = np.arctan2(-rotation[2, 0], cosine * rotation[0, 0] + sine * rotation[1, 0])
+    roll = np.arctan2(
+        sine * rotation[0, 2] - cosine * rotation[1, 2],
+        cosine * rotation[1, 1] - sine * rotation[0, 1],
+    )
+    return np.array([roll, pitch, yaw])
+
+
 def rotation_from_quat_wxyz(quat_wxyz: Vector) -> FloatArray:
     """Rotation matrix of a quaternion, which is normalised first, shape (3, 3)."""
     quat = np.asarray(quat_wxyz, dtype=float)

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from harness.cell.scope import At
-from harness.core.amounts import amounts
+from harness.core.amounts import amounts, is_exact
 from harness.core.types import FloatArray
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
@@ -130,6 +130,8 @@ def near(
 
     def text(_: int, measure: Measure) -> str:
         off, limit = amounts(measure.value, measure.limit, measure.unit)
+        if is_exact(measure.value, measure.limit, measure.unit):
+            return f"{measure.detail} is exactly at its target, {limit} allowed"
         return f"{measure.detail} is off its target by {off} of {limit}"
 
     return all_of(window, parts, text)

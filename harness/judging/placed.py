@@ -12,9 +12,10 @@ from pydantic import BaseModel
 from harness.cell.scope import At, Scope
 from harness.core.amounts import amount
 from harness.judging.expectation import Expectation, Predicate
-from harness.language.annotations import units_of
+from harness.language.annotations import unit_of
 from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc
+from harness.language.poses import Pose, PoseTolerance, Position
 
 OMITTED = ("points", "name")  # keys that are no part of an expectation's text
 FIELD = re.compile(r"\{(\w+)\}")
@@ -119,7 +120,7 @@ def _described(spec: ExpectationFields) -> str:
             text += f" {pair}{_value(spec, subject)}"
         said.add(subject)
     parts = [
-        f"{_key(key)} {_value(spec, key)}"
+        ("" if isinstance(getattr(spec, key), bool) else f"{_key(key)} ") + _value(spec, key)
         for key in type(spec).model_fields
         if key not in said and _is_stated(spec, key)
     ]
@@ -149,37 +150,42 @@ def _key(key: str) -> str:
     return key.rstrip("_").replace("_", " ")
 
 
-def _value(spec: ExpectationFields, key: str) -> str:
-    """A field's value with the unit of the field; without one where it depends on the joint."""
-    value = getattr(spec, key)
-    if isinstance(value, BaseModel):
-        return _fields(value)
-    if isinstance(value, dict):
-        positions = cast("dict[str, float]", value)
-        return ", ".join(f"{name}={item:.6g}" for name, item in positions.items())
-    if isinstance(value, tuple):
-        return " and ".join(map(str, cast("tuple[Any, ...]", value)))
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        field = type(spec).model_fields[key]
-        units = units_of(field.annotation, field.metadata)
-        has_unit = len(units) == 1 and units != ("1",)
-        return amount(value, units[0]) if has_unit else f"{value:.6g}"
-    return str(value)
+def _value(model: BaseModel, key: str) -> str:
+    """A field's value with its unit; without one where it depends on the joint; a flag as words."""
+    value = getattr(model, key)
+    match value:
+        case Pose() | Position():
+            return value.text()
+        case PoseTolerance():
+            stated = [each for each in type(value).model_fields if _is_stated(value, each)]
+            return " and ".join(_value(value, each) for each in stated)
+        case BaseModel():
+            return _fields(value)
+        case dict():
+            positions = cast("dict[str, float]", value)
+            return ", ".join(f"{name}={item:.6g}" for name, item in positions.items())
+        case tuple():
+            parts = cast("tuple[Any, ...]", value)
+            is_text = any(isinstance(part, str) for part in parts)
+            return " and ".join(parts) if is_text else f"({', '.join(map(_number, parts))})"
+        case bool():
+            return _key(key) if value else f"not {_key(key)}"
+        case float():
+            unit = (
+                model.unit_of(key) if isinstance(model, ExpectationFields) else unit_of(model, key)
+            )
+            return amount(value, unit) if unit else _number(value)
+        case _:
+            return str(value)
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"
 
 
 def _fields(model: BaseModel) -> str:
     """The fields of a model that differ from their defaults; of the short one alone, its value."""
     stated = [key for key in type(model).model_fields if _is_stated(model, key)]
     if stated == [getattr(model, "short", "")]:
-        return _vector(getattr(model, stated[0]))
-    return "(" + ", ".join(f"{_key(key)} {_vector(getattr(model, key))}" for key in stated) + ")"
-
-
-def _vector(value: Any) -> str:
-    if isinstance(value, BaseModel):
-        return _fields(value)
-    if isinstance(value, tuple):
-        return "[" + ", ".join(f"{part:.6g}" for part in value) + "]"  # pyright: ignore[reportUnknownVariableType]
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+        return _value(model, stated[0])
+    return "(" + ", ".join(f"{_key(key)} {_value(model, key)}" for key in stated) + ")"

@@ -7,7 +7,7 @@ import types
 from collections.abc import Iterable
 from typing import Annotated, Any, TypeGuard, Union, get_args, get_origin
 
-from pydantic import BeforeValidator
+from pydantic import BaseModel, BeforeValidator
 from pydantic.fields import FieldInfo
 
 from harness.language.base import SpecModel
@@ -56,6 +56,13 @@ def units_of(annotation: Any, metadata: Iterable[Any] = ()) -> tuple[str, ...]:
         metadata = (*more, *metadata)
     functions = (item.func for item in metadata if isinstance(item, BeforeValidator))
     return next((func.units for func in functions if hasattr(func, "units")), ())  # type: ignore[union-attr]
+
+
+def unit_of(model: BaseModel, key: str) -> str:
+    """The unit of a field of a model; empty where it has none, or depends on a joint."""
+    field = type(model).model_fields[key]
+    units = units_of(field.annotation, field.metadata)
+    return units[0] if len(units) == 1 and units != ("1",) else ""
 
 
 def description_of(model: type[SpecModel]) -> str:

@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from harness.core.registry import HAS_DOCSTRINGS
-from harness.language.annotations import bare, branches
+from harness.language.annotations import bare, branches, unit_of
 from harness.language.base import Name, Number, PositiveDuration, SpecModel
 from harness.language.plugin_field import PluginField
 
@@ -92,6 +92,10 @@ class ExpectationFields(SpecModel):
     name: str | None = Field(
         default=None, description="A name for people; verdicts show it in front of the text."
     )
+
+    def unit_of(self, key: str) -> str:
+        """The unit of a field; empty where it has none, or depends on the robot's joint."""
+        return unit_of(self, key)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:

@@ -55,7 +55,7 @@ class Planning(SpecModel):
     )
     planner_id: Name | None = Field(
         default=None,
-        description="A planner of the pipeline. The default of `ompl` is `auto`: a straight joint "
+        description="A planner of the pipeline. The default of `ompl` is `auto`: a direct joint "
         "motion, else `BalancedConnect`, else `RRTConnect`; `harness list planners` has the "
         "others.",
     )

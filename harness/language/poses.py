@@ -24,6 +24,15 @@ if TYPE_CHECKING:
 QUATERNION_NORM_TOLERANCE = 1e-2
 
 
+def _millimetres(xyz: tuple[float, float, float]) -> str:
+    return f"({', '.join(f'{round(1e3 * part, 3) + 0.0:g}' for part in xyz)}) mm"
+
+
+def _in_frame(text: str, frame: str) -> str:
+    """The text, with its frame where this is not the default."""
+    return text if frame == "world" else f"{text} in {frame}"
+
+
 class Pose(SpecModel):
     """A pose: a position and at most one of `rpy`, `quat_xyzw`, `quat_wxyz`, in a frame."""
 
@@ -68,6 +77,16 @@ class Pose(SpecModel):
         """Whether the file gives one."""
         return any(part is not None for part in (self.rpy, self.quat_xyzw, self.quat_wxyz))
 
+    def text(self) -> str:
+        """The pose in mm and degrees: `(320, -170, 80) mm, rpy (180, 0, -45) deg, in base_link`."""
+        turn = ""
+        if self.has_rotation:
+            from harness.core.spatial import rpy_from_rotation
+
+            angles = self.rpy or rpy_from_rotation(self.se3().rotation).tolist()
+            turn = f", rpy ({', '.join(f'{math.degrees(each):.1f}' for each in angles)}) deg"
+        return _in_frame(_millimetres(self.xyz) + turn, self.frame)
+
     def se3(self) -> SE3:
         """The pose in its frame: T_frame_this, quaternion normalised."""
         from harness.core.spatial import SE3, wxyz_from_xyzw  # NumPy: 0.1 s, not needed to load
@@ -90,6 +109,10 @@ class Position(SpecModel):
     frame: Name = Field(
         default="world", description="The frame: `world`, a robot link, or an object's name."
     )
+
+    def text(self) -> str:
+        """The position in mm: `(320, -170, 80) mm in base_link`."""
+        return _in_frame(_millimetres(self.xyz), self.frame)
 
 
 class Direction(SpecModel):

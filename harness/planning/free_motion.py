@@ -236,7 +236,7 @@ def _search_failure(
         share, _, touches = blocked
         straight_way = BlockedWay(share, touch_records(touches))
         message += (
-            f"; the straight path is blocked after {100 * share:.0f} % by "
+            f"; the direct joint motion is blocked after {100 * share:.0f} % by "
             f"{wording.touches(touches)}"
         )
     search = SearchFailure(effort.checks, min(effort.gaps, default=None), straight_way)

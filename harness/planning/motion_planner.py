@@ -128,7 +128,7 @@ class VerifiedPlanner:
         else:
             task = replace(task, limits=_unscaled_limits(task))
             trajectory = _timed_to_duration(task, end, motion.duration)
-        task.accept(trajectory, end, "the straight joint motion")
+        task.accept(trajectory, end, "the direct joint motion")
         statistics = task.statistics("PTP", trajectory, [task.start, end])
         return MotionPlan(trajectory, Details.of(statistics), task.lowered_margins)
 
@@ -185,13 +185,14 @@ def _timed_to_duration(task: PlanningTask, end: FloatArray, duration: float) -> 
     slowest = int(np.argmax(shortest))
     if shortest[slowest] > total * (1 + 1e-9):
         name, way = task.space.joint_names[slowest], span[slowest]
-        jerk = f", a jerk of {peaks[2] * way / total**3:.2f} of at most {limits.jerk:.2f}"
+        unit = "rad" if task.space.wraps[slowest] else "m"
+        jerk = f", a jerk of {peaks[2] * way / total**3:.2f} of at most {limits.jerk:.2f} {unit}/s³"
         raise PlanningFailed(
             "INVALID_MOTION_PLAN",
-            f"{name} cannot move {way:.3f} in {duration:g} s: that takes "
-            f"{peaks[0] * way / total:.2f} of at most {limits.velocity[slowest]:.2f} per "
-            f"second and {peaks[1] * way / total**2:.2f} of at most "
-            f"{limits.acceleration[slowest]:.2f} per second squared{jerk if is_smooth else ''}; "
+            f"{name} cannot move {way:.3f} {unit} in {duration:g} s: that takes "
+            f"{peaks[0] * way / total:.2f} of at most {limits.velocity[slowest]:.2f} {unit}/s"
+            f" and {peaks[1] * way / total**2:.2f} of at most "
+            f"{limits.acceleration[slowest]:.2f} {unit}/s²{jerk if is_smooth else ''}; "
             f"give it at least {shortest[slowest]:.3f} s",
             DurationFailure(name, float(shortest[slowest]), duration),
         )

@@ -129,19 +129,19 @@ class MujocoSimulator(TrajectoryTracking):
         Raises:
             StepFailed: TIMED_OUT; the error names what still moves, and its speed.
         """
-        name, speed, calm = "", 0.0, 0.0
+        name, speed, unit, calm = "", 0.0, "", 0.0
         last = self._recording.count + max(1, int(timeout / self._timestep + 1e-6))
         while (first := self._recording.count) < last:
             count = min(SETTLE_EVERY, last - first)
             self.hold_samples(count)
-            name, speed = self._recording.fastest(first)
+            name, speed, unit = self._recording.fastest(first)
             calm = calm + count * self._timestep if speed < max_velocity else 0.0
             if calm > SETTLE_FOR - 0.5 * self._timestep:
                 return True
         raise StepFailed(
             "TIMED_OUT",
-            f"{name} still moves with {speed:.3g} after {timeout:g} s;"
-            f" at rest is slower than {max_velocity:g} m/s (or rad/s) for {SETTLE_FOR:g} s",
+            f"{name} still moves with {speed:.3g} {unit} after {timeout:g} s;"
+            f" at rest is slower than {max_velocity:g} {unit} for {SETTLE_FOR:g} s",
             UnrestFailure(name, speed, max_velocity, timeout),
         )
 

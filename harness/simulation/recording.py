@@ -195,27 +195,30 @@ class Recording:
         """Measured velocities from a sample on, description order, shape (N, n)."""
         return self._qvel[first : self.count, self._physics.dof]
 
-    def fastest(self, first: int) -> tuple[str, float]:
+    def fastest(self, first: int) -> tuple[str, float, str]:
         """Find the joint or object with the largest mean velocity component from a sample on.
 
         A mean, because a cylinder that stands on a box rocks by some mrad/s from step to step, as
         its points of contact change, and goes nowhere.
 
         Returns:
-            Its name, empty when nothing can move, and the component's size [m/s or rad/s].
+            Its name, empty when nothing can move, the component's size, and its unit.
         """
         dofs = [int(dof) for dof in self._physics.dof]
-        names = [joint.name for joint in self._physics.description.movable_joints]
+        joints = self._physics.description.movable_joints
+        names = [joint.name for joint in joints]
+        units = [f"{joint.position_unit}/s" for joint in joints]
         for name, place in self._physics.objects.items():
             if place.dof >= 0:
                 count = 6 if place.obj.joint is None else 1
                 dofs += range(place.dof, place.dof + count)
                 names += [name] * count
+                units += ["m/s"] * 3 + ["rad/s"] * 3 if count == 6 else ["m/s or rad/s"]
         speeds = np.abs(self._qvel[first : self.count, dofs].mean(axis=0))
         if not len(dofs):
-            return "", 0.0
+            return "", 0.0, ""
         worst = int(np.argmax(speeds))
-        return names[worst], float(speeds[worst])
+        return names[worst], float(speeds[worst]), units[worst]
 
     def actuator_efforts(self) -> FloatArray:
         """Efforts of the actuated joints at the last sample, shape (m,)."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from harness.core.amounts import amounts
 from harness.core.errors import StepFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray, IntArray
@@ -99,11 +100,11 @@ class TrajectoryTracking(Motors):
         command[columns] = self.joint_positions()[joints]
         self.command(command)
         self.hold(ABORT_HOLD)
-        error = f"{errors[worst]:.3g} {unit}"
+        error, allowed = amounts(float(errors[worst]), tolerance, unit)
         raise StepFailed(
             "CONTROL_FAILED",
             f"{joint.name} {message.format(error)} at t={time:.3f} s "
-            f"(tolerance {tolerance:g} {unit}); {_contact_clause(contacts)}",
+            f"(tolerance {allowed}); {_contact_clause(contacts)}",
             ControlFailure(
                 joint=joint.name,
                 error=float(errors[worst]),

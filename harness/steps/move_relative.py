@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.core.types import FloatArray
 from harness.language.base import Angle, Length, Name, PositiveLength
 from harness.language.poses import Direction
@@ -66,8 +67,8 @@ class MoveRelative(Step):
         return self
 
     def summary(self) -> str:
-        amount = self.distance or self.max_distance
-        return f"{amount:g} m" if amount else f"{self.angle or 0.0:g} rad"
+        distance = self.distance or self.max_distance
+        return amount(distance, "m") if distance else amount(self.angle or 0.0, "rad")
 
     def check(self, at: At) -> None:
         at.scope.check_group(self.group, at.key("group"))

@@ -53,7 +53,7 @@ from tests.judging.synthetic_run import attachment, heights, lift_run, make_run
         (Clearance(at_least=0.01), "clearance between robot and any is at least 10.0 mm"),
         (
             TcpPose(pose=Pose(xyz=(0.1, 0, 0)), name="there"),
-            "there (TCP is at (xyz [0.1, 0, 0]))",
+            "there (TCP is at (100, 0, 0) mm)",
         ),
         (
             Until(predicate=Static(), until=Static(object="box")),

@@ -72,11 +72,11 @@ def answer_of(spec, length=0.4):
         (TcpHeight(at_least=0.4), "passed", 0.0, 0.4, ">=", "tcp height is 400 mm, at least"),
         (
             TcpBand(at_least=0.1, at_most=0.45), "passed", 0.05, 0.05, ">=",
-            "the margin of tcp band is 50.0 mm, at least 0.0 mm required",
+            "the margin of tcp band is 50.0 mm, at least 0 mm required",
         ),
         (
             TcpBand(at_least=0.1, at_most=0.35), "failed", -0.05, -0.05, ">=",
-            "the margin of tcp band is -50.0 mm, at least 0.0 mm required",
+            "the margin of tcp band is -50.0 mm, at least 0 mm required",
         ),
     ],
 )  # fmt: skip

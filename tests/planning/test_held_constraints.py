@@ -92,9 +92,9 @@ def test_what_is_broken_most_is_reported_with_its_value_and_bounds(held):
     both = held(**BOX, **BAND)
     found = both.violation(np.array([0.25, 0.8, 0.0, 0.0]))
     assert found.excess == pytest.approx(0.5)
-    assert found.what == "two is at 0.8000, -0.1 to 0.3 are allowed"
+    assert found.what == "two is at 800 mm, allowed is -100 mm to 300 mm"
     found = both.violation(np.array([0.1, -0.25, 0.0, 0.0]))
-    assert found.what == "tool is -0.4500 m off the box's middle along y, -0.2 to 0.2 are allowed"
+    assert found.what == "tool is -450 mm off the box's middle along y, allowed is at most 200 mm"
     record = found.record
     bounds = (record.constraint_lower, record.constraint_upper)
     assert (record.constraint_value, *bounds) == pytest.approx((-0.45, -0.2, 0.2))
@@ -119,7 +119,7 @@ def test_equal_tolerances_about_a_free_axis_limit_its_tilt_however_far_it_is_tur
     assert cone.hold(np.array([0.0, 0.0, turned, 0.1499]))
     assert not cone.hold(np.array([0.0, 0.0, turned, -0.1501]))
     broken = cone.violation(np.array([0.0, 0.0, turned, 0.2]))
-    assert broken.what.startswith("tool is tilted 0.200 rad from z")
+    assert broken.what.startswith("tool is tilted 11.5 deg from z")
 
 
 def test_values_of_many_states_are_those_of_each(held):

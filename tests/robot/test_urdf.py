@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from harness.core.errors import SpecError
 from harness.core.geometry import Capsule, Cylinder, Sphere
-from harness.core.spatial import rotation_from_rpy
+from harness.core.spatial import rotation_from_rpy, rpy_from_rotation
 from harness.robot.groups import planning_groups
 from harness.robot.srdf.srdf import parse_srdf, write_srdf
 from harness.robot.urdf.urdf import parse_urdf
-from harness.robot.urdf.write import rpy_from_rotation, write_urdf
+from harness.robot.urdf.write import write_urdf
 from tests.robot.arm_files import URDF
 from tests.robot.models import robot
 

@@ -58,7 +58,9 @@ def test_a_static_object_can_be_moved_under_a_falling_one(ur3e):
 
 def test_settling_gives_up_on_what_keeps_moving_and_names_it(ur3e):
     simulator = MujocoSimulator(ur3e, a_scene()[2:3], ("later",))
-    with pytest.raises(StepFailed, match=r"later still moves with 1\.92 after 0\.2 s") as caught:
+    with pytest.raises(
+        StepFailed, match=r"later still moves with 1\.92 m/s after 0\.2 s"
+    ) as caught:
         simulator.settle(0.01, timeout=0.2)  # it falls: there is no table
     assert caught.value.code == "TIMED_OUT"
     assert simulator.time == pytest.approx(0.2)

@@ -31,7 +31,7 @@ class GripperState(ArmPredicate):
     word = "gripper"
     short = "named_target"
     one_of = ("named_target", "position", "width", "stalled")
-    sentence = "gripper is[ {named_target}][ at {position}][ open by {width}][ stalled: {stalled}]"
+    sentence = "gripper is[ {named_target}][ at {position}][ open by {width}][ {stalled}]"
     quantities = (POSITION_ERROR, GAP, STALLED)
     is_proposed = True
 
@@ -52,6 +52,9 @@ class GripperState(ArmPredicate):
     stalled: Flag | None = Field(
         default=None, description="Whether the last gripper step reported that it stalled."
     )
+
+    def unit_of(self, key: str) -> str:
+        return "m" if key == "tolerance" and self.width is not None else super().unit_of(key)
 
     def check(self, at: At) -> None:
         at.scope.check_gripper(at.loc, "`gripper`")

@@ -92,6 +92,8 @@ class InContact(Predicate):
 
         def text(_: int, measure: Measure) -> str:
             now = f"{first} and {second} touch with {amount(measure.value, 'N')}"
+            if measure.value == 0:
+                now = f"{first} and {second} do not touch"
             if not len(touching):
                 return now
             begun, seconds = window.time(int(touching[0])), len(touching) * sample_time(run)

@@ -115,8 +115,7 @@ class Lifted(ArmPredicate, ObjectPredicate):
         def evidence(index: int) -> Evidence:
             sample, time = window.start + index, window.time(index)
             gained = float(rise[sample])
-            text = f"lifted {' of '.join(amounts(gained, self.above, 'm'))}"
-            text += ": " + ", ".join(
+            pressed = ", ".join(
                 f"{side_words(side)} {amount(float(force[sample]), 'N')}"
                 for side, force in sides.items()
             )
@@ -124,7 +123,10 @@ class Lifted(ArmPredicate, ObjectPredicate):
             why, more = hold.flaw(sample, gained, time)
             if carriers:
                 why = f"{name} touches {' and '.join(carriers)}"
-            text += f"; {why}" if why else ""
+            rose = " of ".join(amounts(gained, self.above, "m"))
+            text = (
+                f"{name} rose {rose}, but {why}: {pressed}" if why else f"lifted {rose}: {pressed}"
+            )
             text += weld_note(run, name)
             if not record.in_simulation:
                 text += f"; {name} is not in the physics"

@@ -40,7 +40,8 @@ class Released(ArmPredicate, ObjectPredicate):
 
         def text(index: int, _: Measure) -> str:
             belief = "attached in the planning scene" if hold[index] else "not attached"
-            return f"the robot touches {name} with {amount(float(force[index]), 'N')}; {belief}"
+            touch = f"touches {name} with {amount(float(force[index]), 'N')}"
+            return f"the robot {touch if force[index] else f'does not touch {name}'}; {belief}"
 
         return all_of(window, parts, text, present=window.cut(present(window.run, name)))
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
-from harness.core.amounts import amount
+from harness.core.amounts import amounts, is_exact
 from harness.judging.at_rest import SPEED, TURNING, rest_is_known, resting_parts, still_part
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -80,7 +80,10 @@ class Static(Predicate):
             parts += self._of_joints(window)
 
         def text(_: int, measure: Measure) -> str:
-            return f"{measure.detail} moves with {amount(measure.value, measure.unit)}"
+            speed, limit = amounts(measure.value, measure.limit, measure.unit)
+            if is_exact(measure.value, measure.limit, measure.unit):
+                return f"{measure.detail} stands still, {limit} allowed"
+            return f"{measure.detail} moves with {speed} of {limit}"
 
         here = None if self.object is None else lasting(window.cut(present(run, self.object)))
         return all_of(window, parts, text, applies=judged, present=here)

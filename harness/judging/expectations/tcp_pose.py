@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
-from harness.core.amounts import amounts
+from harness.core.amounts import amounts, is_exact
 from harness.core.pose_arrays import compose, conjugate, quat_product, rotation_vector
 from harness.judging.expectation import ArmPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -84,10 +84,11 @@ class TcpPose(ArmPredicate):
             parts.append(Part(orientation, turn, tolerance.orientation, "<=", measured_name=name))
 
         def text(index: int, _: Measure) -> str:
-            errors = " and ".join(
-                " of ".join(amounts(float(part.values[index]), part.limit, part.unit))
-                for part in parts
-            )
-            return f"{what} is off its target by {errors}"
+            errors = [(float(part.values[index]), part.limit, part.unit) for part in parts]
+            if all(is_exact(*error) for error in errors):
+                allowed = " and ".join(amounts(*error)[1] for error in errors)
+                return f"{what} is exactly at its target, {allowed} allowed"
+            off = " and ".join(" of ".join(amounts(*error)) for error in errors)
+            return f"{what} is off its target by {off}"
 
         return all_of(window, parts, text, present=window.cut(frame_present(run, self.pose.frame)))

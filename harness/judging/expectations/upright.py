@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from harness.core.amounts import amount
+from harness.core.amounts import amounts, is_exact
 from harness.core.pose_arrays import angle_between, rotate
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -37,6 +37,9 @@ class Upright(ObjectPredicate):
         part = Part(LEAN, window.cut(lean), self.tolerance, "<=", detail=self.object)
 
         def text(_: int, measure: Measure) -> str:
-            return f"{self.object} leans by {amount(measure.value, 'rad')}"
+            if is_exact(measure.value, measure.limit, "rad"):
+                return f"{self.object} stands exactly upright"
+            leans = " of ".join(amounts(measure.value, measure.limit, "rad"))
+            return f"{self.object} leans by {leans}"
 
         return all_of(window, [part], text)

@@ -72,7 +72,7 @@ class LinkMotions:
             unit, scale = ("mm", 1000.0) if np.any(twist[:3]) else ("°", float(np.degrees(1.0)))
             raise PlanningFailed(
                 "PLANNING_FAILED",
-                f"{link} gets {scale * reached:.1f} of {scale * least:.1f} {unit} far: "
+                f"{link} gets {scale * reached:.1f} {unit} far, not {scale * least:.1f} {unit}: "
                 f"{traced.stop}",
                 DistanceFailure(reached, least),
                 _stopped_at(traced, traced.failure),

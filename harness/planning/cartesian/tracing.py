@@ -191,7 +191,7 @@ def _stopped(
         name = space.joint_names[worst]
         limit = space.lower[worst] if found[worst] < space.lower[worst] else space.upper[worst]
         failure = TraceFailure("limit", joint=name, limit=float(limit))
-        return f"{name} meets its limit {limit:.4f}", failure
+        return f"{name} meets its limit {wording.joint_value(space, name, float(limit))}", failure
     jump = np.abs(found - previous)
     fastest = int(np.argmax(jump / largest))
     if jump[fastest] > largest[fastest]:

@@ -149,10 +149,11 @@ def _blocked(
         if blocked is not None:
             share, state, found = blocked
             details.append(
-                f"what blocks: after {100 * share:.0f} % of the straight path, {touches(found)}"
+                f"what blocks: after {100 * share:.0f} % of the direct joint motion,"
+                f" {touches(found)}"
             )
             shown = NearestState(
-                "where the straight way is blocked",
+                "where the direct joint motion is blocked",
                 request.joints(state),
                 touches=touch_records(found),
             )

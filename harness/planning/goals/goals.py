@@ -79,8 +79,9 @@ def find_goals(
         each = "that one" if len(study.branches) == 1 else "each of them"
         raise PlanningFailed(
             "GOAL_IN_COLLISION",
-            f"{goal.link} reaches {point(target_of(goal))} in {ways}, {each} in collision; "
-            f"the nearest: {touches(nearest)}{approximation_note(nearest, checker.scene)}",
+            f"{goal.link} reaches {point(target_of(goal))} in world in {ways},"
+            f" {each} in collision; the nearest: {touches(nearest)}"
+            f"{approximation_note(nearest, checker.scene)}",
             study.record,
         )
     return GoalCandidates(free, Details.of(study.record))
@@ -134,7 +135,7 @@ def _no_solution(
     )
     if too_far:
         message = (
-            f"{goal.link} cannot reach {point(target)}: the nearest point it reaches, "
+            f"{goal.link} cannot reach {point(target)} in world: the nearest point it reaches, "
             f"{point(nearest_point.pose.translation)}, is {length_text(too_far)} away"
         )
     elif nearest.shift + nearest.turn < _REACHED and not study.answer.outside_limits:
@@ -151,8 +152,8 @@ def _no_solution(
     else:
         what = "orientation" if isinstance(goal, PoseGoal) else "pitch"
         message = (
-            f"{goal.link} reaches {point(target)}, but not with the requested {what}: the nearest "
-            f"pose is {length_text(nearest.shift)} and {angle(nearest.turn)} away"
+            f"{goal.link} reaches {point(target)} in world, but not with the requested {what}:"
+            f" the nearest pose is {length_text(nearest.shift)} and {angle(nearest.turn)} away"
         )
     return PlanningFailed("NO_IK_SOLUTION", message, study.record, failure)
 

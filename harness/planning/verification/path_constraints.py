@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from harness.core.amounts import amount, amounts
 from harness.core.kinematics import LinkPoses
 from harness.core.pose_arrays import times_each
 from harness.core.spatial import SE3
@@ -82,7 +83,7 @@ class HeldConstraints:
         self._constraints, self._find_frame = constraints, find_frame
         self.checks = 0
         self._measured: list[tuple[_Turn | _Tilt | _Offset, str, SE3]] = []
-        names: list[str] = []
+        names: list[tuple[str, str]] = []
         low: list[float] = []
         high: list[float] = []
         band, box = constraints.orientation, constraints.position
@@ -94,10 +95,11 @@ class HeldConstraints:
                 high += measure.half_widths
         self._joints: list[int] = []
         for joint in constraints.joints:
-            names.append(f"{joint.joint} is at {{value:.4f}}")
+            index = space.joint_names.index(joint.joint)
+            names.append((f"{joint.joint} is at {{}}", "rad" if space.wraps[index] else "m"))
             low.append(joint.lower)
             high.append(joint.upper)
-            self._joints.append(space.joint_names.index(joint.joint))
+            self._joints.append(index)
         self._names = names
         self.lower, self.upper = np.array(low), np.array(high)
         width = np.where(np.isfinite(self.upper - self.lower), self.upper - self.lower, 0.0)
@@ -157,7 +159,12 @@ class HeldConstraints:
         row = int(broken[0])
         worst = int(np.argmax(excess[row]))
         value, low, high = (float(each[worst]) for each in (values[row], self.lower, self.upper))
-        what = f"{self._names[worst].format(value=value)}, {low:.4g} to {high:.4g} are allowed"
+        name, unit = self._names[worst]
+        found, limit = amounts(value, high if value > high else low, unit)
+        allowed = f"at most {limit.lstrip('-')}"
+        if low != -high:
+            allowed = f"{amount(low, unit)} to {amount(high, unit)}"
+        what = f"{name.format(found)}, allowed is {allowed}"
         record = ConstraintFailure(value, low, high)
         return row, Violation(what, float(excess[row, worst]), record)
 
@@ -232,7 +239,7 @@ class _Turn:
     def __init__(self, band: OrientationBand) -> None:
         self._band = band
         self.frame = band.link
-        self.names = [f"{band.link} is turned {{value:.3f}} rad about {each}" for each in "xyz"]
+        self.names = [(f"{band.link} is turned {{}} about {each}", "rad") for each in "xyz"]
         self.half_widths = [each if each < FREE else np.inf for each in band.tolerance]
 
     def values(self, poses: Poses) -> FloatArray:
@@ -251,7 +258,7 @@ class _Tilt:
     def __init__(self, band: OrientationBand, axis: int) -> None:
         self._axis, self._middle = axis, band.rotation[:, axis]
         self.frame = band.link
-        self.names = [f"{band.link} is tilted {{value:.3f}} rad from {'xyz'[axis]}"]
+        self.names = [(f"{band.link} is tilted {{}} from {'xyz'[axis]}", "rad")]
         self.half_widths = [band.tolerance[axis - 1]]
 
     def values(self, poses: Poses) -> FloatArray:
@@ -274,8 +281,8 @@ class _Offset:
     def __init__(self, box: PositionBox) -> None:
         self._box = box
         self.frame = box.link
-        off = f"{box.link} is {{value:.4f}} m off the box's middle along "
-        self.names = [off + axis for axis in "xyz"]
+        off = f"{box.link} is {{}} off the box's middle along "
+        self.names = [(off + axis, "m") for axis in "xyz"]
         self.half_widths = [0.5 * size for size in box.size]
 
     def values(self, poses: Poses) -> FloatArray:

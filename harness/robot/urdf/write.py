@@ -12,8 +12,7 @@ import numpy as np
 
 from harness.core.errors import RobotError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere, undivided
-from harness.core.spatial import SE3, rotation_from_rpy
-from harness.core.types import FloatArray
+from harness.core.spatial import SE3, rotation_from_rpy, rpy_from_rotation
 from harness.robot.description import Inertial, Joint, Link
 
 NO_LIMIT = 1e30
@@ -45,22 +44,6 @@ def write_urdf(
         _write_joint(root, joint)
     ET.indent(root)
     return '<?xml version="1.0"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
-
-
-def rpy_from_rotation(rotation: FloatArray) -> FloatArray:
-    """Fixed-axis roll, pitch, yaw of a rotation, stable at pitch ±π/2, shape (3,).
-
-    Roll is computed after undoing yaw, so that it compensates for the error of yaw near the
-    singularity.
-    """
-    yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-    sine, cosine = np.sin(yaw), np.cos(yaw)
-    pitch = np.arctan2(-rotation[2, 0], cosine * rotation[0, 0] + sine * rotation[1, 0])
-    roll = np.arctan2(
-        sine * rotation[0, 2] - cosine * rotation[1, 2],
-        cosine * rotation[1, 1] - sine * rotation[0, 1],
-    )
-    return np.array([roll, pitch, yaw])
 
 
 def _text(values: Iterable[float]) -> str:

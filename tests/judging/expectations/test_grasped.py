@@ -78,7 +78,7 @@ def test_an_object_only_attached_is_neither_grasped_nor_lifted():
     run = make_run(attachments=[attachment("box", 20, 200)])
     answer = verdict(run, Grasped(object="box"))
     assert answer.status == "failed"
-    assert "left finger 0.0 N, right finger 0.0 N" in answer.reason
+    assert "left finger 0 N, right finger 0 N" in answer.reason
     assert "the planning scene has it attached" in answer.reason
     assert verdict(run, Lifted(object="box")).status == "failed"
 
@@ -220,4 +220,4 @@ def test_a_hold_that_is_too_short_states_the_two_rules_in_two_sentences():
     assert answer.status == "failed"
     first, second = answer.reason.split(". It was true ")
     assert first.split(" at t=")[0].endswith("pressed for 0.07 s so far, a grasp takes 0.1 s")
-    assert second == "for 0.0 s at a time at most, and `for` requires 1.0 s"
+    assert second == "for 0 s at a time at most, and `for` requires 1.0 s"

@@ -48,7 +48,10 @@ def test_a_box_raised_a_millimetre_too_little_is_not_lifted():
     ("forces", "said"),
     [
         ({}, "nothing holds box"),
-        ({("left_finger", "box"): force(200, (0, 200))}, "right finger 0.0 N; nothing holds box"),
+        (
+            {("left_finger", "box"): force(200, (0, 200))},
+            "but nothing holds box: left finger 1.0 N, right finger 0 N",
+        ),
         (
             {
                 ("left_finger", "box"): force(200, (0, 200)),

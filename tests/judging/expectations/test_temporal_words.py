@@ -68,7 +68,7 @@ def test_what_never_held_shows_where_it_came_nearest():
     answer = verdict(lift_run(), spec)
     assert answer.status == "failed"
     assert answer.reason.startswith("lifted 100 mm of 200 mm")
-    assert answer.reason.endswith("true for 0.0 s at a time at most, and `for` requires 0.5 s")
+    assert answer.reason.endswith("true for 0 s at a time at most, and `for` requires 0.5 s")
 
 
 def test_a_deadline_counts_from_the_window_s_start():

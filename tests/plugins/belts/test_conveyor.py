@@ -54,7 +54,7 @@ def test_a_belt_that_moves_from_the_start_needs_no_step(tmp_path):
 def test_what_a_belt_carries_does_not_come_to_rest(tmp_path):
     result = run(tmp_path, ["{settle: {}, timeout: 1}"], (BELT + ", surface_velocity: 0.05}", BOX))
     assert result.steps, result.problems
-    assert "box still moves with 0.05 after 1 s" in result.steps[0].message
+    assert "box still moves with 0.05 m/s after 1 s" in result.steps[0].message
 
 
 @pytest.mark.parametrize(

@@ -63,8 +63,10 @@ class ReplayCommand(Command):
             )
         else:
             say(f"{count} commands replayed; {case.outcome}")
-            if case.outcome not in ("passed", "failed"):
+            if not case.digest:
                 say(case.message)
-            same = "equal to the recorded one" if is_equal else f"recorded: {recorded.digest[:12]}"
-            say(f"digest {case.digest[:12]}, {same}")
+            elif is_equal:
+                say(f"digest {case.digest[:12]}, equal to the recorded one")
+            else:
+                say(f"digest {case.digest[:12]}, recorded was {recorded.digest[:12]}")
         return 0 if is_equal else EXIT_CODES["failed"]
