@@ -17,59 +17,20 @@ from typing import Any
 from harness.core.errors import SpecError
 from harness.core.resources import data_folder
 from harness.language.reading.load import parse_scenario
+from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
+from tests.campaigns.cells import CELLS, Cell
+from tests.campaigns.invariants import assert_invariants
+from tests.campaigns.records import count_scenarios
 
-OBJECTS = ("block", "ball", "table", "block")
-JOINTS = ("joint1", "joint2", "joint3", "joint4")
-FRAMES = ("world", "link1", "link5", "end_effector_link", "table", "block")
-TEXTS = (*OBJECTS, "link5", "robot", "home", "open", "eye", "added")
 NUMBERS = (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, -0.05, -0.1, 10)
-HEAD = {
-    "scenario": "drawn",
-    "seed": 1,
-    "robot": "open_manipulator_x",
-    "cameras": [
-        {
-            "name": "eye",
-            "pose": {"xyz": [0.5, 0, 0.4]},
-            "look_at": [0.2, 0, 0],
-            "image": {"width": 16, "height": 12},
-        }
-    ],
-    "objects": [
-        {
-            "name": "floor",
-            "box": {"size": [2, 2, 0.1]},
-            "static": True,
-            "pose": {"xyz": [0, 0, -0.05]},
-        },
-        {
-            "name": "table",
-            "box": {"size": [0.1, 0.3, 0.04]},
-            "static": True,
-            "pose": {"xyz": [0.25, 0.1, 0.02]},
-        },
-        {
-            "name": "block",
-            "box": {"size": [0.02, 0.02, 0.04]},
-            "mass": 0.02,
-            "pose": {"xyz": [0.2, -0.1, 0.0199]},
-        },
-        {
-            "name": "ball",
-            "sphere": {"radius": 0.02},
-            "mass": 0.02,
-            "pose": {"xyz": [0.1, 0.2, 0.0199]},
-        },
-    ],
-    "planning": {"max_state_checks": 3000},
-}
 LEFT_OUT = ("external", "include", "inject")
 """Steps that need nodes or files; faults have scenarios of their own."""
 SIZES = {"times": (1, 2), "seconds": (0.01,), "duration": (0.01, 0.02), "timeout": (0.05,)}
 ROUNDS = 4  # checks, after each of which what is refused is left out
+BEGUN = 0.6  # share of scenarios that begin with steps that make sense in their cell
 TRIES = 60  # draws of a step until the language takes one
 CODES = ("passed", "failed")
 
@@ -83,8 +44,8 @@ def schema() -> Any:
 class Drawer:
     """Values of a part of the schema."""
 
-    def __init__(self, rng: random.Random) -> None:
-        self._rng = rng
+    def __init__(self, rng: random.Random, cell: Cell) -> None:
+        self._rng, self._cell = rng, cell
 
     def of(self, part: dict[str, Any], key: str = "", depth: int = 0) -> Any:
         """A value that a part of the schema allows, mostly."""
@@ -111,7 +72,7 @@ class Drawer:
         if not chosen and known:
             chosen = {rng.choice(sorted(known))}
         if not known and isinstance(part.get("additionalProperties"), dict):
-            name = rng.choice(JOINTS if key in ("joints", "positions") else TEXTS)
+            name = rng.choice(self._names(key))
             return {name: self.of(part["additionalProperties"], name, depth + 1)}
         return {
             name: self.of(known[name], name, depth + 1) for name in sorted(chosen) if name in known
@@ -137,19 +98,10 @@ class Drawer:
 
     def _string(self, part: dict[str, Any], key: str, depth: int) -> str:
         del part, depth
-        by_key = {
-            **dict.fromkeys(("object", "objects", "between", "represents"), OBJECTS),
-            **dict.fromkeys(("frame", "relative_to", "link"), FRAMES),
-            **dict.fromkeys(("named_target", "move_to"), ("home", "up")),
-            **{
-                "joint": JOINTS,
-                "camera": ("eye",),
-                "capture": ("eye",),
-                "gripper": ("open", "close"),
-            },
-            **{"never": ("collision",), "always": ("within_limits",)},
-        }
-        return self._rng.choice(by_key.get(key, TEXTS))
+        return self._rng.choice(self._names(key))
+
+    def _names(self, key: str) -> tuple[str, ...]:
+        return self._cell.names.get(key, self._cell.any_name)
 
     def _boolean(self, *_: object) -> bool:
         return self._rng.random() < 0.5
@@ -178,21 +130,26 @@ def is_read(document: dict[str, Any]) -> bool:
     return True
 
 
+def cell_of(seed: int) -> Cell:
+    """The cell of a drawn scenario."""
+    return list(CELLS.values())[seed % len(CELLS)]
+
+
 def drawn_scenario(seed: int) -> dict[str, Any]:
-    """A scenario of one to four steps and up to two expectations that the language takes."""
-    rng = random.Random(seed)
-    drawer = Drawer(rng)
+    """A scenario of one to six steps and up to two expectations that the language takes."""
+    rng, cell = random.Random(seed), cell_of(seed)
+    drawer = Drawer(rng, cell)
+    chosen: list[Any] = list(rng.choice(cell.begins)) if rng.random() < BEGUN else []
     steps = _words("Step")
-    verbs = rng.sample(sorted(steps), rng.randint(1, 4))
-    chosen: list[Any] = []
-    for verb in verbs:
+    for verb in rng.sample(sorted(steps), rng.randint(1, 4)):
         for _ in range(TRIES):
             step = {verb: drawer.of(steps[verb], verb)}
-            if is_read({**HEAD, "steps": [*chosen, step]}):
+            if "robots" in cell.head and rng.random() < 0.5:
+                step["robot"] = rng.choice(cell.names["robot"])
+            if is_read({**cell.head, "steps": [*chosen, step]}):
                 chosen.append(step)
                 break
-    chosen = chosen or [{"wait": 0.01}]
-    document = {**HEAD, "steps": chosen}
+    document = {**cell.head, "steps": chosen or [{"wait": 0.01}]}
     predicates = _words("Expectation")
     expected: list[Any] = []
     for word in rng.sample(sorted(predicates), 2):
@@ -206,7 +163,8 @@ def drawn_scenario(seed: int) -> dict[str, Any]:
 
 def written(document: dict[str, Any], file: Path) -> dict[int, tuple[str, int]]:
     """Write a scenario with a line for each step and expectation; which line is whose."""
-    lines = [f"{key}: {json.dumps(value)}" for key, value in HEAD.items()]
+    head = {key: value for key, value in document.items() if key not in ("steps", "expect")}
+    lines = [f"{key}: {json.dumps(value)}" for key, value in head.items()]
     places: dict[int, tuple[str, int]] = {}
     for part in ("steps", "expect"):
         items = document.get(part) or []
@@ -218,29 +176,39 @@ def written(document: dict[str, Any], file: Path) -> dict[int, tuple[str, int]]:
     return places
 
 
-def ends_well(seed: int, folder: Path) -> tuple[str, set[str]]:
-    """How a drawn scenario ends, and its words; one that is run is run twice.
-
-    Raises:
-        AssertionError: It ended in an error, or the second run has another digest.
-    """
-    document = drawn_scenario(seed)
-    file = folder / f"{seed}.scenario.yaml"
+def accepted(document: dict[str, Any], file: Path) -> dict[str, Any] | None:
+    """Write a scenario without what `check` refuses; None where something is refused again."""
     for _ in range(ROUNDS):
         lines = written(document, file)
         problems = check_file(file).problems
         assert all(problem.path and problem.message for problem in problems)
         wrong = {lines.get(problem.line) for problem in problems}
         if not wrong:
-            break
+            return document
         for part in ("steps", "expect"):
             kept = [each for n, each in enumerate(document.get(part, ())) if (part, n) not in wrong]
             document[part] = kept or [{"wait": 0.01}] if part == "steps" else kept
-    else:
+    return None
+
+
+def ends_well(seed: int, folder: Path) -> tuple[str, set[str]]:
+    """How a drawn scenario ends, and its words; one that is run is run twice.
+
+    Raises:
+        AssertionError: It ended in an error, an invariant does not hold, or the second run has
+            another digest.
+    """
+    file, report = folder / f"{seed}.scenario.yaml", folder / f"{seed}"
+    document = accepted(drawn_scenario(seed), file)
+    if document is None:
         return "refused", set()
     words = {word for part in ("steps", "expect") for each in document[part] for word in each}
-    first, second = (run_case(RunRequest(file, page=False, stills=False)) for _ in range(2))
+    first, second = (
+        run_case(RunRequest(file, page=False, stills=False, report_dir=place))
+        for place in (report, None)
+    )
     assert first.outcome in CODES, (seed, first.message, document)
+    assert_invariants(read_run(report).run)
     assert first.digest == second.digest, (seed, document)
     return first.outcome, words
 
@@ -256,10 +224,12 @@ def _by_hand(first: int, count: int) -> int:
             except Exception as error:  # noqa: BLE001 - every kind of bad end is counted
                 end, words = "bad", set()
                 sys.stdout.write(f"=== {seed}: {type(error).__name__}: {error}\n")
+                sys.stdout.flush()
             ends[end] += 1
             if end in CODES:
                 seen.update(words)
     sys.stdout.write(f"{dict(ends)}\nwords that were run: {dict(seen)}\n")
+    count_scenarios(ends)
     return ends["bad"]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -47,6 +47,17 @@ def count(name: str, found: Outcome, seed: int, *, is_guided: bool) -> None:
             known["campaigns"].append(run)
         for key, value in {**_counts(found), "readers": 1}.items():
             same[0][key] = same[0].get(key, 0) + value
+
+    change(edit)
+
+
+def count_scenarios(ends: Mapping[str, int]) -> None:
+    """Add how many drawn scenarios ended how."""
+
+    def edit(known: dict[str, Any]) -> None:
+        total = known.setdefault("scenarios", {})
+        for end, number in ends.items():
+            total[end] = total.get(end, 0) + number
 
     change(edit)
 
