@@ -75,7 +75,7 @@ def _changed(document: object, others: Sequence[object], rng: Random) -> object:
             case 0:
                 document = damaged_document(document, rng)
             case 1:
-                holder[key] = rng.choice((*TOKENS, *STRANGE))
+                holder[key] = copy.deepcopy(rng.choice((*TOKENS, *STRANGE)))
             case 2:
                 other = rng.choice(others)
                 found = _parts(other)

@@ -103,7 +103,7 @@ def damaged_document(document: object, rng: random.Random) -> object:
             holder = holder[key]
         del holder[place[-1]]
         return changed
-    return put(document, place, rng.choice(STRANGE))
+    return put(document, place, copy.deepcopy(rng.choice(STRANGE)))
 
 
 def damaged_arrays(arrays: dict[str, np.ndarray], rng: random.Random) -> dict[str, np.ndarray]:
