@@ -93,7 +93,12 @@ class Holding(SceneState):
         Args:
             name: The name of the object.
             weld: Whether the physics fixes it to the hand.
+
+        Raises:
+            StepFailed: INVALID_OBJECT_NAME, where this gripper holds it already.
         """
+        if self.description.selected_arm in self.holders(name):
+            raise StepFailed("INVALID_OBJECT_NAME", f"'{name}' is attached already")
         before = [each for each in self.held if each.object == name]
         if before:
             self.detach(name)

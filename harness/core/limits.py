@@ -61,6 +61,7 @@ STUDIO_PAGES = 32
 STUDIO_REQUESTS = 200  # that wait for the cell
 
 MCP_TEXT = 200_000  # characters of an answer or a written file: what a model reads at once
+MCP_COMMANDS = 2  # at the same time; each takes 0.2 GB and a core
 
 RTPS_SAMPLE = 64 * MIB
 RTPS_WAITING = 4096  # samples of one writer that wait for an earlier one
@@ -145,7 +146,11 @@ READERS = (
         _of(STUDIO_MESSAGE),
         f"{STUDIO_PAGES} pages, {STUDIO_REQUESTS} requests that wait",
     ),
-    Reader("requests to `harness mcp`", f"{MCP_TEXT:,} characters", "one process each"),
+    Reader(
+        "requests to `harness mcp`",
+        f"{MCP_TEXT:,} characters",
+        f"one process each, {MCP_COMMANDS} at the same time",
+    ),
     Reader(
         "ROS 2 messages on the network (RTPS)",
         _of(RTPS_SAMPLE),

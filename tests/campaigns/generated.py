@@ -202,7 +202,9 @@ def ends_well(seed: int, folder: Path) -> tuple[str, set[str]]:
     document = accepted(drawn_scenario(seed), file)
     if document is None:
         return "refused", set()
-    words = {word for part in ("steps", "expect") for each in document[part] for word in each}
+    words = {
+        word for part in ("steps", "expect") for each in document.get(part, ()) for word in each
+    }
     first, second = (
         run_case(RunRequest(file, page=False, stills=False, report_dir=place))
         for place in (report, None)

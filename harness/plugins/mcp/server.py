@@ -59,7 +59,7 @@ class Tools:
     @_answering
     def list(self, kind: str = "") -> str:
         """List robots, worlds, scenarios, steps and so on; without a kind, list the kinds."""
-        return self._workspace.command("list", *([kind] if kind else []))
+        return self._workspace.listing(kind)
 
     @_answering
     def schema(self, name: str = "") -> str:

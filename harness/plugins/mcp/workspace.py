@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from threading import BoundedSemaphore
 from typing import Any
 
 from harness.core.errors import HarnessError
 from harness.core.files import replaced
-from harness.core.limits import MCP_TEXT
+from harness.core.limits import MCP_COMMANDS, MCP_TEXT
 from harness.suite.discovery import bundled_scenarios
 
 YAML = (".yaml", ".yml")
+_RUNNING = BoundedSemaphore(MCP_COMMANDS)
 
 
 class RefusedError(HarnessError):
@@ -55,7 +56,7 @@ class Workspace:
         """
         path = self.inside(name)
         if path.exists():
-            return os.fspath(path.relative_to(self.root))
+            return f"./{path.relative_to(self.root)}"  # no option, whatever its name is
         if name in bundled_scenarios():
             return name
         raise RefusedError(
@@ -95,6 +96,16 @@ class Workspace:
         except (OSError, UnicodeEncodeError) as error:
             raise RefusedError(f"cannot write '{name}': {error}") from error
 
+    def listing(self, kind: str) -> str:
+        """What `harness list` prints of a kind; without one, the kinds.
+
+        Raises:
+            RefusedError: There is no such kind; or it is an option, which could load a plug-in.
+        """
+        if kind.startswith("-"):
+            raise RefusedError(f"'{kind}' is no kind; `list` without a kind has them")
+        return self.command("list", *filter(None, [kind]))
+
     def command(self, *words: str) -> str:
         """What a command of `harness` prints.
 
@@ -120,11 +131,12 @@ class Workspace:
 
     def _run(self, words: Sequence[str]) -> subprocess.CompletedProcess[str]:
         # -P: a folder of strangers may hold a yaml.py, which Python would import from there.
-        return subprocess.run(
-            [sys.executable, "-P", "-m", "harness.cli", *words],
-            cwd=self.root, stdin=subprocess.DEVNULL, capture_output=True,
-            text=True, encoding="utf-8", errors="replace", check=False,
-        )  # fmt: skip
+        with _RUNNING:
+            return subprocess.run(
+                [sys.executable, "-P", "-m", "harness.cli", *words],
+                cwd=self.root, stdin=subprocess.DEVNULL, capture_output=True,
+                text=True, encoding="utf-8", errors="replace", check=False,
+            )  # fmt: skip
 
 
 def shortened(text: str) -> str:
