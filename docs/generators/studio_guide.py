@@ -23,7 +23,7 @@ PHONE = "studio_phone.jpg"
 """The picture of the end on a narrow, dark screen."""
 
 SENTENCE = re.compile(
-    r"Click \*\*(?P<click>[^*]+)\*\*|Open \*\*(?P<summary>[^*]+)\*\*"
+    r"Click \*\*(?P<click>[^*]+)\*\*"
     r"|Type `(?P<text>[^`]+)` into \*(?P<field>[^*]+)\*"
     r"|Choose `(?P<option>[^`]+)` as \*(?P<select>[^*]+)\*"
     r"|Press `(?P<key>[^`]+)`|It shows `(?P<shown>[^`]+)`"
@@ -47,9 +47,8 @@ def follow(page: Page, sentence: re.Match[str]) -> str:
     """
     match sentence.groupdict():
         case {"click": str(name)}:
-            page.get_by_role("button", name=name, exact=True).click()
-        case {"summary": str(name)}:
-            page.locator("summary", has_text=name).click()
+            found = (page.get_by_role(role, name=name, exact=True) for role in ("button", "tab"))
+            next(each for each in found if each.count()).click()
         case {"text": str(text), "field": str(label)}:
             page.get_by_label(label, exact=True).fill(text)
         case {"option": str(option), "select": str(label)}:
@@ -74,7 +73,7 @@ def main() -> None:
     from harness.plugins.studio.document import new_text
     from harness.plugins.studio.files import StudioFiles
     from harness.plugins.studio.guard import Guard
-    from harness.plugins.studio.server import page_assets, start_server
+    from harness.plugins.studio.server import StudioServer, page_assets
     from harness.plugins.studio.studio import Studio
 
     folder = Path(tempfile.mkdtemp())
@@ -82,13 +81,13 @@ def main() -> None:
     text = new_text("open_manipulator_x by hand", {"model": "open_manipulator_x"}, "empty")
     studio = Studio.opened(StudioFiles(folder, file), text, None, "")
     guard = Guard.of(page_assets(), is_open=False)
-    server = start_server("127.0.0.1", 0, guard, studio.session.handle)
-    studio.open(server)
+    server = StudioServer("127.0.0.1", 0, guard, studio.session.handle)
+    studio.open()
     with sync_playwright() as playwright:
         arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=arguments)
         page = browser.new_page(viewport={"width": 1400, "height": 800})
-        page.goto(f"http://127.0.0.1:{server.get_port()}/")
+        page.goto(f"http://127.0.0.1:{server.port}/")
         page.wait_for_selector(".joint")
         page.wait_for_timeout(6000)
         for number, sentences in steps():

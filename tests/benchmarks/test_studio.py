@@ -13,7 +13,7 @@ from harness.core.spatial import SE3
 from harness.plugins.studio.document import new_text
 from tests.reporting.browser import wait_for
 
-pytest.importorskip("viser")
+pytest.importorskip("django_static_ace_builds")
 from tests.plugins.studio.conftest import serve  # noqa: F401 - a fixture
 
 FLAGSHIP = data_folder("scenarios") / "lessons/03_ur_sixteen_steps.scenario.yaml"
@@ -54,7 +54,7 @@ def test_how_many_pictures_a_second_the_scene_gets(print_row, serve, browser):  
     view.move = lambda *arguments: (count.append(1), move(*arguments))
     used, begin = time.process_time(), time.perf_counter()
     while time.perf_counter() - begin < SECONDS:
-        target = "0.6" if int(time.perf_counter() - begin) % 4 < 2 else "-0.6"
+        target = "35" if int(time.perf_counter() - begin) % 4 < 2 else "-35"
         page.fill('input[aria-label="shoulder_pan_joint number"]', target)
         page.press('input[aria-label="shoulder_pan_joint number"]', "Enter")
         page.wait_for_timeout(1500)

@@ -17,15 +17,14 @@ from harness.plugins.studio.files import StudioFiles
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.live_studio import LiveStudio
 from harness.plugins.studio.messages import failure_message
-from harness.plugins.studio.reach import Reach, ReachStudy
-from harness.plugins.studio.scene_view import GHOST, PLANNED, REFUSED, Ghost
+from harness.plugins.studio.reach import Reach, ReachStudy, way_names
+from harness.plugins.studio.scene_view import GOAL, REFUSED, Ghost
 from harness.plugins.studio.session import Message, RefusedError
 from harness.plugins.studio.texts import MOTIONS, joint_keys, of_arm, pose_keys, step_text
 from harness.ports.motion_planning import MotionPlan
 from harness.recording.plan_statistics import PlanStatistics
 from harness.recording.step_record import StepRecord
 
-SOLID, FAINT = 0.8, 0.2  # opacity of the way that continues the current posture, and of the others
 MOST_POINTS = 120  # points of a drawn path
 
 
@@ -108,20 +107,15 @@ class GoalActions(LiveStudio):
         best = reach.best
         if self.follows and best is not None:
             self.target = best.positions
-        if self.view is not None:
-            ghosts = [
-                Ghost(
-                    way.positions,
-                    REFUSED if way.refusal else GHOST,
-                    SOLID if way is best else FAINT,
-                    number,
-                )
-                for number, way in enumerate(reach.ways)
-            ]
-            if reach.nearest is not None:
-                ghosts.append(Ghost(reach.nearest, REFUSED, SOLID))
-            self.view.show_ghosts(ghosts)
-            self.view.show_path(None)
+        ghosts = [
+            Ghost(way.positions, REFUSED if way.refusal else GOAL, way is best, number)
+            for number, way in enumerate(reach.ways)
+        ]
+        if reach.nearest is not None:
+            ghosts.append(Ghost(reach.nearest, REFUSED))
+        self.view.show_plan(None)
+        self.view.show_ghosts(ghosts)
+        self.put_handle(pose)
         shown = self.cell.cell.frame(frame).inverse() @ pose
         self.session.broadcast(
             {
@@ -130,8 +124,8 @@ class GoalActions(LiveStudio):
                 "frame": frame,
                 "refusal": printable(reach.refusal),
                 "ways": [
-                    {"name": way.name or f"way {number}", "refusal": printable(way.refusal)}
-                    for number, way in enumerate(reach.ways, 1)
+                    {"name": name, "refusal": printable(way.refusal)}
+                    for name, way in zip(way_names(self.cell, reach.ways), reach.ways, strict=True)
                 ],
                 "best": -1 if best is None else reach.ways.index(best),
             }
@@ -142,8 +136,6 @@ class GoalActions(LiveStudio):
         """Put the handle on the TCP, or on a pose that is given by numbers in a frame."""
         frame = str(message.get("frame", "world"))
         pose = self.cell.tcp_pose() if message.get("here") else self._typed(message, frame)
-        if self.view is not None:
-            self.view.put_handle("tcp", pose)
         reach = self.answer_pose(pose, frame=frame)
         return {"refusal": printable(reach.refusal), "ways": len(reach.ways)}
 
@@ -168,11 +160,14 @@ class GoalActions(LiveStudio):
             return ""
         way = self.reach.ways[number]
         self.chosen = way.positions
-        if self.view is not None:
-            color = REFUSED if way.refusal else GHOST
-            self.view.show_ghosts([Ghost(way.positions, color, SOLID, number)])
+        self.view.show_ghosts([Ghost(way.positions, REFUSED if way.refusal else GOAL, way=number)])
         self.session.broadcast({"type": "chosen", "way": number})
         return way.refusal
+
+    def do_discard(self, _: Message) -> Message:
+        """Take the planned motion away; the goal stays."""
+        self.view.show_plan(None)
+        return {}
 
     # -- plans --------------------------------------------------------------------------------
 
@@ -182,9 +177,7 @@ class GoalActions(LiveStudio):
         found = preview(self.cell, text)
         if found.record is not None:
             return {"step": text, **failure_message(found.record)}
-        if self.view is not None and found.positions is not None:
-            self.view.show_ghosts([Ghost(found.positions[-1], PLANNED)])
-            self.view.show_path(found.tcp_path)
+        self.view.show_plan(found.positions, found.tcp_path, found.duration)
         return {
             "step": text,
             "duration": round(found.duration, 3),

@@ -20,23 +20,10 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:;"
-    " connect-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none';"
+    " connect-src 'self'; base-uri 'none'; form-action 'none';"
     " frame-ancestors 'none'"
 )
 """Scripts only from the studio itself; the code editor writes its styles into the page."""
-
-SCENE_POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:;"
-    " worker-src blob: data:; style-src 'unsafe-inline'; img-src 'self' data: blob:;"
-    " font-src data:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none';"
-    " frame-ancestors 'self'"
-)
-"""viser's client is one page that unpacks its own scripts; nothing is loaded from elsewhere.
-
-The unpacked script is written into the page, and its hash is not known in advance: hence
-`unsafe-inline`. Strings are not evaluated: only viser's Gaussian splats do that, which the studio
-does not show, and which leave one error in the console.
-"""
 
 
 @dataclass(frozen=True)
@@ -98,9 +85,9 @@ class Guard:
             return _plain(http.HTTPStatus.FORBIDDEN, refusal)
         path = urlsplit(request.path).path
         is_socket = request.headers.get("Upgrade", "").lower() == "websocket"
-        if is_socket and (path == SOCKET_PATH or path.startswith("/scene/")):
+        if is_socket and path == SOCKET_PATH:
             return None
-        asset = self.assets.get("/scene" if path.startswith("/scene/") else path)
+        asset = self.assets.get(path)
         if asset is None:
             return _plain(http.HTTPStatus.NOT_FOUND, "there is no such page")
         headers = Headers(

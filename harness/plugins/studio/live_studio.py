@@ -11,6 +11,7 @@ import numpy as np
 from harness.cell.program import ProgramStep
 from harness.core.errors import Problem, SpecError
 from harness.core.printable import printable
+from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.plugins.studio.document import Document, robot_alone
 from harness.plugins.studio.files import StudioFiles
@@ -18,7 +19,7 @@ from harness.plugins.studio.judging import LiveVerdicts
 from harness.plugins.studio.live_camera import LiveCamera
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.messages import cell_message, problem_message, robot_message
-from harness.plugins.studio.reach import Reach, ReachStudy
+from harness.plugins.studio.reach import WHOLE_POSE_JOINTS, Reach, ReachStudy
 from harness.plugins.studio.scene_view import SceneView
 from harness.plugins.studio.session import FRAME, Message, RefusedError, Session
 from harness.plugins.studio.verdict_messages import NO_VERDICTS
@@ -60,7 +61,7 @@ class LiveStudio:
             },
             self._recover,
         )
-        self.view: SceneView | None = None
+        self.view = SceneView(self.session.broadcast)
         self.is_playing, self.speed, self.share = True, 1.0, 0.3
         self.is_recording, self.follows = True, False
         self.stopping = threading.Event()
@@ -74,7 +75,6 @@ class LiveStudio:
         self._due, self._frames = 0.0, 0
         self._lived = self._physics_time = 0.0
         self.nearest: Touch | None = None
-        self.object_handle = ""
         self.dragged: dict[str, FloatArray] = {}
         self._actions: dict[str, Callable[[Message], Message]] = {
             name.removeprefix("do_"): getattr(self, name)
@@ -156,16 +156,15 @@ class LiveStudio:
         self.camera.look("")
 
     def show_cell(self) -> None:
-        if self.view is None or self._cell is None:
+        """Show every page the cell that was built, and where its bodies are."""
+        if self._cell is None:
             return
-        self.object_handle, self.dragged = "", {}
-        cell = self.cell
-        program = cell.prepared.program
-        self.view.show_robot(program.description, cell.tcp_pose())
+        self.dragged = {}
+        program = self.cell.prepared.program
+        self.view.show_robot(program.description)
         self.view.show_objects(program.all_objects())
-        self.view.put_handle("object", None)
-        self.view.put_handle("size", None)
-        self.view.move(cell.joint_positions(), cell.object_vectors())
+        self._move()
+        self.put_handle()
         self.study = self.target = None
         self.clear_preview()
         self._pause_before_overlaps()
@@ -204,15 +203,30 @@ class LiveStudio:
                 self.session.broadcast(message)
         if not self.busy and self.is_playing and self.session.viewers:
             self._go_on(elapsed * (self.speed or 1.0))
-        if self.view is not None and now - self._last_scene >= 0.9 * FRAME:
+        if self.session.viewers and now - self._last_scene >= 0.9 * FRAME:
             self._last_scene = now
-            objects = {**self.cell.object_vectors(), **self.dragged}
-            self.view.move(self.cell.joint_positions(), objects)
+            self._move()
         if is_due and self.session.viewers:
             self._frames += 1
             if self._frames % MEASURED_EVERY == 0 and not self.busy:
                 self._measure_clearance()
             self.session.broadcast(self.state_message())
+
+    def _move(self) -> None:
+        """Show where everything is, and what is being dragged where it is dragged to."""
+        cell, positions = self.cell, self.cell.joint_positions()
+        more = {
+            "live": round(self._lived, 3),
+            "positions": [round(float(positions[i]), 5) for i in cell.simulator.physics.actuated],
+            "tcp": cell.tcp_pose().as_vector().round(5).tolist(),
+        }
+        self.view.move(positions, {**cell.object_vectors(), **self.dragged}, more)
+
+    def put_handle(self, pose: SE3 | None = None) -> None:
+        """Put the handle on a goal of the TCP, or on the TCP itself."""
+        dof = len(self.cell.description.group_joints(self.cell.description.default_group))
+        at = self.cell.tcp_pose() if pose is None else pose
+        self.view.put_handle(at.as_vector(), "all" if dof >= WHOLE_POSE_JOINTS else "pitch")
 
     def _recover(self) -> None:
         """Stand still where the steps executed so far left the cell."""
@@ -223,8 +237,7 @@ class LiveStudio:
     def _measure_clearance(self) -> None:
         found = self.cell.nearest_pair()
         self.nearest = None if found is None else found[0]
-        if self.view is not None:
-            self.view.show_clearance(None if found is None else found[1])
+        self.view.show_clearance(None if found is None else found[1])
 
     def _go_on(self, seconds: float) -> None:
         if self.target is not None:
@@ -263,8 +276,7 @@ class LiveStudio:
         if self.cell.document.step_count and not self.cell.is_by_hand:
             self.verdicts.begin(self.cell, is_last=True)
         self.clear_preview()
-        if self.view is not None:
-            self.view.put_handle("tcp", self.cell.tcp_pose())
+        self.put_handle()
 
     # -- messages -----------------------------------------------------------------------------
 
@@ -288,7 +300,8 @@ class LiveStudio:
     def _greeting(self) -> list[Message]:
         messages = [self.document_message()]
         if self._cell is not None:
-            messages = [robot_message(self.cell), *messages, self.state_message()]
+            messages = [robot_message(self.cell), *self.view.greeting(), *messages]
+            messages.append(self.state_message())
         if self.notice:
             messages.append({"type": "note", "kind": "warning", "text": self.notice})
         return [*messages, self.verdicts.message]
@@ -324,9 +337,8 @@ class LiveStudio:
     def clear_preview(self) -> None:
         """Take ghosts and the path away, and forget the goal."""
         self.reach = self.chosen = None
-        if self.view is not None:
-            self.view.show_ghosts([])
-            self.view.show_path(None)
+        self.view.show_ghosts([])
+        self.view.show_plan(None)
         self.session.broadcast(
             {"type": "reach", "pose": None, "refusal": "", "ways": [], "best": -1}
         )
@@ -361,10 +373,10 @@ class LiveStudio:
         joint = description.joint_by_name[str(message["joint"])]
         value = float(message["value"])
         if not joint.lower <= value <= joint.upper:
-            unit = joint.position_unit
+            factor, unit = (1e3, " mm") if joint.kind == "prismatic" else (180 / np.pi, "°")
+            low, high, given = (factor * each for each in (joint.lower, joint.upper, value))
             raise RefusedError(
-                f"{joint.name} goes from {joint.lower:.4g} to {joint.upper:.4g} {unit},"
-                f" not to {value:.4g}"
+                f"{joint.name} goes from {low:.1f} to {high:.1f}{unit}, not to {given:.1f}{unit}"
             )
         target = self.target
         if target is None:
@@ -399,5 +411,4 @@ class LiveStudio:
         self.study = None
         self.forget_verdicts()
         self.clear_preview()
-        if self.view is not None:
-            self.view.put_handle("tcp", self.cell.tcp_pose())
+        self.put_handle()

@@ -12,9 +12,10 @@ from harness.core.printable import printable
 from harness.plugins.studio.language_help import GRIPPER_TARGET, Names
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.session import Message
-from harness.plugins.studio.texts import MOTIONS, ObjectForm, gripper_steps
+from harness.plugins.studio.texts import MOTIONS, ObjectForm, gripper_steps, of_arm
 from harness.recording.step_record import StepRecord
 from harness.reporting.explanation import explanation_lines
+from harness.robot.description import RobotDescription
 
 MOST_CONTACTS = 8  # contacts that are listed, strongest first
 
@@ -30,6 +31,7 @@ def robot_message(cell: LiveCell) -> Message:
     return {
         "type": "robot",
         "name": description.name,
+        "title": description.name.replace("_", " "),
         "arms": list(description.of_arm),
         "arm": description.selected_arm,
         "tcp": description.tcp_link,
@@ -39,6 +41,7 @@ def robot_message(cell: LiveCell) -> Message:
         "joints": [
             {
                 "name": joint.name,
+                "label": _label(joint.name, description),
                 "lower": max(joint.lower, -2 * np.pi),
                 "upper": min(joint.upper, 2 * np.pi),
                 "slides": joint.kind == "prismatic",
@@ -51,6 +54,8 @@ def robot_message(cell: LiveCell) -> Message:
         if gripper is None
         else {
             "steps": gripper_steps(description),
+            "step": of_arm(description, "gripper: {width: WIDTH}"),
+            "narrowest": 0.0 if gripper.cups else float(gripper.widths[:, 1].min()),
             "widest": 0.0 if gripper.cups else float(gripper.widths[:, 1].max()),
         },
         "frames": list(
@@ -58,7 +63,10 @@ def robot_message(cell: LiveCell) -> Message:
                 ["world", description.base_link, *cell.cell.presence, *description.link_names]
             )
         ),
-        "objects": [asdict(ObjectForm.of(spec)) for spec in cell.document.object_specs()],
+        "objects": [
+            {**asdict(form), "half": form.half() if form.kind else None}
+            for form in map(ObjectForm.of, cell.document.object_specs())
+        ],
         "bodies": list(cell.cell.presence),
         "overlaps": [
             f"{touch.first} and {touch.second} overlap by {-1e3 * touch.distance:.1f} mm"
@@ -69,6 +77,17 @@ def robot_message(cell: LiveCell) -> Message:
         "verbs": list(MOTIONS),
         "cameras": list(cell.prepared.program.cameras),
     }
+
+
+def _label(joint: str, description: RobotDescription) -> str:
+    """A joint's name without the name of its arm, and without the word that all have."""
+    return joint.removeprefix(f"{description.selected_arm}_").removesuffix("_joint") or joint
+
+
+def resizable(cell: LiveCell) -> dict[str, ObjectForm]:
+    """The objects whose size can still be changed, as the page's fields have them."""
+    forms = map(ObjectForm.of, [] if cell.steps_done else cell.document.object_specs())
+    return {form.name: form for form in forms if form.kind}
 
 
 def cell_message(cell: LiveCell) -> Message:

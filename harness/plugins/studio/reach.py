@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3, pitch_of
 from harness.core.types import FloatArray
@@ -56,6 +58,23 @@ class Reach:
     def best(self) -> Way | None:
         """The nearest free way."""
         return next((way for way in self.ways if not way.refusal), None)
+
+
+def way_names(cell: LiveCell, ways: Sequence[Way]) -> list[str]:
+    """A name for each way that no other has: its posture, and where that is not enough a joint.
+
+    The joint is that in which ways of one posture differ most, with its position.
+    """
+    names = [way.name or f"way {number}" for number, way in enumerate(ways, 1)]
+    joints = cell.description.movable_joints
+    for name in {each for each in names if names.count(each) > 1}:
+        same = [index for index, each in enumerate(names) if each == name]
+        positions = np.array([ways[index].positions for index in same])
+        widest = int(np.argmax(np.ptp(positions, axis=0)))
+        factor, unit = (1e3, " mm") if joints[widest].kind == "prismatic" else (180 / np.pi, "°")
+        for index, value in zip(same, positions[:, widest], strict=True):
+            names[index] = f"{name}, {joints[widest].name} at {factor * value:.0f}{unit}"
+    return names
 
 
 class ReachStudy:

@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 import gc
+from collections.abc import Sequence
 
-import viser
+import numpy as np
 
-from harness.core.errors import SpecError
 from harness.core.printable import printable
 from harness.core.spatial import SE3
-from harness.core.types import FloatArray
 from harness.plugins.studio.document import Document
 from harness.plugins.studio.files import StudioFiles
 from harness.plugins.studio.goal_actions import GoalActions
 from harness.plugins.studio.language_help import complete, hover
-from harness.plugins.studio.messages import failure_message, names_of, robot_message
+from harness.plugins.studio.messages import failure_message, names_of, resizable, robot_message
 from harness.plugins.studio.proposals import proposals
-from harness.plugins.studio.scene_view import Handle, SceneView
-from harness.plugins.studio.session import Message, RefusedError, guarded
-from harness.plugins.studio.texts import ObjectForm, object_spec, pose_keys_of, step_text
+from harness.plugins.studio.session import Message, RefusedError
+from harness.plugins.studio.texts import object_spec, pose_keys_of, step_text
 from harness.recording.step_record import StepRecord
 from harness.session.prepare import prepare
 
 
 class Studio(GoalActions):
     """A cell, the scenario that grows from it, and the pages that show both."""
-
-    server: viser.ViserServer
-    _drag: tuple[str, SE3, Handle] | None = None
 
     @classmethod
     def opened(cls, files: StudioFiles, text: str, unsaved: str | None, notice: str) -> Studio:
@@ -39,58 +34,33 @@ class Studio(GoalActions):
 
     # -- the picture and its handles ----------------------------------------------------------
 
-    def open(self, server: viser.ViserServer) -> None:
-        """Show the cell in a server's scene, and begin."""
-        self.server = server
-        self.view = SceneView(server, self.on_drag, self.on_choose)
+    def open(self) -> None:
+        """Begin: pages that come see the cell."""
         self.show_cell()
         gc.collect()
         gc.freeze()  # what is loaded stays; to walk through it would take 60 ms every few edits
         self.session.start()
 
-    def on_drag(self, client: int, phase: str, pose: SE3, kind: Handle) -> None:
-        """Keep the newest pose for the cell's thread; poses of spectators are put back."""
-        if not self._controls(client):
-            self.session.post(self.put_handles_back)
-            return
-        is_waiting = self._drag is not None
-        self._drag = (phase, pose, kind)
-        if not is_waiting or phase == "end":
-            self.session.post(self._answer_drag)
-
-    def on_choose(self, client: int, way: int) -> None:
-        """Choose the way of a ghost that the controlling page clicked."""
-        if self._controls(client):
-            self.session.post(lambda: self._choose(way))
-
-    def _controls(self, client: int) -> bool:
-        """Whether the page that shows a scene is the one that controls."""
-        live = self.server._websock_server._live_connections  # noqa: SLF001 - viser names no page
-        connection = next((each for key, each in live.items() if int(key) == client), None)
-        path = "" if connection is None or connection.request is None else connection.request.path
-        return path.rpartition("/")[2] == self.session.controller
-
-    def _answer_drag(self) -> None:
-        drag, self._drag = self._drag, None
-        if drag is None or self.busy:
-            return
-        phase, pose, kind = drag
-        name = self.object_handle
+    def do_drag(self, message: Message) -> Message:
+        """Answer a handle that was dragged: of the TCP's goal, an object, or an object's size."""
+        vector = [float(value) for value in message["pose"]]
+        if len(vector) != 7 or not np.isfinite(vector).all() or not any(vector[3:]):
+            raise RefusedError("a pose has seven finite numbers")
+        pose, is_end = SE3.from_xyz_quat(vector[:3], vector[3:]), bool(message["end"])
+        kind = message["kind"]
         if kind == "tcp":
-            self.answer_pose(pose, explain=phase == "end")
-        elif phase != "end":
-            self.dragged = {name: pose.as_vector()} if kind == "object" else {}
-        elif kind == "object":
+            self.answer_pose(pose, explain=is_end)
+            return {}
+        name = str(message["name"])
+        if not is_end:
+            self.dragged = {name: pose.as_vector()}
+            return {}
+        self.dragged = {}
+        if kind == "object":
             self.put_object(name, pose)
         else:
-            self.resize_object(name, pose.translation)
-
-    def put_handles_back(self) -> None:
-        """Show the handles where they were before a page moved them."""
-        if self.view is not None:
-            goal = self._goal if self.reach is not None else self.cell.tcp_pose()
-            self.view.put_handle("tcp", goal)
-        self.show_object_handle(self.object_handle)
+            self.resize_object(name, [float(value) for value in message["half"]])
+        return {}
 
     # -- steps --------------------------------------------------------------------------------
 
@@ -132,7 +102,7 @@ class Studio(GoalActions):
         self.study = self.target = None
         self.clear_preview()
         self.session.broadcast(robot_message(self.cell))
-        self.put_handles_back()
+        self.put_handle()
         return {}
 
     # -- objects ------------------------------------------------------------------------------
@@ -161,56 +131,33 @@ class Studio(GoalActions):
         self._take_text(self.cell.document.with_world(str(message["name"])).text)
         return {}
 
-    def do_handle(self, message: Message) -> Message:
-        """Put handles on an object, to move and to resize it; an empty name takes them away."""
-        self.show_object_handle(str(message["name"]))
-        return {}
-
-    def show_object_handle(self, name: str) -> None:
-        pose = self.cell.object_poses().get(name)
-        self.object_handle, self.dragged = name if pose is not None else "", {}
-        if self.view is None:
-            return
-        form = self._form(name)
-        self.view.put_handle("object", pose)
-        self.view.put_handle("size", None)
-        if pose is not None and form is not None:
-            corner = SE3(pose.rotation, pose.apply(form.corner()))
-            self.view.put_handle("size", corner, form.axes)
-
-    def _form(self, name: str) -> ObjectForm | None:
-        """The fields of an object that can be resized; None where it cannot."""
-        document = self.cell.document
-        if self.cell.steps_done or self.problems or name not in document.object_names():
-            return None
-        form = ObjectForm.of(document.object_spec(name))
-        return form if form.kind else None
-
     def put_object(self, name: str, pose: SE3) -> None:
         """Move an object: at the start in the scenario's `objects`, later with a step."""
         document, place = self.cell.document, pose_keys_of(pose)
         if not self.cell.steps_done and name in document.object_names() and not self.problems:
-            self._replace_object({**document.object_spec(name), "pose": place})
+            self._take_text(
+                document.with_object({**document.object_spec(name), "pose": place}).text
+            )
             return
         step = step_text("move_object", {"object": name, "pose": place})
-        reply = guarded(lambda: self.do_execute({"step": step}))
+        reply = self.do_execute({"step": step})
         if "error" in reply:
-            self.say("failed", reply["error"])
-        self.show_object_handle(name)
+            raise RefusedError(reply["error"])
 
-    def resize_object(self, name: str, corner: FloatArray) -> None:
-        """Drag the corner of an object of the scenario, before the first step."""
-        form, pose = self._form(name), self.cell.object_poses().get(name)
-        if form is not None and pose is not None:
-            spec = self.cell.document.object_spec(name)
-            self._replace_object(form.resized(spec, pose, corner))
+    def resize_object(self, name: str, half: Sequence[float]) -> None:
+        """Move one face of an object of the scenario, before the first step.
 
-    def _replace_object(self, spec: Message) -> None:
-        try:
-            self._take_text(self.cell.document.with_object(spec).text)
-        except SpecError as error:
-            self.say("failed", str(error))
-        self.show_object_handle(str(spec["name"]))
+        Args:
+            name: The name of the object.
+            half: Half its new sizes along its axes [m], shape (3,); what it does not have is 0.
+        """
+        form, pose = resizable(self.cell).get(name), self.cell.object_poses().get(name)
+        if form is None or pose is None or self.problems:
+            raise RefusedError(
+                f"'{name}' keeps its size: it is no simple shape, or steps have begun"
+            )
+        spec = self.cell.document.object_spec(name)
+        self._take_text(self.cell.document.with_object(form.resized(spec, pose, half)).text)
 
     def do_camera(self, message: Message) -> Message:
         """Show what a camera of the scenario sees, until another is chosen, or none."""

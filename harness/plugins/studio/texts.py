@@ -170,21 +170,22 @@ class ObjectForm:
         """The axes of the object along which its sizes are measured."""
         return list(AXES[self.kind])
 
-    def corner(self) -> FloatArray:
-        """The corner at which the object's size is dragged, in its frame, shape (3,)."""
-        corner = np.zeros(3)
-        corner[self.axes] = 0.5 * np.array(self.size)
-        return corner
+    def half(self) -> list[float | None]:
+        """Half its sizes along its axes [m]; None where it has no size of its own."""
+        half: list[float | None] = [None, None, None]
+        for axis, size in zip(self.axes, self.size, strict=True):
+            half[axis] = 0.5 * size
+        return half
 
-    def resized(self, spec: Mapping[str, Any], pose: SE3, corner: FloatArray) -> dict[str, Any]:
-        """The object after its corner was dragged; the opposite corner stays where it is.
+    def resized(self, spec: Mapping[str, Any], pose: SE3, half: Sequence[float]) -> dict[str, Any]:
+        """The object after faces were dragged; those opposite stay where they are.
 
         Args:
-            pose: The pose T_world_object of the object.
-            corner: The new place of the corner in the world, shape (3,).
+            pose: The pose T_world_object of the object before.
+            half: Half its new sizes along its axes [m], shape (3,).
         """
         before = np.array(self.size, dtype=float)
-        size = np.maximum(0.5 * before + pose.inverse().apply(corner)[self.axes], SMALLEST)
+        size = np.maximum(2.0 * np.array(half, dtype=float)[self.axes], SMALLEST)
         shift = np.zeros(3)
         shift[self.axes] = 0.5 * (size - before)
         moved = SE3(pose.rotation, pose.apply(shift))

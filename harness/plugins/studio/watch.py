@@ -10,13 +10,11 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, Listener
 from pathlib import Path
 
-import viser
-
 from harness.core.printable import printable
 from harness.plugins.studio.guard import LOOPBACK, Guard
 from harness.plugins.studio.live_stream import LiveCase, LiveFrame
 from harness.plugins.studio.scene_view import SceneView
-from harness.plugins.studio.server import page_assets, start_server
+from harness.plugins.studio.server import StudioServer, page_assets
 from harness.plugins.studio.session import FRAME, Message, RefusedError, Session
 from harness.plugins.studio.verdict_messages import NO_VERDICTS, verdicts_message
 from harness.reporting.progress_events import (
@@ -86,16 +84,15 @@ class Watch:
         self._drawn: LiveFrame | None = None
         self._announced: CaseResult | None = None
         self._last_scene = 0.0
-        self._view: SceneView | None = None
-        self._server: viser.ViserServer | None = None
+        self._server: StudioServer | None = None
         self._session = Session(
             self._do, self._frame, self._greeting, {"choose": self._choose}, lambda: None
         )
+        self._view = SceneView(self._session.broadcast)
 
     def __enter__(self) -> Watch:
         guard = Guard.of(page_assets("watch.html"), is_open=False)
-        self._server = start_server(LOOPBACK[0], 0, guard, self._session.handle)
-        self._view = SceneView(self._server)
+        self._server = StudioServer(LOOPBACK[0], 0, guard, self._session.handle)
         threading.Thread(target=self._accept, name="live-cases", daemon=True).start()
         self._session.start()
         return self
@@ -106,15 +103,14 @@ class Watch:
         self._session.stop()
         self._listener.close()
         if self._server is not None:
-            with contextlib.redirect_stdout(None):  # viser says that it stops
-                self._server.stop()
+            self._server.stop()
         self._folder.cleanup()
 
     @property
     def page(self) -> str:
         """The address of the page."""
         assert self._server is not None
-        return f"http://{LOOPBACK[0]}:{self._server.get_port()}/"
+        return f"http://{LOOPBACK[0]}:{self._server.port}/"
 
     def wait_for_page(self, seconds: float) -> None:
         """Wait until the page is open, but not for ever."""
@@ -175,14 +171,13 @@ class Watch:
 
     def _show(self, shown: WatchedCase) -> None:
         view = self._view
-        assert view is not None
         if shown is not self._shown:
             view.show_robot(shown.case.robot())
             view.show_objects(shown.case.objects)
             self._shown, self._drawn = shown, None
         if shown.frame is not None and shown.frame is not self._drawn:
             self._drawn = shown.frame
-            view.move(shown.frame.joint_positions, shown.frame.objects)
+            view.move(shown.frame.joint_positions, shown.frame.objects, {})
 
     def _state(self) -> Message:
         shown, cases = self._shown, list(self._cases)
@@ -203,7 +198,7 @@ class Watch:
         }
 
     def _greeting(self) -> list[Message]:
-        return [self._state(), _verdicts(self._announced)]
+        return [*self._view.greeting(), self._state(), _verdicts(self._announced)]
 
     def _choose(self, message: Message) -> Message:
         self._chosen = int(message["number"])

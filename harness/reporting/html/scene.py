@@ -64,7 +64,7 @@ def pack_scene(
     columns: list[FloatArray] = []
 
     def add(name: str, shapes: Sequence[Shape], rows: FloatArray, **more: Any) -> None:
-        body = {"name": name, "shapes": [_shape(shape, meshes) for shape in shapes], **more}
+        body = {"name": name, "shapes": [plain_shape(shape, meshes) for shape in shapes], **more}
         moves = len(rows) > 1 and bool(np.ptp(rows, axis=0).max() > STILL)
         body["fixed"] = None if moves else rounded(rows[0])
         if moves:
@@ -77,7 +77,7 @@ def pack_scene(
     for name in dict.fromkeys([*run.robot.link_visuals, run.robot.tcp_link]):
         if name in poses:
             looks, link = run.robot.link_visuals.get(name, ()), links[name]
-            hidden = [_shape(shape, meshes) for shape in link.collisions]
+            hidden = [plain_shape(shape, meshes) for shape in link.collisions]
             mass = None if link.inertial is None else link.inertial.mass
             add(
                 name,
@@ -98,7 +98,7 @@ def pack_scene(
             continue
         shown = always if recorded is None else _shown(run.signals.times, recorded)
         ghost = not obj.in_simulation
-        hidden = [_shape(shape, meshes) for shape in obj.shapes if obj.visuals]
+        hidden = [plain_shape(shape, meshes) for shape in obj.shapes if obj.visuals]
         add(
             obj.name,
             obj.looks,
@@ -136,7 +136,8 @@ def _mesh_parts(run: Run) -> dict[MeshKey, list[list[Any]]]:
     return parts
 
 
-def _shape(shape: Shape, meshes: Mapping[MeshKey, list[list[Any]]]) -> dict[str, Any]:
+def plain_shape(shape: Shape, meshes: Mapping[MeshKey, list[list[Any]]]) -> dict[str, Any]:
+    """A shape as pages draw it; a mesh as the numbers of its parts, with their colours."""
     plain: dict[str, Any] = {
         "pose": rounded(shape.pose.as_vector()),
         "color": rounded(shape.rgba, 3),

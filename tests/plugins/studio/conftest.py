@@ -2,13 +2,12 @@
 
 import threading
 
-import numpy as np
 import pytest
 
 from harness.plugins.studio.document import new_text
 from harness.plugins.studio.files import StudioFiles
 from harness.plugins.studio.guard import Guard
-from harness.plugins.studio.server import page_assets, start_server
+from harness.plugins.studio.server import StudioServer, page_assets
 from harness.plugins.studio.session import guarded
 from harness.plugins.studio.studio import Studio
 
@@ -24,9 +23,9 @@ class Served:
         self.files = StudioFiles(folder, folder / "open_manipulator_x_by_hand.scenario.yaml")
         self.studio = Studio.opened(self.files, text, None, "")
         self.guard = Guard.of(page_assets(), is_open=is_open)
-        self.server = start_server("127.0.0.1", 0, self.guard, self.studio.session.handle)
-        self.studio.open(self.server)
-        self.port = self.server.get_port()
+        self.server = StudioServer("127.0.0.1", 0, self.guard, self.studio.session.handle)
+        self.studio.open()
+        self.port = self.server.port
         self.address = f"http://127.0.0.1:{self.port}/"
 
     def reply_to(self, action, **keys):
@@ -60,13 +59,3 @@ def serve(tmp_path_factory):
     yield begin
     for each in opened:
         each.close()
-
-
-def pixel_of(camera, size, point):
-    """Where a point of the world is in viser's picture of some width and height."""
-    from harness.core.spatial import SE3
-
-    T_world_camera = SE3.from_xyz_quat(camera.position, camera.wxyz)
-    x, y, z = T_world_camera.inverse().apply(np.array(point))
-    scale = 0.5 * size[1] / np.tan(0.5 * camera.fov)
-    return 0.5 * size[0] + scale * x / z, 0.5 * size[1] + scale * y / z

@@ -72,24 +72,30 @@ def test_an_object_is_moved_in_the_text_at_the_start_and_with_a_step_afterwards(
 
 
 @pytest.mark.parametrize(
-    ("kind", "size", "corner", "larger", "center"),
+    ("kind", "size", "half", "larger", "center"),
     [
-        ("box", [0.04, 0.04, 0.04], [0.24, 0.02, 0.06], [0.06, 0.04, 0.06], [0.21, 0, 0.03]),
-        ("cylinder", [0.04, 0.04], [0.22, 0, 0.06], [0.04, 0.06], [0.2, 0, 0.03]),
-        ("sphere", [0.04], [0.2, 0, 0.05], [0.05], [0.2, 0, 0.025]),
+        ("box", [0.04, 0.04, 0.04], [0.03, 0.02, 0.03], [0.06, 0.04, 0.06], [0.21, 0, 0.03]),
+        ("cylinder", [0.04, 0.04], [0.02, 0, 0.03], [0.04, 0.06], [0.2, 0, 0.03]),
+        ("sphere", [0.04], [0, 0, 0.025], [0.05], [0.2, 0, 0.025]),
     ],
 )
-def test_a_dragged_corner_resizes_and_the_opposite_corner_stays(
-    studio, kind, size, corner, larger, center
+def test_a_dragged_face_resizes_and_the_opposite_face_stays(
+    studio, kind, size, half, larger, center
 ):
     reply(studio, "add_object", name="a", kind=kind, size=size, xyz=[0.2, 0, 0.02])
-    studio.resize_object("a", np.array(corner))
+    drag = {"kind": "size", "name": "a", "pose": [0, 0, 0, 1, 0, 0, 0], "end": True}
+    assert reply(studio, "drag", **drag, half=half) == {}
     [form] = studio_module.robot_message(studio.cell)["objects"]
     assert (form["size"], form["xyz"]) == (pytest.approx(larger), pytest.approx(center))
     reply(studio, "execute", step="wait: 10 ms")
     text = studio.text
-    studio.resize_object("a", np.array(corner) + 0.1)
+    assert "keeps its size" in reply(studio, "drag", **drag, half=[1, 1, 1])["error"]
     assert studio.text == text, "after the first step an object keeps its size"
+
+
+@pytest.mark.parametrize("pose", [[0, 0, 0], [0] * 7, [float("nan")] * 7, "abc"])
+def test_a_drag_to_no_pose_is_refused(studio, pose):
+    assert "error" in reply(studio, "drag", kind="tcp", pose=pose, end=True)
 
 
 def test_objects_that_overlap_are_shown_before_anything_moves(studio):
@@ -291,6 +297,7 @@ def test_an_object_is_attached_and_detached_as_steps(studio):
 def test_an_object_of_the_text_fills_the_fields(studio):
     reply(studio, "add_object", **{**BOX, "kind": "cylinder", "size": [0.04, 0.1]})
     [form] = studio_module.robot_message(studio.cell)["objects"]
+    assert form.pop("half") == [0.02, None, 0.05]
     assert form == {"name": "box", "kind": "cylinder", "size": [0.04, 0.1], "xyz": [0.2, 0, 0.04]}
 
 

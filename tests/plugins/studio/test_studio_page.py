@@ -9,12 +9,12 @@ from docs.generators.studio_guide import follow, is_shown, steps
 from harness.plugins.studio.document import new_text
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
-from tests.plugins.studio.conftest import pixel_of
 from tests.reporting.browser import new_context, wait_for
+from tests.waiting import wait_for as wait
 
-pytest.importorskip("viser")
+pytest.importorskip("django_static_ace_builds")
 
-EXPECTED_NOISE = "THREE.Clock|WebGL|GPU stall|Detected chrome"
+EXPECTED_NOISE = "WebGL|GPU stall"
 
 
 COMPLETE = """
@@ -26,13 +26,21 @@ editor.execCommand("startAutocomplete");
 """
 
 
+NO_WEBGL = """
+const context = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+  return kind === "webgl2" ? null : context.call(this, kind, ...more);
+};
+"""
+
+
 class Page:
     """A page of the studio, with what went wrong in it."""
 
     def __init__(self, context, address, *, has_scene=False, is_live=True):
         self.page = context.new_page()
         if not has_scene:  # drawn in software, it takes longer than all the rest
-            self.page.route("**/scene/*", lambda route: route.fulfill(body=""))
+            self.page.add_init_script(NO_WEBGL)
         self.complaints = []
         self.page.on("console", self._hear)
         self.page.on("pageerror", self._hear_error)
@@ -45,8 +53,7 @@ class Page:
             self.complaints.append(message.text)
 
     def _hear_error(self, error):
-        if "'unsafe-eval' is not an allowed source" not in str(error):  # viser's splats, not shown
-            self.complaints.append(str(error))
+        self.complaints.append(str(error))
 
     def wait(self, expression):
         wait_for(self.page, expression)
@@ -93,16 +100,74 @@ def opened(browser, served):
     context.close()
 
 
-def test_a_slider_moves_the_joint(opened, served):
-    opened.page.fill('input[aria-label="joint1 number"]', "0.4")
+MEASURED = "Number(document.querySelector('[data-joint=joint1] input[type=number]').value)"
+
+
+def test_a_number_moves_the_joint_in_the_units_of_the_page(opened, served):
+    opened.page.fill('input[aria-label="joint1 number"]', "22.9")
     opened.page.press('input[aria-label="joint1 number"]', "Enter")
-    opened.wait(
-        "Math.abs(parseFloat(document.querySelector('.joint output').innerText) - 22.9) < 0.5"
-    )
-    assert served.studio.cell.joint_positions()[0] == pytest.approx(0.4, abs=0.01)
     opened.wait_text("#status", "moved by hand")
+    wait(lambda: abs(served.studio.cell.joint_positions()[0] - 0.4) < 0.01)
+    opened.page.evaluate("document.activeElement.blur()")
     opened.page.click("#reset")
-    opened.wait("Math.abs(parseFloat(document.querySelector('.joint output').innerText)) < 0.5")
+    opened.wait(f"Math.abs({MEASURED}) < 0.5")
+
+
+def test_buttons_nudge_a_joint_by_a_degree(opened, served):
+    opened.page.click('button[aria-label="joint2 more"]')
+    opened.page.click('button[aria-label="joint2 more"]', modifiers=["Shift"])
+    wait(lambda: abs(served.studio.cell.joint_positions()[1] - np.radians(11)) < 5e-3)
+    opened.page.click("#reset")
+
+
+def test_a_slider_is_coloured_near_its_limits(opened):
+    def classes(value):
+        slider = f"document.querySelector('input[aria-label=joint3]').value = {value}"
+        event = ".dispatchEvent(new Event('input'))"
+        opened.page.evaluate(f"{slider}; document.querySelector('input[aria-label=joint3]'){event}")
+        return opened.page.get_attribute("[data-joint=joint3]", "class")
+
+    low, high = (float(opened.page.get_attribute("input[aria-label=joint3]", e)) for e in ENDS)
+    assert classes(0.5 * (low + high)) == "joint"
+    assert classes(low + 0.03 * (high - low)) == "joint near"
+    assert classes(high) == "joint at-limit"
+    background = "getComputedStyle(document.querySelector('.track'), '::before').backgroundImage"
+    assert "linear-gradient" in opened.page.evaluate(background), "limits are drawn on the track"
+    opened.page.click("#reset")
+
+
+ENDS = ("min", "max")
+
+
+def test_the_first_minute_a_slider_execute_and_run_all(browser, serve):
+    """With the real mouse on the real slider, and the keys while it has the focus."""
+    served = serve()
+    context = new_context(browser, viewport={"width": 1400, "height": 900})
+    page = Page(context, served.address)
+    page.page.select_option("#speed", "0")
+    box = page.page.locator("input[aria-label=joint1]").bounding_box()
+    page.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.page.mouse.down()
+    page.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2, steps=4)
+    page.page.mouse.up()
+    page.wait_text("#status", "moved by hand")
+    page.page.click("#execute")
+    page.wait_text("#status", "1 of 1 steps executed")
+    assert "move_to: {joints: {joint1: " in page.editor()
+    page.page.focus("input[aria-label=joint1]")
+    page.page.keyboard.press("o")
+    page.wait_text("#status", "2 of 2 steps executed")
+    page.page.keyboard.press("p")
+    page.wait_text("#status", "3 of 3 steps executed")
+    page.page.click("#run-all")
+    page.wait_text("#verdicts", "digest")
+    assert "passed" in page.page.get_attribute(".outcome", "class")
+    text = page.editor()
+    page.page.click("#execute")
+    page.wait_text("#log", "there is no goal: move a joint")
+    assert page.editor() == text
+    assert page.complaints == []
+    context.close()
 
 
 @pytest.mark.nightly
@@ -131,7 +196,7 @@ def test_an_overlap_is_shown_and_physics_waits_before_it_pushes_bodies_apart(ope
     size, xyz = [0.04, 0.04, 0.04], [0.2, 0, 0.01]
     assert served.reply_to("add_object", name="sunk", kind="box", size=size, xyz=xyz) == {}
     opened.wait_text("#overlaps", "At the start ground_plane and sunk overlap by 10.0 mm")
-    opened.wait("document.getElementById('play').innerText === 'Play'")
+    opened.wait("document.getElementById('play').ariaLabel === 'Play'")
     assert opened.page.inner_text("#clock") == "0.000 s"
     assert served.studio.cell.object_poses()["sunk"].translation[2] == pytest.approx(0.01)
     opened.page.click("#play")
@@ -140,125 +205,9 @@ def test_an_overlap_is_shown_and_physics_waits_before_it_pushes_bodies_apart(ope
 
 
 def test_a_value_beyond_the_limit_is_refused(opened):
-    opened.page.fill('input[aria-label="joint1 number"]', "9")
+    opened.page.fill('input[aria-label="joint1 number"]', "600")
     opened.page.press('input[aria-label="joint1 number"]', "Enter")
-    opened.wait_text("#log", "joint1 goes from -3.142 to 3.142 rad, not to 9")
-
-
-class Mouse:
-    """Real mouse events at points of the world, in viser's picture."""
-
-    def __init__(self, opened, served):
-        self.opened, self.served = opened, served
-        self.mouse, self.view = opened.page.mouse, served.studio.view
-        self.phases = []
-        on_drag = self.view._on_drag  # noqa: SLF001 - a drag ends when its last event has arrived
-
-        def heard(client, phase, pose, kind):
-            on_drag(client, phase, pose, kind)
-            self.phases.append((phase, kind))
-
-        self.view._on_drag = heard  # noqa: SLF001
-        self.camera = wait_for_client(opened, served).camera
-        self.box = opened.page.locator("#scene").bounding_box()
-
-    def at(self, point):
-        x, y = pixel_of(self.camera, (self.box["width"], self.box["height"]), point)
-        return self.box["x"] + x, self.box["y"] + y
-
-    def click_until(self, point, expression):
-        """Click until the picture has what is clicked."""
-        for _ in range(600):
-            if self.opened.page.evaluate(expression):
-                return
-            self.mouse.click(*self.at(point))
-            self.opened.page.wait_for_timeout(100)
-        raise AssertionError(f"a click never leads to {expression}")
-
-    def drop(self):
-        """Let go, and wait until the studio has taken that in."""
-        self.phases.clear()
-        self.mouse.up()
-        for _ in range(600):
-            if any(phase == "end" for phase, _ in self.phases):
-                break
-            self.opened.page.wait_for_timeout(100)
-        else:
-            raise AssertionError("a drag never ends")
-        self.served.reply_to("camera", name="")
-
-    def drag(self, kind, axis, *distances):
-        """Drag the arrow of a handle along its axis, by one distance after the other."""
-        handle, arrow = self.view.handles[kind], np.eye(3)[axis]
-        start = np.add(handle.position, 0.6 * handle.scale * arrow)
-        self.phases.clear()
-        for _ in range(20):  # until the picture has the handle
-            self.mouse.move(*self.at(start))
-            self.mouse.down()
-            self.mouse.move(*self.at(start + 0.01 * arrow), steps=2)
-            for _ in range(60):  # the start of a drag may arrive late
-                self.opened.page.wait_for_timeout(50)
-                if self.phases:
-                    break
-            if any(each == kind for _, each in self.phases):
-                break
-            self.mouse.up()  # nothing was hit, or a handle where it no longer is
-            self.opened.page.wait_for_timeout(500)
-            self.phases.clear()
-        for distance in distances:
-            self.mouse.move(*self.at(start + distance * arrow), steps=2)
-            yield
-
-
-@pytest.mark.nightly  # the picture is drawn in software
-def test_handles_and_ghosts_are_used_with_the_mouse(browser, serve):
-    served = serve()
-    size, xyz = [0.06, 0.06, 0.06], [0.2, -0.15, 0.03]
-    served.reply_to("add_object", name="box", kind="box", size=size, xyz=xyz)
-    served.reply_to("handle", name="box")
-    context = new_context(browser, viewport={"width": 1010, "height": 520})
-    opened = Page(context, served.address, has_scene=True)
-    mouse = Mouse(opened, served)
-
-    next(mouse.drag("tcp", 2, 0.03))
-    opened.wait_text("#reach", "to the handle")
-    mouse.drop()
-    opened.wait("document.querySelectorAll('#ways button').length > 0")
-    ghost = served.studio.cell.description.link_poses(served.studio.reach.ways[0].positions)
-    chosen = "document.querySelectorAll('#ways button[aria-pressed=true]').length === 1"
-    forearm = 0.5 * (ghost["link4"].translation + ghost["link5"].translation)
-    mouse.click_until(forearm, chosen)
-    assert served.studio.chosen is not None
-
-    next(mouse.drag("object", 0, 0.05))
-    mouse.drop()
-    opened.wait("!ace.edit('editor').getValue().includes('[0.2, -0.15, 0.03]')")
-    moved = served.studio.cell.document.object_spec("box")
-    assert moved["pose"]["xyz"] == pytest.approx([0.25, -0.15, 0.03], abs=5e-3)
-
-    next(mouse.drag("size", 2, 0.05))
-    mouse.drop()
-    opened.wait("!ace.edit('editor').getValue().includes('[0.06, 0.06, 0.06]')")
-    larger = served.studio.cell.document.object_spec("box")
-    assert larger["box"]["size"] == pytest.approx([0.06, 0.06, 0.11], abs=5e-3)
-    assert larger["pose"]["xyz"][2] == pytest.approx(0.5 * larger["box"]["size"][2], abs=2e-4)
-
-    for _ in mouse.drag("tcp", 2, 0.1, 0.5):
-        pass
-    mouse.drop()
-    opened.wait("document.querySelector('#reach').innerText.includes('the nearest p')")
-    assert "refused" in opened.page.get_attribute("#reach", "class")
-    assert opened.complaints == []
-    context.close()
-
-
-def wait_for_client(opened, served):
-    for _ in range(1000):
-        for client in served.server.get_clients().values():
-            opened.page.wait_for_timeout(200)
-            return client
-        opened.page.wait_for_timeout(20)
-    raise AssertionError("viser's page does not connect")
+    opened.wait_text("#log", "joint1 goes from -180.0 to 180.0°, not to 600.0°")
 
 
 def test_the_pick_of_the_guide_becomes_a_scenario_with_the_same_digest(picked):
@@ -324,7 +273,7 @@ def test_completion_offers_what_the_robot_has(opened):
 
 
 def test_the_field_of_a_step_is_completed(opened):
-    opened.page.evaluate("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
+    opened.page.click("#show-objects")
 
     def offered(text):
         opened.page.fill("#step-text", text)
@@ -335,6 +284,7 @@ def test_the_field_of_a_step_is_completed(opened):
     assert "place: {object: x, pose: " in offered("place: {object: x, ")
     assert "move_to: home" in offered("move_to: ")
     opened.page.fill("#step-text", "")
+    opened.page.click("#show-arm")
 
 
 OFFERED = "[...document.querySelectorAll('#continuations option')].map((each) => each.value)"
@@ -353,8 +303,10 @@ REACHED = "reached.add(document.activeElement) && document.activeElement.tagName
 COLORS = "(({color, backgroundColor}) => [color, backgroundColor])(getComputedStyle(document.body))"
 
 
-def test_every_control_is_reached_with_the_tab_key_and_has_a_name(opened):
+@pytest.mark.parametrize("tab", ["arm", "objects", "sensors"])
+def test_every_control_is_reached_with_the_tab_key_and_has_a_name(opened, tab):
     page = opened.page
+    page.click(f"#show-{tab}")
     page.evaluate("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
     assert page.evaluate(f"{VISIBLE}.filter((e) => !({NAMED})).map((e) => e.outerHTML)") == []
     page.evaluate("window.reached = new Set(); document.activeElement.blur()")
@@ -363,6 +315,33 @@ def test_every_control_is_reached_with_the_tab_key_and_has_a_name(opened):
         if page.evaluate(REACHED) == "TEXTAREA":
             page.keyboard.press("Escape")  # the Tab key indents the text
     assert page.evaluate(f"{VISIBLE}.filter((e) => !reached.has(e)).map((e) => e.outerHTML)") == []
+    page.click("#show-arm")
+
+
+SIZES = [(1440, 900), (1024, 700), (760, 700), (390, 800)]
+IS_SEEN = """
+["plan", "execute", "stop"].every((id) => {
+  const box = document.getElementById(id).getBoundingClientRect();
+  return id === "stop" && innerWidth < 900 // it scrolls away on a phone; Escape stops there too
+    || box.top >= 0 && box.bottom <= innerHeight && box.right <= innerWidth;
+})
+"""
+CUT = """
+[...document.querySelectorAll("button, label, h1, h2, .joint span, .object span")].filter((e) =>
+  e.checkVisibility() && e.clientWidth && e.scrollWidth > e.clientWidth + 1).map((e) => e.outerHTML)
+"""
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_plan_and_execute_stay_on_the_screen_and_no_name_is_cut(opened, size):
+    page = opened.page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
+    for tab in ("sensors", "objects", "arm"):
+        page.click(f"#show-{tab}")
+        assert page.evaluate(IS_SEEN), tab
+        assert page.evaluate(CUT) == []
+    page.set_viewport_size({"width": 1400, "height": 900})
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -379,12 +358,18 @@ def test_a_phone_shows_everything_without_scrolling_sideways(opened, scheme):
     page.set_viewport_size({"width": 1400, "height": 900})
 
 
-def test_the_angles_of_a_goal_are_converted_with_their_unit(opened):
-    opened.page.fill("#goal-pitch", "90")
-    opened.page.select_option("#unit", "rad")
-    assert opened.page.input_value("#goal-pitch") == "1.5708"
-    opened.page.select_option("#unit", "deg")
-    opened.page.fill("#goal-pitch", "0")
+def test_every_number_of_the_page_changes_its_unit(opened):
+    opened.page.click("#show-objects")
+    opened.page.fill("#object-size", "40 50 60")
+    opened.page.click("#units")
+    assert opened.page.input_value("#object-size") == "0.04 0.05 0.06"
+    opened.page.click("#show-arm")
+    assert "°" not in opened.page.inner_text("#panel")
+    assert "rad" in opened.page.inner_text("#joints")
+    opened.page.click("#units")
+    assert opened.page.input_value("#object-size") == "40 50 60"
+    assert "rad" not in opened.page.inner_text("#panel")
+    assert "180°" in opened.page.inner_text("#joints")
 
 
 @pytest.mark.nightly
@@ -396,7 +381,7 @@ def test_a_second_page_watches_until_it_is_given_control(browser, opened, served
     opened.type_scenario(f"{good}# edited by the one that controls\n")
     second.wait("ace.edit('editor').getValue().includes('# edited')")
     opened.type_scenario(good)
-    second.page.fill('input[aria-label="joint1 number"]', "0.2")
+    second.page.fill('input[aria-label="joint1 number"]', "11")
     second.page.press('input[aria-label="joint1 number"]', "Enter")
     second.wait_text("#log", "another page controls the cell")
     second.page.click("#control")

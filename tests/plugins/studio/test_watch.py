@@ -18,7 +18,7 @@ from harness.suite.cases import run_job
 from tests.plugins.studio.test_studio_page import Page
 from tests.reporting.browser import new_context
 
-pytest.importorskip("viser")
+pytest.importorskip("django_static_ace_builds")
 from harness.plugins.studio.watch import Watch
 from harness.reporting.progress_events import StepStarted
 
@@ -72,7 +72,7 @@ def test_the_page_shows_the_case_while_it_runs(browser, request_, unwatched):
         opened.wait_text("#status", "waiting for the first case")
         view = watch._view  # noqa: SLF001 - what the scene is given
         move = view.move
-        view.move = lambda positions, objects: (drawn.append(objects), move(positions, objects))
+        view.move = lambda where, objects, more: (drawn.append(objects), move(where, objects, more))
         thread = in_thread(replace(request_, live=watch.address), results, hold_second_step)
         try:
             opened.wait_text("#status", "1 of 2 steps; wait 30 s")

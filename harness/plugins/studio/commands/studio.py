@@ -58,7 +58,7 @@ class StudioCommand(Command):
         refuse_missing_extra()
         from harness.plugins.studio.files import StudioFiles
         from harness.plugins.studio.guard import LOOPBACK, Guard
-        from harness.plugins.studio.server import PortInUseError, page_assets, start_server
+        from harness.plugins.studio.server import PortInUseError, StudioServer, page_assets
         from harness.plugins.studio.studio import Studio
 
         path, text, time = start_of(arguments)
@@ -83,12 +83,12 @@ class StudioCommand(Command):
         is_open = host not in ("127.0.0.1", "localhost", "::1")
         guard = Guard.of(page_assets(), is_open=is_open)
         try:
-            server = start_server(host, arguments.port, guard, studio.session.handle)
+            server = StudioServer(host, arguments.port, guard, studio.session.handle)
         except PortInUseError as error:
             raise UsageError(str(error)) from error
-        studio.open(server)
+        studio.open()
         shown = f"[{host}]" if ":" in host else host
-        address = f"http://{shown}:{server.get_port()}/"
+        address = f"http://{shown}:{server.port}/"
         say(f"{address}?token={guard.token}" if guard.token else address)
         if is_open:
             complain("harness: whoever has this address can move the robot and write its file")
@@ -109,7 +109,7 @@ def refuse_missing_extra() -> None:
     """
     try:
         import django_static_ace_builds as _ace  # noqa: F401 - only whether it is there
-        import viser as _viser  # noqa: F401
+        import websockets as _websockets  # noqa: F401
     except ImportError as error:
         command = install_command("studio")
         raise UsageError(

@@ -14,6 +14,15 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+/** One of the page's icons. */
+export function icon(name) {
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  const use = document.createElementNS("http://www.w3.org/2000/svg", "use");
+  use.setAttribute("href", `#i-${name}`);
+  svg.append(use);
+  return svg;
+}
+
 export function options(select, values, first = []) {
   const chosen = select.value;
   select.replaceChildren(...[...first, ...values.map((v) => [v, v])].map(([value, text]) => element("option", { value }, text)));
@@ -23,6 +32,12 @@ export function options(select, values, first = []) {
 export const list = (id, values) => $(id).replaceChildren(...values.map((value) => element("option", { value })));
 
 export const numbers = (text) => text.trim().split(/[\s,]+/).map(Number);
+
+/** Buttons of which one is pressed. */
+export function segments(box, values, chosen, onChoose) {
+  box.hidden = values.length < 2;
+  box.replaceChildren(...values.map((value) => element("button", { "aria-pressed": String(value === chosen), onclick: () => onChoose(value) }, value)));
+}
 
 export function log(kind, text) {
   const line = element("div", { class: `entry ${kind}` }, text);

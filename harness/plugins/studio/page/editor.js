@@ -5,10 +5,16 @@ import { $, element } from "./dom.js";
 
 /* global ace */
 let editor = null, session = null, timer = 0, setting = false, sent = null, stepLines = [], done = 0;
+export const SUFFIX = ".scenario.yaml";
 const STAND_IN = { none: "There is no robot yet: correct the marked lines.", robot: "The robot alone, until the marked lines are correct." };
 
 export const text = () => editor.getValue();
 export const line = () => editor.getCursorPosition().row + 1;
+
+function showSaved(isSaved) {
+  $("file").classList.toggle("unsaved", !isSaved);
+  document.body.classList.toggle("unsaved-work", !isSaved);
+}
 
 function theme() {
   const dark = document.documentElement.dataset.theme === "dark" || matchMedia("(prefers-color-scheme: dark)").matches;
@@ -32,10 +38,10 @@ export function start() {
           caption: each.text, value: each.kind === "key" ? `${each.text}: ` : each.text,
           meta: each.kind, docText: each.help, score: 1000 - index }))))
   }];
-  editor.commands.addCommand({ name: "leave", bindKey: "Escape", exec: () => $("log").focus() });
+  editor.commands.addCommand({ name: "leave", bindKey: "Escape", exec: () => $("after-text").focus() });
   session.on("change", () => {
     if (setting) return;
-    $("file").classList.add("unsaved");
+    showSaved(false);
     clearTimeout(timer);
     timer = setTimeout(check, 200);
   });
@@ -74,7 +80,7 @@ export async function flush() {
 function show(message) {
   $("stand-in").textContent = STAND_IN[message.scene] ?? "";
   stepLines = message.step_lines;
-  $("file").classList.toggle("unsaved", !message.is_saved);
+  showSaved(message.is_saved);
   session.setAnnotations(message.problems.map((p) => ({ row: Math.max(0, p.line - 1), column: p.column,
     text: p.hint ? `${p.text}\n${p.hint}` : p.text, type: "error" })));
   for (const id of Object.keys(session.getMarkers())) if (session.getMarkers()[id].clazz === "mistake") session.removeMarker(id);
@@ -115,6 +121,7 @@ on("document", (message) => {
     setting = false;
   }
   sent = message.text;
-  if (document.activeElement !== $("file")) $("file").value = message.file;
+  if (document.activeElement !== $("file")) $("file").value = message.file.replace(SUFFIX, "");
+  $("file").title = message.file;
   show(message);
 });

@@ -2,6 +2,7 @@
 
 import { on } from "./connection.js";
 import { $, element } from "./dom.js";
+import { amount } from "./quantities.js";
 
 const OPEN = { passed: "holds so far", failed: "does not hold yet", "not reached": "waits for its step" };
 
@@ -11,10 +12,12 @@ on("verdicts", (message) => {
     message.digest ? `${message.outcome} · digest ${message.digest.slice(0, 16)}`
       : message.outcome ? `${message.outcome}; only a whole run has a digest`
         : `${decided} of ${message.verdicts.length} expectations are decided`);
-  const margin = (v) => (v.margin === null ? "" : ` (margin ${Number(v.margin.toPrecision(3))} ${v.unit})`);
-  if (!message.outcome && !message.verdicts.length) head.textContent = "";
+  if (!message.outcome && !message.verdicts.length) return $("verdicts").replaceChildren();
+  const line = (tone, number, text, ...more) => element("div", { class: `verdict ${tone.replace(/[ _]/g, "-")}` },
+    element("i", {}), element("span", {}, text), element("span", { class: "line", title: "line of the file" }, String(number)), ...more.filter(Boolean).map((each) => element("span", {}, each)));
   $("verdicts").replaceChildren(head,
-    ...message.steps.map((step) => element("div", { class: `verdict ${step.status.replace(/[ _]/g, "-")}` }, `${step.line}: ${step.summary}: ${step.status.replace("_", " ")}`)),
-    ...message.verdicts.map((v) => element("div", { class: `verdict ${v.open ? "open" : v.status.replace(/[ _]/g, "-")}` },
-      `${v.line}: ${v.text}: ${v.open ? OPEN[v.status] ?? "open" : v.status}${margin(v)}${v.reason && v.status !== "passed" && !v.open ? `: ${v.reason}` : ""}`)));
+    ...message.steps.map((step) => line(step.status, step.line, step.summary)),
+    ...message.verdicts.map((v) => line(v.open ? "open" : v.status, v.line, v.text,
+      [v.open ? OPEN[v.status] ?? "open" : v.status, v.margin === null ? "" : `margin ${amount(v.margin, v.unit)}`].filter(Boolean).join(", "),
+      v.reason && v.status !== "passed" && !v.open && v.reason)));
 });

@@ -2,7 +2,7 @@
 
 import { request, connect, on, stop } from "./connection.js";
 import { $, element } from "./dom.js";
-import { showScene } from "./scene.js";
+import "./scene.js";
 import "./verdicts.js";
 
 let listed = "";
@@ -24,5 +24,4 @@ on("watch", (message) => {
 });
 on("lost", () => { $("status").textContent = "The run has ended, or the connection was lost."; });
 $("case").addEventListener("change", () => request("choose", { number: Number($("case").value) }));
-showScene();
 connect();

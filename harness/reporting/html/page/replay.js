@@ -1,12 +1,10 @@
 // The recorded bodies in the 3D view, posed at any time.
 
+import { CREASE, surfacesOf } from "./bodies.js";
 import { creased } from "./normals.js";
 import { decodeMesh, undoDifferences } from "./payload.js";
-import { primitive, square } from "./shapes.js";
 import { multiply, poseMatrix } from "./vectors.js";
 
-const CREASE = { mesh: 0.76, shape: 0.9 }; // cosines
-const FLOOR_SIZE = 12; // half its side [m]
 const POSE_SIZE = 7;
 
 export class Replay {
@@ -50,7 +48,7 @@ export class Replay {
     this.showsHulls = isShown;
     const options = { castsShadow: false, isUntouchable: true };
     this.hulls ??= new Map(
-      this.bodies.map((body) => [body, body.collisions.flatMap((shape) => this.#surfaces({ ...shape, color }, false, options))]),
+      this.bodies.map((body) => [body, body.collisions.flatMap((shape) => surfacesOf(this.viewer, { ...shape, color }, this.meshes, false, options))]),
     );
   }
 
@@ -131,29 +129,7 @@ export class Replay {
   }
 
   #build(body) {
-    const pieces = body.shapes.flatMap((shape) => this.#surfaces(shape, body.ghost));
+    const pieces = body.shapes.flatMap((shape) => surfacesOf(this.viewer, shape, this.meshes, body.ghost));
     return { ...body, pieces, pose: body.fixed, isThere: true };
-  }
-
-  #surfaces(shape, isGhost, more = {}) {
-    const local = poseMatrix(shape.pose);
-    const color = [...shape.color];
-    if (isGhost) color[3] = Math.min(color[3], 0.34);
-    const options = { castsShadow: !isGhost && color[3] > 0.99, ...more };
-    const add = (mesh, tint, other = {}) => ({
-      local,
-      surface: this.viewer.addSurface(mesh, tint, { ...options, ...other }),
-    });
-    if (shape.kind === "mesh") {
-      return shape.parts.map(([mesh, tint]) =>
-        add(this.meshes[mesh], tint && !isGhost ? tint : [...(tint ?? color).slice(0, 3), color[3]]),
-      );
-    }
-    if (shape.kind === "plane") {
-      const { positions, indices } = square(FLOOR_SIZE);
-      return [add(creased(positions, indices, 0), [...color.slice(0, 3), 1], { grid: 1, castsShadow: false })];
-    }
-    const { positions, indices } = primitive(shape);
-    return [add(creased(positions, indices, CREASE.shape), color)];
   }
 }

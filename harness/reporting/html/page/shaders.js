@@ -106,3 +106,20 @@ void main() {
   result = color;
 }`,
 };
+
+/** The sky: from the horizon's colour to the one above. */
+export const SKY = {
+  vertex: `${HEADER}
+out float height;
+void main() {
+  vec2 place = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  height = place.y;
+  gl_Position = vec4(place, 0.999, 1.0);
+}`,
+  fragment: `${HEADER}
+in float height;
+uniform vec3 low, high;
+uniform float horizon;
+out vec4 result;
+void main() { result = vec4(mix(low, high, smoothstep(0.0, 1.6, height - horizon)), 1.0); }`,
+};

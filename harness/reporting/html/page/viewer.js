@@ -1,7 +1,7 @@
 // Draws posed bodies and lines with WebGL2: a sun with a soft shadow, translucent bodies last.
 
 import { lineAttributes, lineVertices, VERTICES_PER_SEGMENT } from "./lines.js";
-import { LINE, SHADOW, SURFACE } from "./shaders.js";
+import { LINE, SHADOW, SKY, SURFACE } from "./shaders.js";
 import { addScaled, lookAt, multiply, normalize, orthographic, transformPoint } from "./vectors.js";
 
 const SHADOW_SIZE = 2048; // [pixels], as the shader divides by
@@ -20,6 +20,7 @@ const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
  * @property {number} grid 1 for a floor with lines, else 0
  * @property {number} glow 0 to 1: lit from inside
  * @property {boolean} [isUntouchable] clicks go through it
+ * @property {boolean} [recedes] a translucent one is hidden by what is solid at the same place
  */
 /**
  * @typedef {object} Line
@@ -57,23 +58,31 @@ export class Viewer {
     /** Buffers of small pictures by size. @type {Map<string, WebGLFramebuffer>} */
     this.small = new Map();
     this.background = [1, 1, 1];
+    /** Colour of the sky above; null for one as the horizon. @type {number[] | null} */
+    this.zenith = null;
     this.ambient = 1;
     this.outline = 0.1; // how bright the edges of bodies are
     this.isDirty = this.hasMoved = true;
     this.isCoarse = false;
     this.drawn = 0;
     this.cost = 0; // of a picture, once measured [ms]
-    this.bounds = bounds;
     this.surfaceProgram = program(gl, SURFACE);
     this.shadowProgram = program(gl, SHADOW);
     this.lineProgram = program(gl, LINE);
+    this.skyProgram = program(gl, SKY);
     this.#makeShadowMap();
+    this.cover(bounds);
+    new ResizeObserver(() => this.redraw()).observe(host);
+  }
+
+  /** What the sun's shadow covers. @param {{center: number[], radius: number}} bounds [m] */
+  cover(bounds) {
+    this.bounds = bounds;
     const distance = 3 * bounds.radius;
     this.sun = multiply(
       orthographic(bounds.radius, distance - bounds.radius * 1.5, distance + bounds.radius * 1.5),
       lookAt(addScaled(bounds.center, SUN, distance), /** @type {any} */ (bounds.center), [0, 1, 0]),
     );
-    new ResizeObserver(() => this.redraw()).observe(host);
   }
 
   /** Have the picture drawn at the next chance. */
@@ -118,6 +127,14 @@ export class Viewer {
     const copy = { .../** @type {any} */ (surface), ...options };
     this.surfaces.push(copy);
     return copy;
+  }
+
+  /** Draw a surface no more; its triangles stay as long as copies use them. @param {Surface} surface */
+  removeSurface(surface) {
+    this.surfaces = this.surfaces.filter((each) => each !== surface);
+    const { vertexArray } = /** @type {any} */ (surface);
+    if (!this.surfaces.some((each) => each.vertexArray === vertexArray)) this.gl.deleteVertexArray(vertexArray);
+    this.moved();
   }
 
   /** @param {ArrayLike<number>} points x, y, z of each @param {Partial<Line>} options @returns {Line} */
@@ -249,9 +266,22 @@ export class Viewer {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.disable(gl.SCISSOR_TEST);
     const view = orbit.matrix(width / height);
+    if (this.zenith) this.#drawSky(orbit);
     this.#drawSurfaces(shown, view, orbit.eye);
     this.#drawLines(view, width, height, ratio, orbit.tangent);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  #drawSky(orbit) {
+    const { gl, skyProgram: { program, at } } = this;
+    gl.disable(gl.DEPTH_TEST);
+    gl.useProgram(program);
+    gl.uniform3fv(at.low, this.background);
+    gl.uniform3fv(at.high, this.zenith);
+    gl.uniform1f(at.horizon, Math.tan(orbit.elevation) / orbit.tangent);
+    gl.bindVertexArray(null);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.enable(gl.DEPTH_TEST);
   }
 
   #smallBuffer(width, height) {
@@ -310,7 +340,9 @@ export class Viewer {
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
         gl.depthFunc(gl.LEQUAL);
+        gl.enable(gl.POLYGON_OFFSET_FILL);
       }
+      gl.polygonOffset(surface.recedes ? 1 : 0, surface.recedes ? 2 : 0);
       gl.uniformMatrix4fv(at.model, false, surface.model);
       gl.uniform4fv(at.color, surface.color);
       gl.uniform1f(at.grid, surface.grid);
@@ -324,6 +356,7 @@ export class Viewer {
       }
       gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
     }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
     gl.depthFunc(gl.LESS);
   }
 
