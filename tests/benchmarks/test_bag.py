@@ -6,8 +6,8 @@ import tracemalloc
 
 import pytest
 
+from harness.plugins.ros.bag.write import BagOptions, write_bag
 from harness.recording.read_run import read_run
-from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.running import run_case
 
 GOAL = 20

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.resources import data_folder
+from harness.plugins.ros.bag.write import BagOptions, write_bag
 from harness.recording.read_run import read_run
-from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.damaged.front_door import assert_ends_well
 from tests.damaged.mutants import (
     damaged_arrays,

@@ -96,6 +96,9 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
     assert part.returncode == 2
     assert "--shard" in part.stderr
+    bag = core("run", "lessons/04_gripper_alone", "--bag", "--no-report")
+    assert bag.returncode == 2
+    assert "there is no reporter 'rosbag'" in bag.stdout + bag.stderr
     nodes = core("run", "lessons/04_gripper_alone", "--node", "python student.py", "--no-report")
     assert nodes.returncode == 2
     assert "there is no case runner 'nodes'" in nodes.stdout + nodes.stderr

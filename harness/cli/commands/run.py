@@ -137,7 +137,7 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHoo
         case_runner("nodes")  # refuses where no plug-in runs them
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
-    for name in arguments.reporters:
+    for name in [*arguments.reporters, *["rosbag"] * arguments.bag]:
         try:
             find_reporter(name)
         except LookupError as error:

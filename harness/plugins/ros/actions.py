@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.endpoints import LATCHED, Reply
 from harness.plugins.ros.interfaces import CANCEL, UUID, seconds, stamp
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.messages import message
 
 INFO = "action_msgs/msg/GoalInfo"
 STATUSES = "action_msgs/msg/GoalStatusArray"

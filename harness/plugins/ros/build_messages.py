@@ -19,8 +19,8 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from harness.plugins.ros.bag.messages import DEFINITIONS as OF_BAGS
 from harness.plugins.ros.interfaces import DEFINITIONS
-from harness.reporting.rosbag.messages import DEFINITIONS as OF_BAGS
 
 WHEELS = (
     "ros-rclpy ros-rmw-fastrtps-cpp ros-std-msgs ros-sensor-msgs ros-geometry-msgs ros-shape-msgs"

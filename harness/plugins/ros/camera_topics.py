@@ -14,12 +14,12 @@ from harness.cell.program import Program
 from harness.core.camera import Camera
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.plugins.ros.bag.cameras import camera_info, compressed_image, image
+from harness.plugins.ros.bag.frames import optical_frames
+from harness.plugins.ros.bag.topics import topic_word
 from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.interfaces import header
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.cameras import camera_info, compressed_image, image
-from harness.reporting.rosbag.frames import optical_frames
-from harness.reporting.rosbag.topics import topic_word
 
 IMAGE, COMPRESSED, INFO = (
     f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "CameraInfo")

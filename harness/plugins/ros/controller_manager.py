@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.control.controller import Controller
 from harness.plugins.ros.endpoints import Publisher
 from harness.plugins.ros.interfaces import header, register_move_group
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.messages import message
 
 SRV = "controller_manager_msgs/srv/"
 STATE = "control_msgs/msg/JointTrajectoryControllerState"

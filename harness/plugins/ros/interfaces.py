@@ -11,7 +11,7 @@ from typing import Any
 from rosbags.typesys import get_types_from_msg
 from rosbags.typesys.store import Typestore
 
-from harness.reporting.rosbag.messages import TYPESTORE, message, time_message
+from harness.plugins.ros.bag.messages import TYPESTORE, message, time_message
 
 DEFINITIONS = Path(__file__).with_name("definitions")
 """Field lists of control_msgs (BSD-3-Clause), action_msgs (Apache-2.0) and others, which rosbags

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from harness.core.printable import counted
+from harness.plugins.ros.bag.frames import camera_edges
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.camera_topics import CameraTopics
 from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.controller_manager import ControllerManager
@@ -28,8 +30,6 @@ from harness.plugins.ros.state_topics import StateTopics
 from harness.plugins.ros.wiring import Wiring
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
-from harness.reporting.rosbag.frames import camera_edges
-from harness.reporting.rosbag.messages import message
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 

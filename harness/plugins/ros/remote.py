@@ -14,6 +14,7 @@ from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.plugins.ros.actions import ActionClient, ClientGoal, Status
+from harness.plugins.ros.bag.messages import message, trajectory_message
 from harness.plugins.ros.control.goals import Code
 from harness.plugins.ros.interfaces import COMMAND, FOLLOW, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
@@ -25,7 +26,6 @@ from harness.ports.simulation import ExpectedGrasp, Faults, GripperResult
 from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import UNPUBLISHED, Signals
 from harness.reporting.result import CaseResult
-from harness.reporting.rosbag.messages import message, trajectory_message
 from harness.session.prepare import Prepared, prepare
 from harness.session.progress import Notify
 from harness.session.run_case import run_case

@@ -10,12 +10,12 @@ import numpy as np
 
 from harness.core.kinematics import LinkPoses
 from harness.core.types import FloatArray
+from harness.plugins.ros.bag.frames import Edge, robot_edges, transform_stamped
+from harness.plugins.ros.bag.messages import message, pose_message
+from harness.plugins.ros.bag.wrenches import WRENCH, wrench_message, wrench_topic
 from harness.plugins.ros.endpoints import LATCHED, Qos
 from harness.plugins.ros.interfaces import header, stamp
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.frames import Edge, robot_edges, transform_stamped
-from harness.reporting.rosbag.messages import message, pose_message
-from harness.reporting.rosbag.wrenches import WRENCH, wrench_message, wrench_topic
 from harness.robot.description import RobotDescription
 
 TF = "tf2_msgs/msg/TFMessage"

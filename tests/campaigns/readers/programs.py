@@ -77,8 +77,8 @@ def _begin_datagrams(folder: Path) -> Read:
 
 def _requests(folder: Path) -> list[bytes]:
     del folder
+    from harness.plugins.ros.bag.messages import TYPESTORE, message
     from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, encoded, register_move_group
-    from harness.reporting.rosbag.messages import TYPESTORE, message
 
     register_move_group()
     kinds = (

@@ -10,11 +10,11 @@ from harness.cli.main import main
 from harness.core.pose_arrays import relative
 from harness.core.resources import data_folder
 from harness.plugins.grading.grade import grade_bag, graded
+from harness.plugins.ros.bag.write import BagOptions, write_bag
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.read_run import read_run
 from harness.recording.signals import Signals
 from harness.recording.verdict import Verdict
-from harness.reporting.rosbag.write import BagOptions, write_bag
 from tests.plugins.grading.recordings import (
     GAZEBO,
     NEEDS_CONTACTS,

@@ -6,8 +6,8 @@ import pytest
 from harness.core.pose_arrays import relative, turn_between
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.grade import grade_bag
+from harness.plugins.ros.bag.write import write_bag
 from harness.recording.link_poses import replayed_link_poses
-from harness.reporting.rosbag.write import write_bag
 from tests.plugins.grading.recordings import (
     GAZEBO,
     POSES,

@@ -3,8 +3,8 @@
 import numpy as np
 
 from harness.plugins.ros.actions import ActionClient
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.interfaces import EXECUTE, MOVE, register_move_group
-from harness.reporting.rosbag.messages import message
 
 register_move_group()
 

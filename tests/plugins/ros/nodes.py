@@ -5,9 +5,9 @@ import time
 import numpy as np
 
 from harness.plugins.ros.actions import ActionClient
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.interfaces import FOLLOW, GRIPPER, TRAJECTORY
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.messages import message
 from tests.waiting import HANG
 
 ARM = ("joint1", "joint2", "joint3", "joint4")

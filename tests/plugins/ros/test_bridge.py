@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from harness.plugins.ros.actions import CancelCode, Status, uuid_of
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.goals import Code
 from harness.plugins.ros.endpoints import LATCHED
 from harness.plugins.ros.handover import replay
 from harness.plugins.ros.interfaces import CANCEL, TRAJECTORY
 from harness.recording.read_run import read_run
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.nodes import ARM, duration, follow, grip, point, tolerance, trajectory
 from tests.robot.models import robot

@@ -1,7 +1,7 @@
 """The controller manager and the states of controllers, as rqt and ros2control use them."""
 
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.interfaces import register_move_group
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.nodes import ARM, follow, point
 

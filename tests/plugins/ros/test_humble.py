@@ -3,6 +3,7 @@
 import time
 from contextlib import closing
 
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.interfaces import (
     LATER_THAN_HUMBLE,
     decoded,
@@ -13,7 +14,6 @@ from harness.plugins.ros.moveit.values import NUMBERS
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.graph import FAST_DDS, SERVICE_QOS, dds_type
 from harness.plugins.ros.rtps.participant import Participant
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import GROUP, UR, moveit, pose, stamped
 

@@ -6,11 +6,11 @@ from scipy.spatial import ConvexHull
 
 from harness.core.errors import ErrorCode
 from harness.plugins.ros.actions import Status
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.handover import replay
 from harness.plugins.ros.interfaces import EXECUTE, MOVE
 from harness.plugins.ros.moveit.values import NUMBERS
 from harness.recording.read_run import read_run
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import (
     DOWN,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from harness.core.errors import StepFailed
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.moveit.values import pose_of
-from harness.reporting.rosbag.messages import message
 
 
 def pose(xyz=(0.0, 0.0, 0.0), wxyz=(1.0, 0.0, 0.0, 0.0)):

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from harness.plugins.ros.actions import Status
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.controller_manager import SRV, STATE
 from harness.plugins.ros.endpoints import LATCHED
 from harness.plugins.ros.handover import replay
 from harness.plugins.ros.interfaces import register_move_group
 from harness.plugins.ros.prefix import Prefix
 from harness.recording.read_run import read_run
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import MoveGroupClient, joint_goal, pose, stamped
 from tests.plugins.ros.nodes import ARM, follow, point

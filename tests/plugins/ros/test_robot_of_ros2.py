@@ -13,10 +13,10 @@ import pytest
 import harness.plugins.ros.remote
 from harness.cli.main import main
 from harness.plugins.ros.actions import ActionServer
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.interfaces import FOLLOW, stamp
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 
 STEPS = """- ptp: {joints: {joint1: 0.2, joint2: 0.1}}

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from harness.plugins.ros.actions import ActionClient, Status
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.handover import replay
 from harness.plugins.ros.interfaces import SEQUENCE
 from harness.plugins.ros.moveit.values import NUMBERS
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import (
     UR,

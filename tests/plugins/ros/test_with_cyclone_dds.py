@@ -6,10 +6,10 @@ from functools import partial
 import pytest
 
 from harness.plugins.ros.actions import Status
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.interfaces import CANCEL
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.messages import message
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.waiting import HANG, wait_for
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from harness.core.types import FloatArray
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.controller import Outcome, Rows, Window
 from harness.plugins.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.plugins.ros.interfaces import GRIPPER
 from harness.recording.commands import CommandRecord
-from harness.reporting.rosbag.messages import message
 from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.gripper_drive import (
     GOAL_TOLERANCE,

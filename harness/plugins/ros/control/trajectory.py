@@ -11,11 +11,11 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from harness.core.types import FloatArray
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.controller import Outcome, Rows, Window
 from harness.plugins.ros.control.goals import Code, TrajectoryGoal, checked_goal
 from harness.plugins.ros.interfaces import FOLLOW, POINT, header
 from harness.recording.commands import CommandRecord
-from harness.reporting.rosbag.messages import message
 from harness.robot.description import Joint, TrackingTolerances
 
 TIME_SLACK = 1e-9

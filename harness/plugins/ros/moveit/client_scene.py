@@ -23,12 +23,12 @@ from harness.core.geometry import (
 )
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.plugins.ros.bag.messages import message, pose_message
 from harness.plugins.ros.interfaces import header
 from harness.plugins.ros.moveit.client_meshes import client_mesh, cone_mesh
 from harness.plugins.ros.moveit.goals import BOX, SPHERE
 from harness.plugins.ros.moveit.scene_changes import CYLINDER, Change
 from harness.plugins.ros.moveit.values import state_message
-from harness.reporting.rosbag.messages import message, pose_message
 from harness.robot.mesh_file import read_triangles
 
 GEOMETRIES: Mapping[str, Callable[[Change], Geometry]] = {

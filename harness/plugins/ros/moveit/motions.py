@@ -8,6 +8,7 @@ from typing import Any
 
 from harness.core.errors import StepFailed
 from harness.plugins.ros.actions import ActionServer
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.cell import CANCELED, PREEMPTED
 from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.interfaces import EXECUTE, MOVE, SEQUENCE
@@ -17,7 +18,6 @@ from harness.plugins.ros.moveit.scene_changes import changes_of_scene
 from harness.plugins.ros.moveit.values import error_code
 from harness.plugins.ros.rtps.graph import Graph
 from harness.plugins.ros.wiring import trajectory_content
-from harness.reporting.rosbag.messages import message
 
 FARTHEST_START = 0.01
 """How far a joint may be from the start of a trajectory that is executed [rad or m]: MoveIt's

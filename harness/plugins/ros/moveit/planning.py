@@ -13,6 +13,7 @@ from harness.core.registry import registry
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.moveit.goals import arc_point_of, goal_of, path_constraints_of
 from harness.plugins.ros.moveit.values import (
     frame_of,
@@ -37,7 +38,6 @@ from harness.ports.motions import (
 )
 from harness.recording.motion_failures import SearchFailure
 from harness.recording.step_results import CartesianPathResult
-from harness.reporting.rosbag.messages import message
 
 PILZ = "pilz_industrial_motion_planner"
 PLANNERS = {

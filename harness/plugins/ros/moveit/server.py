@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.control.controller import Outcome
 from harness.plugins.ros.endpoints import LATCHED
@@ -20,7 +21,6 @@ from harness.plugins.ros.moveit.scene_changes import (
 )
 from harness.plugins.ros.rtps.graph import Graph
 from harness.recording.commands import CommandRecord
-from harness.reporting.rosbag.messages import message
 
 SCENE = "moveit_msgs/msg/PlanningScene"
 DISPLAY = "moveit_msgs/msg/DisplayTrajectory"

@@ -8,6 +8,7 @@ from typing import Any
 
 from harness.cell.cell import Cell
 from harness.core.errors import StepFailed
+from harness.plugins.ros.bag.messages import message, pose_message
 from harness.plugins.ros.endpoints import Reply
 from harness.plugins.ros.interfaces import header
 from harness.plugins.ros.moveit.planning import (
@@ -28,7 +29,6 @@ from harness.plugins.ros.moveit.values import (
     state_message,
 )
 from harness.plugins.ros.rtps.graph import Graph
-from harness.reporting.rosbag.messages import message, pose_message
 
 SRV = "moveit_msgs/srv/"
 EMPTY = "std_srvs/srv/Empty"

@@ -14,8 +14,8 @@ from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.language.base import LARGEST_NUMBER
+from harness.plugins.ros.bag.messages import message, trajectory_message
 from harness.plugins.ros.interfaces import header
-from harness.reporting.rosbag.messages import message, trajectory_message
 
 SUCCESS = 1
 SMALLEST_NORM = 1e-9  # of a quaternion; a smaller one is that of an empty message

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.endpoints import (
     DEFAULT,
     LATCHED,
@@ -26,7 +27,6 @@ from harness.plugins.ros.rtps.participant import Participant
 from harness.plugins.ros.rtps.reader import Reader
 from harness.plugins.ros.rtps.wire import Sample
 from harness.plugins.ros.rtps.writer import Writer
-from harness.reporting.rosbag.messages import message
 
 Convert = Callable[[Any], Any]
 SERVICE_QOS = Qos(depth=100)

@@ -10,14 +10,14 @@ import numpy as np
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Rgba, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.plugins.ros.bag.frames import WORLD, moving_objects
+from harness.plugins.ros.bag.messages import TYPES, header, message, point, pose_message, vector
+from harness.plugins.ros.bag.samples import Message
+from harness.plugins.ros.bag.topics import SCENE_MARKERS
 from harness.recording.link_poses import planned_tcp_poses
 from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord
-from harness.reporting.rosbag.frames import WORLD, moving_objects
-from harness.reporting.rosbag.messages import TYPES, header, message, point, pose_message, vector
-from harness.reporting.rosbag.samples import Message
-from harness.reporting.rosbag.topics import SCENE_MARKERS
 
 MARKER = "visualization_msgs/msg/Marker"
 Marker: Any = TYPES[MARKER]

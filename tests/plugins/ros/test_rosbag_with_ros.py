@@ -11,7 +11,7 @@ import pytest
 import yaml
 from mcap.reader import make_reader
 
-from tests.reporting.bag_runs import everything
+from tests.plugins.ros.bag_runs import everything
 
 pytestmark = [pytest.mark.needs_ros, pytest.mark.filterwarnings("ignore::DeprecationWarning")]
 WITHOUT_WHEELS = {"tf2_msgs", "moveit_msgs"}

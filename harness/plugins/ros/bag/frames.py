@@ -11,10 +11,10 @@ import numpy as np
 from harness.core.camera import Camera
 from harness.core.pose_arrays import IDENTITY
 from harness.core.types import BoolArray, FloatArray, IntArray
+from harness.plugins.ros.bag.messages import header, message, transform
+from harness.plugins.ros.bag.samples import Message, blocks
+from harness.plugins.ros.bag.topics import TF, TF_STATIC
 from harness.recording.run import Run
-from harness.reporting.rosbag.messages import header, message, transform
-from harness.reporting.rosbag.samples import Message, blocks
-from harness.reporting.rosbag.topics import TF, TF_STATIC
 from harness.robot.description import RobotDescription
 
 WORLD = "world"

@@ -16,6 +16,6 @@ class RosbagReporter(Reporter):
 
     def write(self, folder: Path, stored: StoredRun) -> None:
         """Write the bag."""
-        from harness.reporting.rosbag.write import BAG, write_bag
+        from harness.plugins.ros.bag.write import BAG, write_bag
 
         write_bag(folder / BAG, stored)

@@ -9,24 +9,24 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.recording.link_poses import tcp_tracks
-from harness.recording.run import Run
-from harness.recording.step_record import StepRecord
-from harness.reporting.rosbag.frames import WORLD
-from harness.reporting.rosbag.messages import (
+from harness.plugins.ros.bag.frames import WORLD
+from harness.plugins.ros.bag.messages import (
     header,
     joint_state,
     message,
     pose_message,
     trajectory_message,
 )
-from harness.reporting.rosbag.samples import Message, samples_at
-from harness.reporting.rosbag.topics import (
+from harness.plugins.ros.bag.samples import Message, samples_at
+from harness.plugins.ros.bag.topics import (
     DISPLAY_PLANNED_PATH,
     PLANNED_TRAJECTORY,
     TCP_PATH,
     Topic,
 )
+from harness.recording.link_poses import tcp_tracks
+from harness.recording.run import Run
+from harness.recording.step_record import StepRecord
 
 PATH_RATE = 5.0
 """How often the course's trajectory server looks where the TCP is, as its UR launch sets it [Hz]

@@ -11,14 +11,14 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.limits import PICTURE_PIXELS
+from harness.plugins.ros.bag.frames import optical_frames
+from harness.plugins.ros.bag.messages import header, message
+from harness.plugins.ros.bag.samples import Message
+from harness.plugins.ros.bag.topics import camera_topics
 from harness.recording.film import decoded_film
 from harness.recording.npz_file import NpzFile
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, VideoRecord
-from harness.reporting.rosbag.frames import optical_frames
-from harness.reporting.rosbag.messages import header, message
-from harness.reporting.rosbag.samples import Message
-from harness.reporting.rosbag.topics import camera_topics
 
 MAGIC = {b"\xff\xd8": "jpeg", b"\x89P": "png"}
 

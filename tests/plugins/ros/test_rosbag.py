@@ -14,9 +14,9 @@ import yaml
 from mcap.reader import make_reader
 
 from harness.cli.main import main
+from harness.plugins.ros.bag.write import BagOptions, write_bag
 from harness.recording.read_run import read_run
-from harness.reporting.rosbag.write import BagOptions, write_bag
-from tests.reporting.bag_runs import decoded, everything
+from tests.plugins.ros.bag_runs import decoded, everything
 
 RELIABLE, BEST_EFFORT, TRANSIENT_LOCAL, VOLATILE = 1, 2, 1, 2
 """Of rmw's enumerations, which rosbag2 writes as numbers up to Jazzy."""

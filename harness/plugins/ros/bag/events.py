@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
 
+from harness.plugins.ros.bag.messages import TYPES, message, stamp
+from harness.plugins.ros.bag.samples import Message
+from harness.plugins.ros.bag.topics import EVENTS, ROSOUT
 from harness.recording.plain import to_plain
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
-from harness.reporting.rosbag.messages import TYPES, message, stamp
-from harness.reporting.rosbag.samples import Message
-from harness.reporting.rosbag.topics import EVENTS, ROSOUT
 
 NODE = "armharness"
 LOG = "rcl_interfaces/msg/Log"

@@ -15,26 +15,26 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 
 from harness.core.errors import HarnessError
 from harness.core.types import IntArray
-from harness.recording.files import disk_advice
-from harness.recording.run import Run
-from harness.recording.stored_run import StoredRun
-from harness.reporting.rosbag import cameras
-from harness.reporting.rosbag.events import event_messages
-from harness.reporting.rosbag.frames import moving_tf, static_tf
-from harness.reporting.rosbag.layouts import foxglove_layout, rviz_configuration
-from harness.reporting.rosbag.markers import scene_markers
-from harness.reporting.rosbag.messages import TYPESTORE, joint_state, message, nanoseconds, stamp
-from harness.reporting.rosbag.plans import planned, tcp_paths
-from harness.reporting.rosbag.samples import Message, samples_at
-from harness.reporting.rosbag.topics import (
+from harness.plugins.ros.bag import cameras
+from harness.plugins.ros.bag.events import event_messages
+from harness.plugins.ros.bag.frames import moving_tf, static_tf
+from harness.plugins.ros.bag.layouts import foxglove_layout, rviz_configuration
+from harness.plugins.ros.bag.markers import scene_markers
+from harness.plugins.ros.bag.messages import TYPESTORE, joint_state, message, nanoseconds, stamp
+from harness.plugins.ros.bag.plans import planned, tcp_paths
+from harness.plugins.ros.bag.samples import Message, samples_at
+from harness.plugins.ros.bag.topics import (
     CLOCK,
     JOINT_COMMANDS,
     JOINT_STATES,
     ROBOT_DESCRIPTION,
     Topic,
 )
-from harness.reporting.rosbag.urdf import MeshAddresses, urdf_of
-from harness.reporting.rosbag.wrenches import wrenches
+from harness.plugins.ros.bag.urdf import MeshAddresses, urdf_of
+from harness.plugins.ros.bag.wrenches import wrenches
+from harness.recording.files import disk_advice
+from harness.recording.run import Run
+from harness.recording.stored_run import StoredRun
 
 VERSION = 8
 """Of rosbag2's metadata. Version 9 says QoS in words, which Humble and Iron cannot read; Jazzy and

@@ -8,10 +8,9 @@ from typing import Any
 import yaml
 
 from harness.core.pose_arrays import IDENTITY
-from harness.recording.run import Run
-from harness.reporting.rosbag.frames import WORLD
-from harness.reporting.rosbag.plans import tcp_path_topics
-from harness.reporting.rosbag.topics import (
+from harness.plugins.ros.bag.frames import WORLD
+from harness.plugins.ros.bag.plans import tcp_path_topics
+from harness.plugins.ros.bag.topics import (
     DISPLAY_PLANNED_PATH,
     EVENTS,
     JOINT_STATES,
@@ -21,6 +20,7 @@ from harness.reporting.rosbag.topics import (
     Topic,
     camera_topics,
 )
+from harness.recording.run import Run
 
 SCENE, LOG, EVENT_LIST = "3D!scene", "RosOut!log", "RawMessages!events"
 PLOTS = ("position", "velocity", "effort")

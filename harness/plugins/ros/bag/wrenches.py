@@ -7,10 +7,10 @@ from typing import Any
 
 from harness.core.types import FloatArray, IntArray
 from harness.core.wrench_sensor import WrenchSensor
+from harness.plugins.ros.bag.messages import header, message, vector
+from harness.plugins.ros.bag.samples import Message
+from harness.plugins.ros.bag.topics import Topic, topic_word
 from harness.recording.run import Run
-from harness.reporting.rosbag.messages import header, message, vector
-from harness.reporting.rosbag.samples import Message
-from harness.reporting.rosbag.topics import Topic, topic_word
 
 WRENCH = "geometry_msgs/msg/WrenchStamped"
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.reporting.rosbag.topics import Topic
+from harness.plugins.ros.bag.topics import Topic
 
 BLOCK = 1024  # samples whose frames are computed at once: it bounds the memory of a long run
 

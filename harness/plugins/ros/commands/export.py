@@ -15,8 +15,8 @@ from harness.cli.output import say
 from harness.suite.discovery import UsageError
 
 if TYPE_CHECKING:
+    from harness.plugins.ros.bag.write import BagOptions
     from harness.recording.stored_run import StoredRun
-    from harness.reporting.rosbag.write import BagOptions
 
 METADATA = "metadata.yaml"
 
@@ -63,8 +63,8 @@ class ExportCommand(Command):
 
 
 def _export(arguments: argparse.Namespace, stored: StoredRun) -> None:
-    from harness.reporting.rosbag.urdf import urdf_of
-    from harness.reporting.rosbag.write import BagOptions
+    from harness.plugins.ros.bag.urdf import urdf_of
+    from harness.plugins.ros.bag.write import BagOptions
 
     options = BagOptions(arguments.storage, arguments.rate, arguments.raw_images, arguments.meshes)
     if arguments.bag:
@@ -86,7 +86,7 @@ def _refuse_taken(target: Path, *, is_forced: bool) -> None:
 
 def _write_bag(bag: Path, stored: StoredRun, options: BagOptions) -> None:
     """Write the bag next to its place, then move it there."""
-    from harness.reporting.rosbag.write import write_bag
+    from harness.plugins.ros.bag.write import write_bag
 
     with refusing_unwritable():
         bag.parent.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,1 @@
+"""Reporters for ROS 2."""
