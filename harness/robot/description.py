@@ -28,6 +28,9 @@ ALL_ARMS = "arms"
 WORLD = "world"
 """Name of the root link of every composed robot, in which poses are in world coordinates."""
 
+RENAMED_ROOT = "robot_world"
+"""New name of a root link that is named `world` in the robot's file."""
+
 
 @dataclass(frozen=True, eq=False)
 class Inertial:

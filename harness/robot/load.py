@@ -30,12 +30,11 @@ from harness.robot.description import Joint, RobotDescription
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
-from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.mount import mounted
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
+from harness.robot.robot_format import FORMATS, read_robot_file
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.several_arms import joined_arms
 from harness.robot.srdf.read import read_srdf
@@ -219,8 +218,8 @@ def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:
 
 def _main(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotPart | None:
     """The arm, or a gripper without an arm; None when only `gripper` is given."""
-    if spec.urdf is not None or spec.xacro is not None or spec.mjcf is not None:
-        return read_robot(spec, base_dir, collision)
+    if any(getattr(spec, key) is not None for key in FORMATS):
+        return read_robot_file(spec, base_dir, collision)
     for key in OF_FILES:
         if getattr(spec, key):
             raise RobotOptionError(key, "it requires a robot's file: `urdf`, `xacro` or `mjcf`")
@@ -229,7 +228,7 @@ def _main(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> R
 
 def _is_own(main: RobotPart, gripper: str) -> bool:
     """Whether a name is that of an imported arm's integrated gripper."""
-    return main.facts.gripper is not None and names_integrated_gripper(gripper, main.srdf)
+    return main.facts.gripper is not None and main.srdf.has_gripper(gripper)
 
 
 def _part(

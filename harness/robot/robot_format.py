@@ -1,36 +1,19 @@
-"""What reads a robot's file in the format of another program, as a plug-in."""
+"""What reads a robot's files that have no robot.yaml, as a plug-in."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
 from harness.core.errors import RobotOptionError
+from harness.core.geometry import CollisionMode
 from harness.core.registry import Plugin, absent_plugins, registry
-from harness.core.wrench_sensor import WrenchSensor
-from harness.robot.description import NamedState
-from harness.robot.packages import PackagePath
-from harness.robot.urdf.urdf import Urdf
+from harness.language.scenario import RobotSpec
+from harness.robot.compose import RobotPart
 
-
-@dataclass(frozen=True, eq=False)
-class FormatRobot:
-    """A robot read from another format.
-
-    Attributes:
-        urdf: The tree of the robot.
-        states: States of the driven joints; their group is empty.
-        disabled: Pairs of links that are not checked for collisions, with the reason.
-        wrench_sensors: Sensors of force and torque by name.
-    """
-
-    urdf: Urdf
-    states: tuple[NamedState, ...]
-    disabled: Mapping[tuple[str, str], str]
-    wrench_sensors: Mapping[str, WrenchSensor] = field(default_factory=dict[str, WrenchSensor])
+FORMATS = ("urdf", "xacro", "mjcf")
+"""Keys of `robot:` that name a file."""
 
 
 class RobotFormat(Plugin, ABC):
@@ -39,26 +22,33 @@ class RobotFormat(Plugin, ABC):
     plugin_kind: ClassVar[str] = "robot_format"
 
     @abstractmethod
-    def read(self, path: Path, packages: PackagePath) -> FormatRobot:
-        """Read a robot.
+    def read(
+        self, spec: RobotSpec, base_dir: Path, collision: CollisionMode | None = None
+    ) -> RobotPart:
+        """Read a robot, and infer what its robot.yaml would say.
 
         Args:
-            path: The path of the file.
-            packages: The folders that may be read.
+            spec: The `robot:` of the scenario.
+            base_dir: The scenario's folder, to which paths are relative.
+            collision: How meshes collide whose link the robot's `collision` does not have.
 
         Raises:
-            SpecError: The file has mistakes; each at its place.
+            SpecError: A file has mistakes; each at its place.
+            RobotError: A file is not found, or an option does not fit it.
         """
 
 
-def read_foreign_robot(key: str, path: Path, packages: PackagePath) -> FormatRobot:
-    """The robot of a file that a key of `robot:` names.
+def read_robot_file(
+    spec: RobotSpec, base_dir: Path, collision: CollisionMode | None = None
+) -> RobotPart:
+    """The robot of the file that a key of `robot:` names; see `RobotFormat.read`.
 
     Raises:
         SpecError: The file has mistakes.
-        RobotOptionError: No plug-in reads the format.
+        RobotError: An option does not fit it, or no plug-in reads the format.
     """
+    key = next(key for key in FORMATS if getattr(spec, key) is not None)
     formats = registry(RobotFormat.plugin_kind)
     if key not in formats:
         raise RobotOptionError(key, "; ".join(["no plug-in reads such a file", *absent_plugins()]))
-    return formats[key]().read(path, packages)
+    return formats[key]().read(spec, base_dir, collision)

@@ -81,6 +81,11 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert done.returncode == 2
     assert "formula.scenario.yaml:1:15" in done.stdout + done.stderr
     assert "lacks the built-in plug-ins" in done.stdout + done.stderr
+    file.write_text("robot: {urdf: arm.urdf}\nsteps: [{wait: 1}]\n")
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:1:15" in done.stdout + done.stderr
+    assert "no plug-in reads such a file" in done.stdout + done.stderr
     file.write_text("scenario: t\nrobot: {model: suction_cup}\nsteps: [{gripper: on}]\n")
     done = core("check", file)
     assert done.returncode == 2

@@ -6,12 +6,10 @@ from dataclasses import replace
 
 from harness.core.kinematics import LinkPoses
 from harness.planning.collision.pair_statistics import SelfTouches
-from harness.robot.description import RobotDescription
-from harness.robot.import_robot import RENAMED_ROOT
+from harness.robot.description import RENAMED_ROOT, WORLD, RobotDescription
 from harness.robot.srdf.srdf import link_pair, parse_srdf, write_srdf
 from harness.robot.tree import is_rigid
 
-WORLD = "world"
 SAME_AXES = 1e-6  # [rad] between axes that are the same
 
 

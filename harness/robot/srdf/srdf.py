@@ -72,6 +72,10 @@ class Srdf:
     notes: tuple[str, ...] = field(default=(), compare=False)
     root_element: XmlElement | None = field(default=None, compare=False, repr=False)
 
+    def has_gripper(self, name: str) -> bool:
+        """Whether a scenario's `gripper` is a group or an end effector of the robot itself."""
+        return name in {each.name for each in (*self.groups, *self.end_effectors)}
+
 
 def link_pair(first: str, second: str) -> tuple[str, str]:
     """The unordered pair, sorted."""

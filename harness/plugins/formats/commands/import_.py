@@ -103,7 +103,7 @@ def _robot(arguments: argparse.Namespace) -> int:
     if folder.suffix:
         raise UsageError(f"'{folder}' is no folder: robot.yaml, URDF and SRDF are written into one")
     from harness.language.scenario import RobotSpec
-    from harness.plugins.formats.robot_folder import robot_folder
+    from harness.plugins.formats.robot_files.robot_folder import robot_folder
     from harness.robot.robot_source import KINDS
 
     robot = source_of(argparse.Namespace(**{**vars(arguments), "srdf": arguments.file}))

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
-from harness.robot.packages import PackagePath
-from harness.robot.robot_format import FormatRobot, RobotFormat
+from harness.core.geometry import CollisionMode
+from harness.language.scenario import RobotSpec
+from harness.robot.compose import RobotPart
+from harness.robot.robot_format import RobotFormat
 
 
 class MjcfRobot(RobotFormat):
@@ -14,8 +16,10 @@ class MjcfRobot(RobotFormat):
 
     name: ClassVar[str] = "mjcf"
 
-    def read(self, path: Path, packages: PackagePath) -> FormatRobot:
+    def read(
+        self, spec: RobotSpec, base_dir: Path, collision: CollisionMode | None = None
+    ) -> RobotPart:
         """Read the robot."""
-        from harness.plugins.formats.mjcf_robot.mjcf import read_mjcf
+        from harness.plugins.formats.robot_files.import_robot import read_robot
 
-        return read_mjcf(path, packages)
+        return read_robot(spec, base_dir, collision)

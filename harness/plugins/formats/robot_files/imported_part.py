@@ -11,16 +11,23 @@ import numpy as np
 from harness.core.errors import RobotError, RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
+from harness.plugins.formats.robot_files.default_group import DEFAULT_GROUP, MOST_FINGER_JOINTS
+from harness.plugins.formats.robot_files.find_hand import hand_candidates, named_hand
+from harness.plugins.formats.robot_files.inferred_gripper import (
+    IntegratedGripper,
+    NoGripperError,
+    recognise,
+)
+from harness.plugins.formats.robot_files.inferred_tcp import (
+    tcp_without_gripper,
+    with_integrated_gripper,
+)
 from harness.robot.assumed_limits import ACCELERATION, VELOCITY
 from harness.robot.compose import PartArm, RobotPart
 from harness.robot.description import Joint, PlanningGroup
-from harness.robot.gripper.find_hand import hand_candidates, named_hand
-from harness.robot.gripper.inferred_gripper import IntegratedGripper, NoGripperError, recognise
-from harness.robot.gripper.inferred_tcp import tcp_without_gripper, with_integrated_gripper
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.all_arms import with_group_of_all
-from harness.robot.srdf.default_group import DEFAULT_GROUP, MOST_FINGER_JOINTS
 from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf
@@ -158,11 +165,6 @@ def _other_arm(
         return urdf, srdf, PartArm(arm.name, tcp, arm.base_link, None)
     urdf, srdf, tcp = with_integrated_gripper(own, arm, arm.tip_link, None, notes)
     return urdf, srdf, PartArm(arm.name, tcp, arm.base_link, own.facts)
-
-
-def names_integrated_gripper(name: str | None, srdf: Srdf) -> bool:
-    """Whether a scenario's `gripper` is a group or an end effector of the robot itself."""
-    return name in {group.name for group in srdf.groups} | {t.name for t in srdf.end_effectors}
 
 
 def _own_gripper(

@@ -9,26 +9,23 @@ from pathlib import Path
 from harness.core.geometry import CollisionMode
 from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
+from harness.plugins.formats.robot_files.checked_srdf import checked_srdf
+from harness.plugins.formats.robot_files.default_group import default_srdf
+from harness.plugins.formats.robot_files.imported_part import imported_part, refuse_unknown_links
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
 from harness.robot.decomposed_meshes import decompose_meshes
-from harness.robot.description import WORLD, NamedState
+from harness.robot.description import RENAMED_ROOT, WORLD, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import files_around, find_file, find_folder
-from harness.robot.imported_part import imported_part, refuse_unknown_links
 from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
-from harness.robot.robot_format import read_foreign_robot
-from harness.robot.srdf.check import checked_srdf
-from harness.robot.srdf.default_group import default_srdf
+from harness.robot.robot_format import FORMATS
 from harness.robot.srdf.read import read_srdf
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf, parse_urdf
 from harness.robot.xacro.file import refuse_unknown_arguments
 from harness.robot.xacro.render import render
-
-RENAMED_ROOT = "robot_world"
-"""New name of a robot's root link that is named `world`, like the root of every composed robot."""
 
 
 def read_robot(
@@ -36,16 +33,9 @@ def read_robot(
 ) -> RobotPart:
     """The robot of `urdf:`, `xacro:` or `mjcf:`, with its SRDF or a default one.
 
-    Args:
-        spec: The `robot:` of the scenario.
-        base_dir: The scenario's folder, to which paths are relative.
-        collision: How meshes collide whose link the robot's `collision` does not have.
-
-    Raises:
-        SpecError: A file has mistakes; at line and column.
-        RobotError: A file is not found, or an option does not fit it.
+    See `RobotFormat.read` for arguments and errors.
     """
-    key = next(key for key in ("urdf", "xacro", "mjcf") if getattr(spec, key) is not None)
+    key = next(key for key in FORMATS if getattr(spec, key) is not None)
     given = tuple(find_folder(each, base_dir) for each in spec.packages)
     path = find_file(getattr(spec, key), key, base_dir, given)
     packages = files_around(getattr(spec, key), path, given)
@@ -53,7 +43,9 @@ def read_robot(
     files = [*([path] if key == "xacro" else []), *([srdf_path] if srdf_path else [])]
     refuse_unknown_arguments(spec.args, files)
     if key == "mjcf":
-        found = read_foreign_robot(key, path, packages)
+        from harness.plugins.formats.mjcf_robot.mjcf import read_mjcf  # loads MuJoCo
+
+        found = read_mjcf(path, packages)
         urdf, states, excluded = found.urdf, found.states, found.disabled
         sensors = found.wrench_sensors
     else:

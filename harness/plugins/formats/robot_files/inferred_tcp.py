@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from harness.core.spatial import SE3
+from harness.plugins.formats.robot_files.inferred_gripper import IntegratedGripper
 from harness.robot.description import Link, PlanningGroup, fixed_joint
-from harness.robot.gripper.inferred_gripper import IntegratedGripper
 from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.tree import carriers

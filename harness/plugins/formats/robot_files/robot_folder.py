@@ -13,10 +13,9 @@ import yaml
 from harness.core.errors import RobotOptionError
 from harness.core.geometry import Mesh
 from harness.language.scenario import RobotSpec
+from harness.plugins.formats.robot_files.import_robot import read_robot
 from harness.robot.compose import RobotPart
 from harness.robot.description import Joint
-from harness.robot.import_robot import read_robot
-from harness.robot.imported_part import names_integrated_gripper
 from harness.robot.load import load_robot
 from harness.robot.srdf.srdf import write_srdf
 from harness.robot.urdf.write import package_name, write_urdf
@@ -56,7 +55,7 @@ def robot_folder(spec: RobotSpec, base_dir: Path, folder: Path) -> RobotFolder:
         RobotError: A file is not found, or an option does not fit it.
     """
     part = read_robot(spec, base_dir)
-    if spec.gripper is not None and not names_integrated_gripper(spec.gripper, part.srdf):
+    if spec.gripper is not None and not part.srdf.has_gripper(spec.gripper):
         raise RobotOptionError(
             "gripper",
             f"the SRDF has no group '{spec.gripper}'; a bundled gripper is named"

@@ -1,0 +1,1 @@
+"""Robots of files without a robot.yaml, whose content follows from the files."""
