@@ -13,10 +13,10 @@ from harness.judging.expectations.named_target import NamedTarget
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
 from harness.judging.expectations.static import Static
-from harness.judging.expectations.tcp_path import TcpPath
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.paths.expectations.tcp_path import TcpPath
 from tests.judging.synthetic_run import force, heights, lift_run, make_run, step, verdict
 
 EARLY = "PLANNING_FAILED: no path"

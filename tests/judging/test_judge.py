@@ -18,9 +18,7 @@ from harness.judging.expectations.in_ import In
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.sees import HueRange, Sees
 from harness.judging.expectations.static import Static
-from harness.judging.expectations.tcp_path import TcpPath
 from harness.judging.expectations.tcp_pose import TcpPose
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.within_limits import WithinLimits
@@ -34,7 +32,9 @@ from harness.judging.observations import (
 )
 from harness.judging.placed import PlacedExpectation, describe
 from harness.language.poses import Pose
+from harness.plugins.cameras.expectations.sees import HueRange, Sees
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.paths.expectations.tcp_path import TcpPath
 from tests.judging.synthetic_run import attachment, heights, lift_run, make_run
 
 

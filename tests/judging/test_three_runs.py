@@ -8,8 +8,8 @@ reference names.
 import numpy as np
 import pytest
 
-from harness.judging.expectations.sees import Sees
 from harness.language.language import PREDICATES
+from harness.plugins.cameras.expectations.sees import Sees
 from tests.judging.evidence import collected, word_of
 from tests.judging.picture_mutants import SUBJECTS, seen_run
 from tests.judging.synthetic_run import (

@@ -15,7 +15,6 @@ from harness.judging.expectations.named_target import NamedTarget
 from harness.judging.expectations.never import Never
 from harness.judging.expectations.on import On
 from harness.judging.expectations.placed import Placed
-from harness.judging.expectations.sees import Sees
 from harness.judging.expectations.static import Static
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.upright import Upright
@@ -27,6 +26,7 @@ from harness.judging.window import (
     refuse_unrecorded_steps,
     window_of,
 )
+from harness.plugins.cameras.expectations.sees import Sees
 from harness.plugins.formulas.expectations.formula import Formula
 from harness.robot.description import Mimic
 from tests.judging.synthetic_run import ROBOT, changed, make_run, step

@@ -9,10 +9,10 @@ from pydantic import TypeAdapter, ValidationError
 
 from harness.core.errors import SpecError
 from harness.core.quantity import constant_of, split_quantity
-from harness.judging.expectations.sees import HUES, HueRange
 from harness.language.base import Count
 from harness.language.colors import COLORS, color_of_name
 from harness.language.reading.load import parse_scenario
+from harness.plugins.cameras.expectations.sees import HUES, HueRange
 
 HEAD = "scenario: x\nrobot: open_manipulator_x\nsteps:\n  - settle\n"
 

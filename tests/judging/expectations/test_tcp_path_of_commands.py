@@ -7,7 +7,7 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
-from harness.judging.expectations.tcp_path import TcpPath
+from harness.plugins.paths.expectations.tcp_path import TcpPath
 from harness.robot.description import Joint
 from tests.judging.synthetic_run import ROBOT, at, changed, make_run, step, verdict
 

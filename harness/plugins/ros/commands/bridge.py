@@ -79,8 +79,8 @@ def bridge_request(
     """What the arguments request; the steps are replaced where none hands the robot over."""
     from harness.language.reading.load import read_scenario
     from harness.plugins.ros.bridge import BridgeRequest, handed_over
+    from harness.plugins.ros.steps.external import External
     from harness.session.run_request import RunRequest, named_commands
-    from harness.steps.external import External
     from harness.suite.folders import report_folders
 
     file = one_scenario(arguments.scenario)

@@ -12,7 +12,6 @@ from harness.core.amounts import amounts, percentages
 from harness.core.pose_arrays import compose
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.judging.commanded_path import SHORTEST, followed_path
 from harness.judging.expectation import ArmPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.observations import Observations
@@ -28,6 +27,7 @@ from harness.language.base import (
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose
 from harness.language.step import step_class
+from harness.plugins.paths.commanded_path import SHORTEST, followed_path
 from harness.recording.link_poses import planned_tcp_poses
 from harness.recording.step_record import StepRecord
 from harness.recording.verdict import Measure

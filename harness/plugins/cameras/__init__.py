@@ -1,0 +1,1 @@
+"""Cameras: a step that keeps a picture, and what pictures must show."""

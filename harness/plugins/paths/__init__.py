@@ -1,0 +1,1 @@
+"""Paths of the TCP: seams that are followed within a tolerance."""

@@ -1,0 +1,1 @@
+"""Steps with ROS 2 nodes."""
