@@ -8,12 +8,12 @@ from pathlib import Path
 from harness.reporting.html import bundle
 from harness.reporting.html.packing import Packer
 from harness.reporting.sampled import missed, rate_text
-from harness.reporting.suite.campaign import campaign_of
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.history import History
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.rows import row_facts
+from harness.reporting.suite.section import sections
 from harness.reporting.terminal import OUTCOMES, failure_place
 
 FOLDER = Path(__file__).with_name("page")
@@ -55,7 +55,7 @@ def suite_html(
             (each, each.rate, rate_text("", each.rate).partition(": ")[2])
             for each in sorted(record.rates, key=lambda each: each.outcome == "passed")
         ],
-        campaign=campaign_of(columns, record.cases, folder),
+        **{"campaign": None, **sections(columns, record.cases, folder)},
         is_campaign=len(columns.numbers) + outcomes["invalid"] == total,
         plain=[(case, _link(case, folder)) for _, case in urgent[:MOST_PLAIN_ROWS]],
         data=packer.text({"rows": [rows[i] for i, _ in listed], "history": bool(history)}),

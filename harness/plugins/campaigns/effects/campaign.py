@@ -13,15 +13,15 @@ import numpy as np
 
 from harness.core.amounts import amount
 from harness.core.types import FloatArray
-from harness.reporting.suite.columns import PASSED, Columns, VariedQuantity
-from harness.reporting.suite.curves import Curve, curve_of
-from harness.reporting.suite.record import SuiteCase
-from harness.reporting.suite.sensitivity import (
+from harness.plugins.campaigns.effects.curves import Curve, curve_of
+from harness.plugins.campaigns.effects.sensitivity import (
     FEWEST_RUNS,
     FileSensitivity,
     evenly,
     sensitivities,
 )
+from harness.reporting.suite.columns import PASSED, Columns, VariedQuantity
+from harness.reporting.suite.record import SuiteCase
 from harness.reporting.suite.tables import one_run_lines
 
 MOST_POINTS = 10_000  # on the map; of more, an even choice of the passed and of the failed

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from harness.core.proportion import wilson_interval
-from harness.reporting.suite.campaign import campaign_of
+from harness.plugins.campaigns.effects.campaign import campaign_of
+from harness.plugins.campaigns.effects.curves import curve_of
+from harness.plugins.campaigns.effects.sensitivity import sensitivities
 from harness.reporting.suite.columns import Columns
-from harness.reporting.suite.curves import curve_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
-from harness.reporting.suite.sensitivity import sensitivities
 from harness.reporting.suite.write import write_suite_page
 from tests.reporting.suites import STUCK, failed, passed, verdict
 

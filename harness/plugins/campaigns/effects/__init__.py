@@ -1,0 +1,1 @@
+"""How the outcome of runs depends on what varies in them."""
