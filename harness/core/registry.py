@@ -53,6 +53,7 @@ BUILT_IN = {
     "robot_format": "",
     "world_format": "",
     "reporter": "harness.reporting.reporters",
+    "observer": "",
     "suite_section": "",
     "grip": "",
     "adhesion": "",

@@ -14,9 +14,9 @@ from harness.recording.signals import ContactRecord, Signals
 from harness.session.execute import Execution
 from harness.session.observation.beliefs import believed_poses
 from harness.session.observation.contacts import contact_records
-from harness.session.observation.fault_effects import with_receipts
 from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.session.observation.observe import observed_signals, report_findings
+from harness.session.observation.observer import observed
 from harness.session.pictures import Captures, Drawings, with_picture_names
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
@@ -92,7 +92,7 @@ def _recorded(
     believed = believed_poses(execution.beliefs, recorded.joint_positions, kinematics)
     signals = replace(recorded, object_poses={**recorded.object_poses, **believed})
     robot = program.description
-    steps, faults = with_receipts(execution.steps, signals, robot, execution.objects)
+    steps, seen = observed(execution.steps, signals, robot, execution.objects)
     return Run(
         scenario=program.title,
         file=request.shown_file,
@@ -111,7 +111,7 @@ def _recorded(
             *notes_of_files(prepared.notes),
             *overlap_findings(simulator.overlaps_at_start),
             *findings_of(steps),
-            *faults,
+            *seen,
         ),
         source=prepared.loaded.text,
         versions=library_versions(),

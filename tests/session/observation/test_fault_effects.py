@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
+from harness.plugins.faults.observers.faults import COMMANDED, FaultsObserver
 from harness.recording.faults import InjectedFault, InjectedFaults, faults_of
-from harness.session.observation.fault_effects import COMMANDED, with_receipts
 from tests.approved import SAID, finding_text
 from tests.judging.synthetic_run import BOX, DT, ROBOT, TABLE, at, force, make_run, step
 
@@ -17,7 +17,7 @@ N = 100
 def receipts(faults, run, more=()):
     """The faults of the first step with their receipts, and the findings."""
     first = step("first", 10, 20, "inject", result={"faults": [each.plain() for each in faults]})
-    steps, findings = with_receipts((first, *more), run.signals, ROBOT, run.objects)
+    steps, findings = FaultsObserver().observe((first, *more), run.signals, ROBOT, run.objects)
     SAID.extend(map(finding_text, findings))
     return faults_of(steps[0]), findings
 
@@ -89,7 +89,7 @@ def test_what_settles_while_it_is_pushed_from_the_side_is_not_moved_by_the_push(
     pushed[:, :3] += np.outer(0.01 * DT * np.arange(N), direction)
     for poses, receipt_of in ((settling, "no_effect"), (pushed, "landed")):
         run = make_run(N, object_poses={"box": poses})
-        steps, _ = with_receipts((first,), run.signals, ROBOT, (TABLE, BOX))
+        steps, _ = FaultsObserver().observe((first,), run.signals, ROBOT, (TABLE, BOX))
         assert faults_of(steps[0])[0].receipt == receipt_of
 
 
@@ -97,7 +97,7 @@ def test_what_settles_while_it_is_pushed_from_the_side_is_not_moved_by_the_push(
 def test_a_push_of_one_sample_shows_in_the_motion_after_it(start):
     first = step("first", start, start + 1, "inject", result={"faults": [PUSH.plain()]})
     run = make_run(N, object_poses={"box": going(0.5, start, 60)})
-    steps, _ = with_receipts((first,), run.signals, ROBOT, (TABLE, BOX))
+    steps, _ = FaultsObserver().observe((first,), run.signals, ROBOT, (TABLE, BOX))
     assert faults_of(steps[0])[0].receipt == "landed"
 
 
@@ -173,7 +173,7 @@ def test_noise_and_latency_say_by_how_much_and_zero_sets_them_back():
 
 def test_noise_of_the_last_sample_alone_is_not_seen():
     last = step("first", 90, N, "inject", result={"faults": [NOISE.plain()]})
-    steps, findings = with_receipts((last,), make_run(N).signals, ROBOT, (TABLE, BOX))
+    steps, findings = FaultsObserver().observe((last,), make_run(N).signals, ROBOT, (TABLE, BOX))
     assert faults_of(steps[0])[0].evidence == "no time passed afterwards"
     assert len(findings) == 1
 
@@ -182,7 +182,7 @@ def test_steps_without_faults_stay_as_they_are_and_each_fault_has_its_receipt():
     plain = step("plain", 30, 40)
     first = step("first", 10, 20, "inject", result={"faults": [STALL.plain(), PUSH.plain()]})
     run = make_run(N, joint_commands=ramp(0, 0.5))
-    steps, findings = with_receipts((first, plain), run.signals, ROBOT, (TABLE, BOX))
+    steps, findings = FaultsObserver().observe((first, plain), run.signals, ROBOT, (TABLE, BOX))
     assert steps[1] is plain
     assert [each.receipt for each in faults_of(steps[0])] == ["landed", "no_effect"]
     [found] = findings
@@ -205,7 +205,7 @@ def test_a_fault_that_is_set_again_at_once_lasts_for_no_time(start, landed):
 def test_a_push_that_took_no_time_moved_nothing():
     first = step("first", 20, 20, "inject", result={"faults": [PUSH.plain()]})
     run = make_run(N, object_poses={"box": going(1.0, 20, 60)})
-    steps, _ = with_receipts((first,), run.signals, ROBOT, (TABLE, BOX))
+    steps, _ = FaultsObserver().observe((first,), run.signals, ROBOT, (TABLE, BOX))
     [answer] = faults_of(steps[0])
     assert (answer.receipt, answer.evidence) == (
         "no_effect",

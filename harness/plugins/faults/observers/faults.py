@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from harness.recording.run import Finding, ObjectRecord
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
+from harness.session.observation.observer import Observed, Observer
 
 MOVING = 1e-3  # a body faster than this moves [m/s]
 COMMANDED = 1e-4  # a set point that changes by more is a command to move [rad or m]
@@ -42,37 +43,43 @@ class Effect:
         return f"{self.evidence} {until}"
 
 
-def with_receipts(
-    steps: Sequence[StepRecord],
-    signals: Signals,
-    robot: RobotDescription,
-    objects: Sequence[ObjectRecord],
-) -> tuple[tuple[StepRecord, ...], tuple[Finding, ...]]:
-    """The steps with a receipt on every fault, and a finding for each that had no effect."""
-    record = _Record(signals, robot, objects)
-    done: list[StepRecord] = []
-    findings: list[Finding] = []
-    for number, step in enumerate(steps):
-        later = steps[number + 1 :]
-        faults = [
-            record.with_receipt(fault, step, _set_again(fault, later)) for fault in faults_of(step)
-        ]
-        if not faults:
-            done.append(step)
-            continue
-        done.append(replace(step, result=step.result.replaced(InjectedFaults(tuple(faults)))))
-        findings += [
-            Finding(
-                "fault_without_effect",
-                f"{fault.name} had no effect: {fault.evidence}",
-                step.start_time,
-                step.id,
-                fault.plain(),
-            )
-            for fault in faults
-            if fault.receipt == "no_effect"
-        ]
-    return tuple(done), tuple(findings)
+class FaultsObserver(Observer):
+    """A receipt on every fault, and a finding for each that had no effect."""
+
+    name: ClassVar[str] = "faults"
+
+    def observe(
+        self,
+        steps: Sequence[StepRecord],
+        signals: Signals,
+        robot: RobotDescription,
+        objects: Sequence[ObjectRecord],
+    ) -> Observed:
+        record = _Record(signals, robot, objects)
+        done: list[StepRecord] = []
+        findings: list[Finding] = []
+        for number, step in enumerate(steps):
+            later = steps[number + 1 :]
+            faults = [
+                record.with_receipt(fault, step, _set_again(fault, later))
+                for fault in faults_of(step)
+            ]
+            if not faults:
+                done.append(step)
+                continue
+            done.append(replace(step, result=step.result.replaced(InjectedFaults(tuple(faults)))))
+            findings += [
+                Finding(
+                    "fault_without_effect",
+                    f"{fault.name} had no effect: {fault.evidence}",
+                    step.start_time,
+                    step.id,
+                    fault.plain(),
+                )
+                for fault in faults
+                if fault.receipt == "no_effect"
+            ]
+        return tuple(done), tuple(findings)
 
 
 def _set_again(fault: InjectedFault, later: Sequence[StepRecord]) -> int | None:
