@@ -67,7 +67,9 @@ class IkExercise(SpecModel):
         description="What a property is worth next to the others, by its name; 1 by default.",
     )
     call_limit: PositiveDuration = Field(
-        default=5.0, description="The wall time after which one call counts as hanging [s]."
+        default=5.0,
+        description="The processor time after which one call counts as hanging [s]; by the clock"
+        " it is ten times as much.",
     )
 
 

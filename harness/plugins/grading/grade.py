@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,79 +17,14 @@ from harness.judging.temporal import episodes
 from harness.language.reading.resolve import resolved_text
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
-from harness.plugins.grading.credit import FULL, Credit, credit_of_run
+from harness.plugins.grading.credit import credit_of_run
+from harness.plugins.grading.points import Grade, graded
 from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
-from harness.recording.verdict import Verdict
 from harness.recording.write_run import run_folder, write_document
 from harness.reporting.reporter import Reports
 from harness.session.prepare import Prepared, prepare
-
-
-@dataclass(frozen=True)
-class Graded:
-    """An expectation's verdict, and what it is worth.
-
-    Attributes:
-        points: The points that can be earned; 0 where only other rows have points.
-        earned: The points that were earned.
-        withheld: The doubts about the recording for which points are withheld.
-        is_measured: Whether what the recording shows was measured; distances are not where points
-            are withheld.
-    """
-
-    verdict: Verdict
-    points: float
-    earned: float
-    withheld: tuple[str, ...] = ()
-    is_measured: bool = True
-
-    @property
-    def is_withheld(self) -> bool:
-        """Whether points are withheld that the recording may have earned."""
-        return bool(self.withheld) and (self.verdict.status == "passed" or not self.is_measured)
-
-
-@dataclass(frozen=True)
-class Grade:
-    """The grade of a recording.
-
-    Attributes:
-        run: The recording, as far as it goes; None where nothing of a run was kept.
-        rows: One an expectation, in file order.
-        notes: What a person should know of the recording.
-    """
-
-    run: Run | None
-    rows: tuple[Graded, ...]
-    notes: tuple[str, ...]
-
-    @property
-    def points(self) -> float:
-        """Points that can be earned."""
-        return sum(row.points for row in self.rows)
-
-    @property
-    def earned(self) -> float:
-        """Points that are earned."""
-        return sum(row.earned for row in self.rows)
-
-    @property
-    def withheld(self) -> float:
-        """Points that are withheld, because what the recording shows is doubtful."""
-        return sum(row.points for row in self.rows if row.is_withheld)
-
-    @property
-    def is_full(self) -> bool:
-        """Whether every point is earned."""
-        return bool(self.rows) and all(row.earned == row.points for row in self.rows)
-
-    @property
-    def open(self) -> float:
-        """Points of what this recording cannot show: neither earned nor lost."""
-        unknown = (row for row in self.rows if row.verdict.status == "not observable")
-        return sum(row.points for row in unknown if row.is_measured)
 
 
 def grade_bag(
@@ -194,16 +129,6 @@ def _withheld(
         if is_named or (not names and (is_of_step or kind != "steps")):
             kinds.append(kind)
     return tuple(dict.fromkeys(kinds))
-
-
-def graded(verdicts: Sequence[Verdict], credit: Credit = FULL) -> tuple[Graded, ...]:
-    """The `points` of each expectation; one each where no expectation states any."""
-    has_points = any(verdict.points is not None for verdict in verdicts)
-    worth = [(verdict.points or 0.0) if has_points else 1.0 for verdict in verdicts]
-    return tuple(
-        Graded(verdict, points, points * credit.share if verdict.status == "passed" else 0.0)
-        for verdict, points in zip(verdicts, worth, strict=True)
-    )
 
 
 def _steps(prepared: Prepared) -> dict[str, tuple[int, str]]:

@@ -5,6 +5,7 @@ import os
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -176,6 +177,30 @@ def test_steps_that_put_an_object_elsewhere_are_refused(here, capsys):
     file.write_text(file.read_text().replace("expect:\n", jump))
     assert main(["course", "check", "--no-open"]) == 2
     assert "the step `move_object` changes the scene" in capsys.readouterr().err
+
+
+WITHOUT_EXTRAS = """\
+import sys
+from harness.core.extras import EXTRAS
+sys.modules.update(dict.fromkeys(EXTRAS))  # an import of one raises ImportError
+from harness.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.nightly(but=["course"])
+@pytest.mark.parametrize("command", ["course", "grade-class"])
+def test_the_course_and_a_class_of_scenarios_need_no_extra(here, command):
+    main(["course", "start", "2", "class/work"])
+    shutil.copytree(COURSE / "02_gripper", here / "02_gripper")
+    words = {
+        "course": ["course", "check", "class/work", "--no-open"],
+        "grade-class": ["grade-class", "02_gripper", "class"],
+    }[command]
+    code = [sys.executable, "-c", WITHOUT_EXTRAS, *words]
+    done = subprocess.run(code, capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    assert re.search("4 of 10 points|4/10  work", done.stdout), done.stdout
 
 
 def test_a_node_runs_in_the_folder_of_the_student(here, capsys, monkeypatch):

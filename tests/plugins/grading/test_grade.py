@@ -9,7 +9,8 @@ import pytest
 from harness.cli.main import main
 from harness.core.pose_arrays import relative
 from harness.core.resources import data_folder
-from harness.plugins.grading.grade import grade_bag, graded
+from harness.plugins.grading.grade import grade_bag
+from harness.plugins.grading.points import graded
 from harness.plugins.ros.bag.write import BagOptions, write_bag
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.read_run import read_run

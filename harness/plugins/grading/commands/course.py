@@ -116,7 +116,7 @@ def _show_case(case: CaseResult, file: Path, arguments: argparse.Namespace) -> i
     """Print failed steps, points with reasons and the page of a run."""
     from harness.plugins.grading.commands.grade import print_grade
     from harness.plugins.grading.credit import credit_of_run
-    from harness.plugins.grading.grade import Grade, graded
+    from harness.plugins.grading.points import Grade, graded
     from harness.reporting.terminal import Style, report_link
 
     credit = credit_of_run(is_idle=case.is_idle, is_full=case.outcome == "passed")
@@ -153,7 +153,7 @@ def _show_properties(
     verdicts: tuple[Verdict, ...], credit: Credit, exercise: Exercise, arguments: argparse.Namespace
 ) -> int:
     """Print the points of the properties that a function keeps."""
-    from harness.plugins.grading.grade import Grade, graded
+    from harness.plugins.grading.points import Grade, graded
 
     whole = sum(each.points or 0.0 for each in verdicts)
     scale = (exercise.assignment.model.points or whole) / whole

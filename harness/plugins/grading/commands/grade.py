@@ -26,7 +26,7 @@ from harness.suite.folders import report_folders
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
-    from harness.plugins.grading.grade import Grade, Graded
+    from harness.plugins.grading.points import Grade, Graded
 
 DOUBTS = ("publishers", "tf", "frames", "steps", "velocities", "jumps", "once")
 EXAMPLE = "red_box=/red_box/pose"
@@ -156,7 +156,7 @@ def _run_node(arguments: argparse.Namespace) -> int:
 
 def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     from harness.plugins.grading.credit import credit_of_run
-    from harness.plugins.grading.grade import Grade, graded
+    from harness.plugins.grading.points import Grade, graded
     from harness.recording.read_run import read_run
 
     case = case_runner("nodes").run_command(arguments, arguments.timeout)
