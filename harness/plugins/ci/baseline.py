@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from harness.recording.verdict import Verdict
 from harness.reporting.suite.junit import SAMPLE
 from harness.reporting.suite.record import SuiteCase
 from harness.suite.discovery import UsageError
+from harness.suite.header import read_header
 
 FORMAT = "armharness-margins/1"
 DEFAULT_FILE = "margins.json"
@@ -63,7 +65,11 @@ class ShrunkMargin:
 
     def __str__(self) -> str:
         if self.is_gone:
-            return f"{self.expectation} is expected no more, or in other words: {self.change}"
+            group = self.case.partition(" [")[2].removesuffix("]")
+            where = f"in the case '{group}', " if group else ""
+            return (
+                f"{where}{self.expectation} is expected no more, or in other words: {self.change}"
+            )
         return f"the margin of '{self.expectation}' shrank: {self.change}"
 
 
@@ -74,7 +80,8 @@ def shrunk_margins(
 
     A failed expectation is none of them: its case has failed. What the baseline does not have, or
     had no margin in it, cannot shrink. An expectation is gone where its case passes without it,
-    or where its file exists no more; a case that was not selected is not.
+    or where its file, or its case in `parametrize`, exists no more; a case that was not selected is
+    not.
 
     Args:
         cases: The cases of this run.
@@ -103,9 +110,11 @@ def _gone(cases: Sequence[SuiteCase], baseline: Margins) -> Iterator[ShrunkMargi
         names = judged.setdefault(_case_name(case), set())
         names.update(map(_named, case.result.verdicts))
     failed = {_case_name(case) for case in cases if case.result.outcome != "passed"}
+    dropped = _dropped(cases, baseline)
     for name, margins in baseline.items():
         file = name.partition(" [")[0]
-        if name in failed or (name not in judged and Path(file).exists()):
+        is_there = name not in dropped and Path(file).exists()
+        if name in failed or (name not in judged and is_there):
             continue
         for key, before in margins.items():
             expectation, _, unit = key.rpartition(" [")
@@ -114,16 +123,27 @@ def _gone(cases: Sequence[SuiteCase], baseline: Margins) -> Iterator[ShrunkMargi
                 yield ShrunkMargin(file, 0, name, expectation, before, math.nan, unit)
 
 
+def _dropped(cases: Sequence[SuiteCase], baseline: Margins) -> set[str]:
+    """The cases of the baseline that files of this run have no more; broken files have theirs."""
+    files = {case.result.file for case in cases}
+    files -= {case.result.file for case in cases if case.result.outcome == "invalid"}
+    known = {_case_name(case) for case in cases}
+    for file in filter(os.path.isfile, files):
+        cases_of_file = read_header(Path(file)).variation.parametrized()
+        known |= {_name(file, each.name) for each in cases_of_file}
+    return {name for name in baseline if name not in known and name.partition(" [")[0] in files}
+
+
 def new_margins(cases: Iterable[SuiteCase], baseline: Margins) -> int:
     """The number of expectations with a margin that the baseline does not have."""
     keys = {(name, key) for name, key, verdict, _ in _margins(cases) if verdict.margin > 0}
     return sum(key not in baseline.get(name, {}) for name, key in keys)
 
 
-def updated(cases: Iterable[SuiteCase], baseline: Margins) -> dict[str, dict[str, float]]:
+def updated(cases: Sequence[SuiteCase], baseline: Margins) -> dict[str, dict[str, float]]:
     """The baseline with the margins of the cases that passed in place of earlier ones.
 
-    Cases that failed or did not run keep their margins; those whose file is gone are left out.
+    Cases that failed or did not run keep their margins; those that are gone are left out.
     """
     passed: dict[str, dict[str, float]] = {}
     failed = set[str]()
@@ -133,7 +153,12 @@ def updated(cases: Iterable[SuiteCase], baseline: Margins) -> dict[str, dict[str
     for name, key, verdict, _ in _margins(cases):
         least = passed.setdefault(name, {}).get(key, math.inf)
         passed[name][key] = min(least, verdict.margin)
-    kept = {n: dict(m) for n, m in baseline.items() if Path(n.partition(" [")[0]).is_file()}
+    dropped = _dropped(cases, baseline)
+    kept = {
+        name: dict(margins)
+        for name, margins in baseline.items()
+        if name not in dropped and Path(name.partition(" [")[0]).is_file()
+    }
     return kept | {name: margins for name, margins in passed.items() if name not in failed}
 
 
@@ -179,8 +204,11 @@ def _margins(cases: Iterable[SuiteCase]) -> Iterator[tuple[str, str, Verdict, st
 
 def _case_name(case: SuiteCase) -> str:
     """File and case; samples of one case share a name, and the least of their margins counts."""
-    group = SAMPLE.sub("", case.result.case)
-    return f"{case.result.file} [{group}]" if group else case.result.file
+    return _name(case.result.file, SAMPLE.sub("", case.result.case))
+
+
+def _name(file: str, group: str) -> str:
+    return f"{file} [{group}]" if group else file
 
 
 def _named(verdict: Verdict) -> str:

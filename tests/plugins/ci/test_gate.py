@@ -74,7 +74,8 @@ def folder(tmp_path, monkeypatch):
     for name in ("GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"):
         monkeypatch.delenv(name, raising=False)
     (tmp_path / "a").mkdir()
-    (tmp_path / "a/pick.scenario.yaml").touch()
+    text = "scenario: Pick\nparametrize: {a: [c0, c1, c2]}\n"
+    (tmp_path / "a/pick.scenario.yaml").write_text(text)
     return tmp_path
 
 
@@ -136,12 +137,49 @@ def expecting(result, text):
     return replace(result, verdicts=(replace(result.verdicts[0], expectation=text),))
 
 
+@pytest.mark.parametrize(
+    ("now", "gone"),
+    [
+        ("parametrize: {a: [c0]}", ["c1"]),
+        ("parametrize: {b: [c0, c1], c: [1]}", ["c0", "c1"]),
+        ("parametrize: [{id: c0, a: 1}]", ["c1"]),
+        ("parametrize: {a: [c0, c1]}", []),
+        ("parametrize: {a: [c0, c1]}\nsamples: 3", []),
+        ("parametrize: {a: [c1, c0, c2]}", []),
+    ],
+)
+def test_a_case_that_parametrize_has_no_more_fails_and_one_not_selected_passes(
+    folder, capsys, now, gone
+):
+    file = folder / "a/pick.scenario.yaml"
+    elsewhere = replace(passed(9), file="b/other.scenario.yaml")
+    (folder / "b").mkdir()
+    (folder / "b/other.scenario.yaml").touch()
+    before = baseline(folder, passed(0), passed(1), elsewhere)
+    file.write_text(f"scenario: Pick\n{now}\n")
+    save(folder, passed(2))
+    assert gate() == bool(gone)
+    said = capsys.readouterr().err
+    assert [each for each in ("c0", "c1") if f"in the case '{each}', lifted cube" in said] == gone
+    assert gate("--update-baseline") == 0
+    left = json.loads((folder / "margins.json").read_text())["margins"]
+    assert {*before} - {*left} == {f"a/pick.scenario.yaml [{each}]" for each in gone}
+    assert gate() == 0
+
+
+def test_a_file_that_cannot_be_read_has_dropped_no_case(folder):
+    baseline(folder, passed(0), passed(1))
+    (folder / "a/pick.scenario.yaml").write_text("scenario: [")
+    save(folder, replace(passed(0), case="", outcome="invalid", verdicts=()))
+    assert gate() == 0
+
+
 def test_an_expectation_that_was_deleted_or_loosened_fails(folder, capsys):
     baseline(folder, passed(0), passed(1))
     save(folder, expecting(passed(0), "lifted cube, above 1 mm"), passed(1))
     assert gate("--comment", "comment.md") == 1
     said = capsys.readouterr().err
-    assert "a/pick.scenario.yaml: lifted cube is expected no more" in said
+    assert "a/pick.scenario.yaml: in the case 'c0', lifted cube is expected no more" in said
     assert "0.01 m -> gone" in said
     assert "1 expectation gone" in (folder / "comment.md").read_text()
     assert gate("--update-baseline") == 0

@@ -39,6 +39,15 @@ case " $* " in
 esac
 """
 
+CURL = """\
+#!/bin/sh
+# Stands for GitLab: lists the notes of a file, and appends each request to another one.
+case " $* " in
+  *per_page*) cat "$HOME/notes" ;;
+  *) echo "$*" >> "$HOME/requests" ;;
+esac
+"""
+
 
 @pytest.fixture
 def project(tmp_path, monkeypatch):
@@ -71,8 +80,9 @@ def script(text, project, **variables):
     tools = project.parent / "tools"
     if not tools.exists():
         tools.mkdir()
-        (tools / "gh").write_text(GH)
-        (tools / "gh").chmod(0o755)
+        for name, content in (("gh", GH), ("curl", CURL)):
+            (tools / name).write_text(content)
+            (tools / name).chmod(0o755)
     env = {
         "PATH": f"{tools}:{BINARIES}:/usr/bin:/bin",
         "HOME": str(project.parent),
@@ -249,6 +259,34 @@ def test_the_gitlab_template_runs_parts_and_merges_them(project):
     assert "shrank" in done.stderr
     junit = GITLAB["scenarios report"]["artifacts"]["reports"]["junit"]
     assert Path(junit).is_file()
+
+
+NOTE = '[{"id": 5, "body": "hm"}, {"id": 6, "body": "<!-- armharness --> old"}]'
+
+
+@pytest.mark.parametrize(
+    ("notes", "request_words"),
+    [("[]", "POST token /notes"), (NOTE, "PUT token /notes/6"), ("no JSON", "")],
+)
+def test_the_gitlab_template_writes_one_comment_and_then_updates_it(project, notes, request_words):
+    [lines] = [each for each in GITLAB["scenarios report"]["script"] if 'GITLAB_TOKEN" ]' in each]
+    (project.parent / "notes").write_text(notes)
+    (project.parent / "requests").touch()
+    variables = {
+        "GITLAB_TOKEN": "token",
+        "CI_MERGE_REQUEST_IID": "3",
+        "CI_PROJECT_ID": "1",
+        "CI_API_V4_URL": "https://x/api",
+    }
+    done = script(lines, project, **variables)
+    assert done.returncode == 0, done.stderr
+    assert ("the comment needs a GITLAB_TOKEN" in done.stdout) is (not request_words)
+    sent = re.findall(
+        r"--request (\w+) --header PRIVATE-TOKEN: (\w+) --data-urlencode body@reports/comment.md"
+        r" https://x/api/projects/1/merge_requests/3(\S+)",
+        (project.parent / "requests").read_text(),
+    )
+    assert [" ".join(each) for each in sent] == [request_words] * bool(request_words)
 
 
 def test_the_gitlab_template_says_what_has_to_be_set(project):
