@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from harness.core.geometry import Friction, Shape
+from harness.core.hole import Hole
 from harness.core.pose_arrays import IDENTITY, compose, relative, rotate, rotation_angle
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
@@ -121,6 +122,7 @@ class WorldObject:
         surface_motion: How the surface of a belt or a turntable moves at the start; None: it never
             moves.
         joint: The hinge or slide by which a part of a fixture moves; None of any other object.
+        holes: The holes in its boxes.
     """
 
     name: str
@@ -136,6 +138,7 @@ class WorldObject:
     visuals: tuple[Shape, ...] = ()
     surface_motion: SurfaceMotion | None = None
     joint: ObjectJoint | None = None
+    holes: tuple[Hole, ...] = ()
 
     def friction_of(self, shape: Shape) -> Friction:
         """Friction of one of the object's shapes."""

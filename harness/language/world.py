@@ -26,6 +26,7 @@ from harness.language.base import (
 )
 from harness.language.cameras import CameraSpec
 from harness.language.fixtures import HingeSpec, SlideSpec
+from harness.language.holes import HoleSpec
 from harness.language.markers import MarkerSpec
 from harness.language.poses import Pose
 
@@ -38,6 +39,15 @@ class BoxSpec(SpecModel):
     size: tuple[PositiveLength, PositiveLength, PositiveLength] = Field(
         description="The full size along x, y, z [m]."
     )
+    hole: HoleSpec | None = Field(
+        default=None, description="A hole from the upper face, along z, for a peg."
+    )
+
+    @model_validator(mode="after")
+    def _walls(self) -> BoxSpec:
+        if self.hole is not None:
+            self.hole.refuse_outside(self.size)
+        return self
 
 
 class CylinderSpec(SpecModel):
@@ -304,6 +314,13 @@ class ObjectSpec(SpecModel):
             raise ValueError(
                 "only the surface of a static object moves: add `static: true`, or leave out"
                 " `surface_velocity` and `surface_rotation`"
+            )
+        boxes = [self.box, *(shape.box for shape in self.shapes)]
+        holes = [box.hole for box in boxes if box is not None and box.hole is not None]
+        if not self.static and any(hole.diameter is not None for hole in holes):
+            raise ValueError(
+                "the mass of a box with a round hole is not known: say `static: true`, or give the"
+                " hole a `size`"
             )
         if self.joints and not self.static:
             raise ValueError("an object with `joints` is fixed in the world: say `static: true`")

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.geometry import Shape
+from harness.core.hole import Hole
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import ObjectJoint, WorldObject
@@ -36,6 +37,7 @@ class ObjectRecord:
         visuals: Shapes that pictures show, where they differ from `shapes`.
         center_of_mass: The centre of mass in the object's frame [m]; empty when unknown.
         joint: The hinge or slide by which a part of a fixture moves; None of any other object.
+        holes: The holes in its boxes.
     """
 
     name: str
@@ -49,6 +51,7 @@ class ObjectRecord:
     visuals: tuple[Shape, ...] = ()
     center_of_mass: tuple[float, ...] = ()
     joint: ObjectJoint | None = None
+    holes: tuple[Hole, ...] = ()
 
     @classmethod
     def of(
@@ -67,6 +70,7 @@ class ObjectRecord:
             visuals=obj.visuals,
             center_of_mass=() if obj.is_static else tuple(map(float, obj.center_of_mass)),
             joint=obj.joint,
+            holes=obj.holes,
         )
 
     def put_samples(self, times: FloatArray) -> IntArray:

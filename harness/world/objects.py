@@ -23,6 +23,7 @@ from harness.core.geometry import (
     Shape,
     Sphere,
 )
+from harness.core.hole import Hole
 from harness.core.slow_work import reported
 from harness.core.solids import is_inertia_of_a_body, point_inertia
 from harness.core.spatial import SE3
@@ -38,6 +39,7 @@ from harness.language.world import (
 )
 from harness.robot.collision_shapes import collision_shapes
 from harness.robot.mesh_file import shape_solid, with_hull
+from harness.world.bored_box import bored
 from harness.world.markers import plate, printed
 
 DEFAULT_DENSITY = 1000.0  # [kg/m^3]
@@ -64,7 +66,7 @@ def resolve_object(
             a mesh file that is not there or cannot be used.
     """
     parts = spec.shapes or ((spec,) if _has_geometry(spec) else ())
-    given = tuple(_shape(part, spec.color, base_dir) for part in parts)
+    given, holes = _bored(parts, [_shape(part, spec.color, base_dir) for part in parts])
     try:
         with reported(f"computing convex shapes of '{spec.name}'"):
             shapes = tuple(map(with_hull, collision_shapes(given, collision)))
@@ -87,7 +89,24 @@ def resolve_object(
         in_simulation=spec.in_ in ("simulation", "both"),
         visuals=_looks(spec, parts, base_dir) or (given if len(shapes) > len(given) else ()),
         surface_motion=spec.surface_motion,
+        holes=holes,
     )
+
+
+def _bored(
+    parts: Sequence[ObjectSpec | ShapeSpec], shapes: Sequence[Shape]
+) -> tuple[tuple[Shape, ...], tuple[Hole, ...]]:
+    """The shapes, boxes with a hole as the boxes around it, and the holes."""
+    given: list[Shape] = []
+    holes: list[Hole] = []
+    for part, shape in zip(parts, shapes, strict=True):
+        if part.box is None or part.box.hole is None:
+            given.append(shape)
+            continue
+        around, hole = bored(shape, part.box.hole)
+        given += around
+        holes.append(hole)
+    return tuple(given), tuple(holes)
 
 
 def resolve_parts(

@@ -1,0 +1,107 @@
+"""search: a gantry whose quill is a peg finds a hole by a spiral, or says why it does not."""
+
+import pytest
+
+import harness
+from harness.core.resources import data_folder
+from harness.plugins.contact.steps.search import Found
+from tests.simulation.test_pushing import GANTRY
+
+PEG = GANTRY.replace('type="capsule" size="0.015 0.15"', 'type="cylinder" size="0.01 0.15"')
+SCENARIO = """
+scenario: search
+robot: {mjcf: gantry.xml, tcp_link: tip}
+objects:
+  - name: block
+    static: true
+    friction: 0.1
+    box: {size: [80 mm, 80 mm, 50 mm], hole: {diameter: 20.2 mm, depth: 40 mm}}
+    pose: {xyz: [0.1, 0, 0.1222]}
+steps:
+  - move_to: {joints: {x: %s, y: 0, z: 0}}
+  - allow_collisions:
+      pairs: [[quill, block]]
+      during:
+        - {%s}
+"""
+SEARCH = (
+    "search: {direction: {xyz: [0, 0, -1]}, radius: 0.5 mm, pitch: 0.15 mm, speed: 5 mm/s},"
+    " id: find"
+)
+PRESSING = "comply: {wrench: {z: -10 N}, during: [{wait: 0.25}, {%s}]}"
+
+
+def run_of(folder, x, step):
+    (folder / "gantry.xml").write_text(PEG, encoding="utf-8")
+    file = folder / "search.scenario.yaml"
+    file.write_text(SCENARIO % (x, step), encoding="utf-8")
+    return harness.run(file)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    return run_of(tmp_path_factory.mktemp("found"), 0.1003, PRESSING % SEARCH)
+
+
+def test_a_pressed_peg_drops_where_the_spiral_passes_the_hole(found):
+    assert found, str(found)
+    result = found.step("find").result.find(Found)
+    assert result.drop >= 0.001
+    assert result.offset == pytest.approx(0.0003, abs=0.0002)
+
+
+def test_a_search_repeats_to_the_same_digest(found, tmp_path):
+    again = run_of(tmp_path, 0.1003, PRESSING % SEARCH)
+    assert again.case.digest == found.case.digest
+
+
+def test_a_search_without_pressing_says_so(tmp_path):
+    result = run_of(tmp_path, 0.1003, SEARCH.replace("0.5 mm", "0.3 mm"))
+    assert "nothing was pressed meanwhile: put the search inside a `comply`" in str(result)
+
+
+def test_a_hole_that_is_too_far_away_says_so(tmp_path):
+    result = run_of(tmp_path, 0.102, PRESSING % SEARCH.replace("0.5 mm", "0.3 mm"))
+    assert "the hole is farther away than the `radius`" in str(result)
+    assert "pressed with 1" in str(result)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("radius: 0.1 mm", "more than the `radius`"),
+        ("radius: 30 mm", "are searched"),
+        ("radius: 1 mm, link: tpi", "`tip`"),
+        ("radius: -1 mm", "radius"),
+    ],
+)
+def test_bad_input_is_a_located_error(tmp_path, words, said):
+    result = run_of(tmp_path, 0.1, SEARCH.replace("radius: 0.5 mm", words))
+    assert result.case.outcome == "invalid"
+    assert said in str(result)
+    assert "search.scenario.yaml:15:" in str(result)
+
+
+LESSON = data_folder("scenarios") / "contact/03_peg_in_hole.scenario.yaml"
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        ({"params.offset": "0 mm"}, ""),
+        ({"params.offset": "3 mm"}, "the hole is farther away than the `radius`"),
+    ],
+)
+def test_the_lesson_finds_its_hole_within_the_radius_alone(overrides, said):
+    result = harness.run(LESSON, overrides=overrides)
+    assert bool(result) == (not said), str(result)
+    assert said in str(result)
+
+
+@pytest.mark.nightly
+def test_the_lesson_fails_without_compliance_and_says_what_is_missing(tmp_path):
+    text = LESSON.read_text(encoding="utf-8").replace("wrench: {z: -10 N}", "wrench: {rz: 0}")
+    (tmp_path / "rigid.scenario.yaml").write_text(text, encoding="utf-8")
+    result = harness.run(tmp_path / "rigid.scenario.yaml")
+    assert "nothing was pressed meanwhile" in str(result)
