@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.judging.expectation import Expectation
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation, as_expectation, check_expectation
 from harness.language.expectation import ExpectationFields
@@ -38,7 +41,9 @@ def holds_now(
         since: Time [s] and sample at which the step began.
     """
     current, (begin, first) = cell.current, since
-    times = begin, simulator.time, first, simulator.sample_count
+    placed = PlacedExpectation.of(until, current.id, current.line)
+    skipped = _not_read(placed.spec, first, simulator.timestep)
+    times = begin, simulator.time, first - skipped, simulator.sample_count - skipped
     step = StepRecord(current.id, current.path, "", "", current.line, "passed", *times)
     objects = (
         ObjectRecord.of(
@@ -57,8 +62,17 @@ def holds_now(
         objects=tuple(objects),
         attachments=tuple(cell.attachments),
         steps=(step,),
-        signals=simulator.finish(),
+        signals=simulator.finish(skipped),
         unrecorded=("clearances", "planned_clearances"),
     )
-    placed = PlacedExpectation.of(until, current.id, current.line)
     return judge(run, [placed])[0].status == "passed"
+
+
+def _not_read(spec: Expectation, first: int, timestep: float) -> int:
+    """How many samples of a run an expectation does not read over a step from a sample on.
+
+    Without them, a look takes as long late in a run as early.
+    """
+    is_of_step = not any(part.during for part in (spec, *spec.predicates().values()))
+    back = spec.looks_back() if is_of_step else None
+    return 0 if back is None else max(0, first - 1 - math.ceil(back / timestep))

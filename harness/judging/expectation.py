@@ -55,6 +55,11 @@ class Expectation(ExpectationFields):
         """The arm that it names, of a robot with several; None where it names none."""
         return None
 
+    def looks_back(self) -> float | None:
+        """How far before its window it reads the record [s]; None where it may read all of it."""
+        parts = [part.looks_back() for part in self.predicates().values()]
+        return None if not parts or None in parts else max(part or 0.0 for part in parts)
+
     def needs_step(self) -> str:
         """Why it can be judged over a step alone; empty where it can be judged over a whole run."""
         return ""

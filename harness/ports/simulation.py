@@ -252,6 +252,6 @@ class RecordingSimulator(Simulator, Protocol):
         """Names of `Signals`' fields that are not recorded."""
         ...
 
-    def finish(self) -> Signals:
-        """Everything recorded, without clearances."""
+    def finish(self, first: int = 0) -> Signals:
+        """Everything recorded from a sample on, without clearances."""
         ...

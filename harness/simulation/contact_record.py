@@ -141,61 +141,57 @@ class ContactRecord:
             found[pair] = pressed
         return {pair: found[pair] for pair in sorted(found)}
 
-    def frictions(self, count: int) -> dict[BodyPair, FloatArray]:
+    def frictions(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
         """Friction forces of a link of the robot on any other body, in world axes [N].
 
-        Args:
-            count: Number of samples, counted from the first.
-
         Returns:
-            The friction forces by link and other body, shape (count, 3); zero without contact.
+            The friction forces by link and other body in samples first to last - 1, shape
+            (samples, 3); zero without contact.
         """
         found: dict[BodyPair, FloatArray] = {}
-        for pair, link, rows, contacts in self._by_link(0, count):
-            sums = found.setdefault(pair, np.zeros((count, 3)))
+        for pair, link, rows, contacts in self._by_link(first, last):
+            sums = found.setdefault(pair, np.zeros((last - first, 3)))
             on_other = self._frictions[contacts] * self._signs(contacts, link)[:, None]
             for column in range(3):
                 _add(sums[:, column], rows, on_other[:, column])
         return {pair: found[pair] for pair in sorted(found)}
 
-    def support_forces(self, count: int) -> dict[BodyPair, FloatArray]:
-        """Upward part of the normal force [N] of one object on another, shape (count,) each.
-
-        Args:
-            count: Number of samples, counted from the first.
-        """
+    def support_forces(self, first: int, last: int) -> dict[BodyPair, FloatArray]:
+        """Upward part of the normal force [N] of one object on another, as `forces` returns it."""
         names, robot = self._physics.body_names, self._physics.robot_bodies
         found: dict[BodyPair, FloatArray] = {}
-        for numbers, rows, contacts in self._by_pair(0, count):
+        for numbers, rows, contacts in self._by_pair(first, last):
             if not robot.isdisjoint(numbers):
                 continue
             pair = self._pair(*numbers)
             below = next(number for number in numbers if names[number] == pair[0])
             upward = self._forces[contacts] * self._normals[contacts, 2]
-            sums = found.setdefault(pair, np.zeros(count))
+            sums = found.setdefault(pair, np.zeros(last - first))
             _add(sums, rows, self._signs(contacts, below) * upward)
         return {pair: found[pair] for pair in sorted(found)}
 
     def slides(
         self,
-        count: int,
+        first: int,
+        last: int,
         poses: Mapping[str, FloatArray],
         chosen: Set[str],
         surfaces: Mapping[str, FloatArray],
     ) -> dict[BodyPair, FloatArray]:
-        """How far objects slide along each other since the sample before [m], shape (count,) each.
+        """How far objects slide along each other since the sample before [m], shape (N,) each.
 
         It is the largest way along the surface of any point at which they press each other.
 
         Args:
-            count: Number of samples, counted from the first.
+            first: The first of the N samples, in which nothing slides.
+            last: The sample after the last.
             poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
             chosen: Objects; pairs without any of them are left out.
             surfaces: The motion of the surface of each belt since the sample before, in its axes:
                 its displacement at the origin [m] and its turn about z [rad], shape (N, 4) each.
         """
         found: dict[BodyPair, FloatArray] = {}
-        for numbers, rows, contacts in self._by_pair(0, count):
+        for numbers, rows, contacts in self._by_pair(first, last):
             pair = self._pair(*numbers)
             if chosen.isdisjoint(pair) or not poses.keys() >= set(pair):
                 continue
@@ -205,7 +201,7 @@ class ContactRecord:
             ways = [_way_of_points(poses[name], rows, points, surfaces.get(name)) for name in pair]
             way = np.nan_to_num(ways[0] - ways[1])
             way -= np.sum(way * normals, axis=1, keepdims=True) * normals
-            slid = found.setdefault(pair, np.zeros(count))
+            slid = found.setdefault(pair, np.zeros(last - first))
             np.maximum.at(slid, rows, np.linalg.norm(way, axis=1))
         return {pair: found[pair] for pair in sorted(found)}
 

@@ -187,9 +187,10 @@ class MujocoSimulator(TrajectoryTracking):
             self._objects.recorded_poses(),
         )
 
-    def finish(self) -> Signals:
-        """All recorded signals, without clearances."""
-        return self._recording.signals(self._objects.recorded_poses(), self._surfaces.recorded())
+    def finish(self, first: int = 0) -> Signals:
+        """All recorded signals from a sample on, without clearances."""
+        poses, surfaces = self._objects.recorded_poses(first), self._surfaces.recorded(first)
+        return self._recording.signals(poses, surfaces, first)
 
     def snapshot(self) -> PhysicsState:
         """Everything that decides how the run continues."""

@@ -89,19 +89,20 @@ class Objects:
             self._data.eq_active[weld] = 0
             wake(self._physics.model, self._data)
 
-    def recorded_poses(self) -> dict[str, FloatArray]:
-        """T_world_object of every sample, NaN while absent, shape (N, 7) each."""
+    def recorded_poses(self, first: int = 0) -> dict[str, FloatArray]:
+        """T_world_object of every sample from one on, NaN while absent, shape (N, 7) each."""
         count = self._recording.count
         poses: dict[str, FloatArray] = {}
         for name, place in self._physics.objects.items():
             log = self._log[name]
             moves = place.qpos >= 0
-            rows = self._recording.poses(place) if moves else np.empty((count, 7))
+            rows = self._recording.poses(place, first) if moves else np.empty((count - first, 7))
             for (begin, pose), (end, _) in zip(log, [*log[1:], (count, None)], strict=True):
+                during = slice(max(0, begin - first), max(0, end - first))
                 if pose is None:
-                    rows[begin:end] = np.nan
+                    rows[during] = np.nan
                 elif not moves:
-                    rows[begin:end] = pose
+                    rows[during] = pose
             poses[name] = rows
         return poses
 

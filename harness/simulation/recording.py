@@ -254,28 +254,33 @@ class Recording:
         return dict(sorted(peaks.items(), key=lambda item: -item[1]))
 
     def signals(
-        self, object_poses: Mapping[str, FloatArray], surfaces: Mapping[str, FloatArray]
+        self,
+        object_poses: Mapping[str, FloatArray],
+        surfaces: Mapping[str, FloatArray],
+        first: int = 0,
     ) -> Signals:
-        """All recorded signals.
+        """All recorded signals from a sample on.
 
         Args:
             object_poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
             surfaces: The motion of the surface of each belt since the sample before, (N, 4) each.
+            first: The first of the N samples.
         """
-        physics, count = self._physics, self.count
+        physics, last = self._physics, self.count
+        count, rows = last - first, slice(first, last)
         joints = len(physics.qpos)
         commands, command_velocities = (np.full((count, joints), np.nan) for _ in range(2))
         efforts = np.zeros((count, joints))
         frame_end = 7 * (1 + len(physics.frames))
-        commands[:, physics.actuated] = self._commands[:count]
-        command_velocities[:, physics.actuated] = self._command_velocities[:count]
-        efforts[:, physics.actuated] = self._sensors[:count, self._effort_columns]
-        frames = self._sensors[:count, :frame_end].reshape(count, -1, 7)
-        contacts = self._contacts.forces(0, count)
+        commands[:, physics.actuated] = self._commands[rows]
+        command_velocities[:, physics.actuated] = self._command_velocities[rows]
+        efforts[:, physics.actuated] = self._sensors[rows, self._effort_columns]
+        frames = self._sensors[rows, :frame_end].reshape(count, -1, 7)
+        contacts = self._contacts.forces(first, last)
         return Signals(
-            times=self.times(),
-            joint_positions=self.joint_positions(0).copy(),
-            joint_velocities=self.joint_velocities(0).copy(),
+            times=self.times()[first:],
+            joint_positions=self.joint_positions(first).copy(),
+            joint_velocities=self.joint_velocities(first).copy(),
             joint_efforts=efforts,
             joint_commands=commands,
             joint_command_velocities=command_velocities,
@@ -283,13 +288,15 @@ class Recording:
             frames={name: frames[:, i + 1].copy() for i, name in enumerate(physics.frames)},
             object_poses=dict(object_poses),
             contact_forces=contacts,
-            support_forces=self._contacts.support_forces(count),
-            presses=self._contacts.presses(0, count),
-            frictions=self._contacts.frictions(count),
-            pulls={} if self._adhesion is None else self._adhesion.recorded(count),
-            wrenches={name: self.wrench(name, 0) for name in self.wrenches.sensors},
+            support_forces=self._contacts.support_forces(first, last),
+            presses=self._contacts.presses(first, last),
+            frictions=self._contacts.frictions(first, last),
+            pulls={}
+            if self._adhesion is None
+            else {pair: values[first:] for pair, values in self._adhesion.recorded(last).items()},
+            wrenches={name: self.wrench(name, first) for name in self.wrenches.sensors},
             slides=self._contacts.slides(
-                count, object_poses, self._moved_by_robot(contacts), surfaces
+                first, last, object_poses, self._moved_by_robot(contacts), surfaces
             ),
         )
 
@@ -304,8 +311,9 @@ class Recording:
             found |= added
         return found
 
-    def poses(self, place: ObjectPlace) -> FloatArray:
-        """Recorded T_world_object of an object that can move, shape (N, 7)."""
+    def poses(self, place: ObjectPlace, first: int = 0) -> FloatArray:
+        """Recorded T_world_object of an object that can move, from a sample on, shape (N, 7)."""
+        rows = slice(first, self.count)
         if place.obj.joint is None:
-            return self._qpos[: self.count, place.qpos : place.qpos + 7].copy()
-        return place.obj.joint.poses(self._qpos[: self.count, place.qpos])
+            return self._qpos[rows, place.qpos : place.qpos + 7].copy()
+        return place.obj.joint.poses(self._qpos[rows, place.qpos])

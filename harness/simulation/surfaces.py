@@ -49,14 +49,19 @@ class Surfaces:
         self._write(name, motion)
         wake(self._physics.model, self._data)
 
-    def recorded(self) -> dict[str, FloatArray]:
-        """How far each surface moved since the sample before: x, y, z [m], turn [rad], (N, 4)."""
-        count, timestep = self._recording.count, self._recording.timestep
+    def recorded(self, first: int = 0) -> dict[str, FloatArray]:
+        """How far each surface moved since the sample before: x, y, z [m], turn [rad], (N, 4).
+
+        Args:
+            first: The first of the samples.
+        """
+        count, timestep = self._recording.count - first, self._recording.timestep
         moved: dict[str, FloatArray] = {}
         for name, log in self._log.items():
             rows = moved[name] = np.zeros((count, 4))
             for begin, motion in log:
-                rows[begin:] = np.array([*motion.velocity, motion.rotation]) * timestep
+                moves = np.array([*motion.velocity, motion.rotation]) * timestep
+                rows[max(0, begin - first) :] = moves
         return moved
 
     def _write(self, name: str, motion: SurfaceMotion) -> None:

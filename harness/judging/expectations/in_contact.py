@@ -70,6 +70,9 @@ class InContact(Predicate):
     def observations(self) -> Observations:
         return Observations(clearance_cutoff=0.0)
 
+    def looks_back(self) -> float:
+        return self.force_window + DEBOUNCE
+
     def signal(self, window: Window) -> MarginSignal:
         """Force between the two bodies [N], sample by sample, while both are in the physics.
 

@@ -34,6 +34,9 @@ class Joints(Predicate):
         is_given = "tolerance" in self.model_fields_set
         check_tolerance(at, self.positions, self.tolerance, is_given)
 
+    def looks_back(self) -> float:
+        return 0.0
+
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from its position [rad or m]."""
         is_given = "tolerance" in self.model_fields_set

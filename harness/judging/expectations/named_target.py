@@ -46,6 +46,9 @@ class NamedTarget(Predicate):
     def names(self) -> frozenset[str]:
         return frozenset()
 
+    def looks_back(self) -> float:
+        return 0.0
+
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from the named state [rad or m]."""
         robot = window.run.robot

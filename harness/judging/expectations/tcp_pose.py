@@ -55,6 +55,9 @@ class TcpPose(ArmPredicate):
         links = () if self.link is None else (self.link,)
         return Observations(frozenset({self.pose.frame, *links}))
 
+    def looks_back(self) -> float:
+        return 0.0
+
     def signal(self, window: Window) -> MarginSignal:
         """Distance to the target, and the largest component of the rotation vector to it.
 

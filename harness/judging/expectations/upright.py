@@ -31,6 +31,9 @@ class Upright(ObjectPredicate):
         default=0.1, description="The largest angle between its z axis and the vertical [rad]."
     )
 
+    def looks_back(self) -> float:
+        return 0.0
+
     def signal(self, window: Window) -> MarginSignal:
         """Angle of the object's z axis to the vertical [rad]."""
         lean = angle_between(rotate(physical_poses(window.run, self.object)[:, 3:], UP), UP)

@@ -214,9 +214,10 @@ class RemoteArm:
     def unweld(self, name: str, believed: SE3 | None = None) -> None:
         del name, believed
 
-    def finish(self) -> Signals:
+    def finish(self, first: int = 0) -> Signals:
         """What `/joint_states` brought, on an even grid; poses follow from the joints."""
-        times, (positions, velocities, efforts) = self._states.record()
+        whole, measured = self._states.record()
+        times, (positions, velocities, efforts) = whole[first:], (each[first:] for each in measured)
         nothing = np.full_like(positions, np.nan)
         poses = self._kinematics.link_poses(positions, self._frames)
         objects = [each for each in self._program.all_objects() if each.in_simulation]
