@@ -134,9 +134,9 @@ def test_sums_of_the_contacts_are_those_of_a_plain_loop_over_them(
     assert any(np.abs(friction).max() > 1e-3 for friction in rubbed.values())
     for found, expected in (
         (record.forces(0, samples), total),
-        (record.support_forces(samples), carried),
+        (record.support_forces(0, samples), carried),
         ({pair: press[:, 3:] for pair, press in record.presses(0, samples).items()}, pushed),
-        (record.frictions(samples), rubbed),
+        (record.frictions(0, samples), rubbed),
     ):
         assert list(found) == sorted(expected)
         for pair, values in found.items():
@@ -184,7 +184,7 @@ def test_objects_slide_as_far_as_the_points_at_which_they_touch(
         mujoco.mj_integratePos(physics.model, data.qpos, data.qvel, timestep)
     floor = np.tile(FLOOR.pose.as_vector(), (samples, 1))
     every = {name: poses, "a floor": floor}
-    assert record.slides(samples, every, set(), {}) == {}
-    (slid,) = record.slides(samples, every, {name}, {}).values()
+    assert record.slides(0, samples, every, set(), {}) == {}
+    (slid,) = record.slides(0, samples, every, {name}, {}).values()
     assert slid[0] == 0
     assert slid[1:] == pytest.approx(np.full(samples - 1, expected * timestep), abs=2e-6)
