@@ -175,7 +175,41 @@ class _Scene:
             return None
         looks = [shape.model_copy(update={"friction": None}) for shape in drawn]
         words = {"name": name, "pose": at, **(mass or {"static": True})}
+        words |= self._surface(
+            [part for part in parts if reader.touches(part[0])], name, element, mass
+        )
         return validated(ObjectSpec, {**words, **look_words(touching, looks)}, element)
+
+    def _surface(
+        self,
+        parts: Sequence[tuple[int, SE3]],
+        name: str,
+        element: XmlElement,
+        mass: Mapping[str, Any],
+    ) -> dict[str, Any]:
+        """The motion of an object's surface, which all of its geoms have, in words of a file."""
+        model = self.reader.model
+        motions = np.zeros((len(parts), 6))
+        for row, (geom, placed) in enumerate(parts):
+            on_object = placed @ mjcf_pose(model.geom_pos[geom], model.geom_quat[geom])
+            turning = on_object.rotation @ model.geom_surfacevel[geom, 3:]
+            along = on_object.rotation @ model.geom_surfacevel[geom, :3]
+            motions[row] = [*(along - np.cross(turning, on_object.translation)), *turning]
+        if not motions.any():
+            return {}
+        why = ""
+        if mass:
+            why = "surfaces of objects that stand still move, and this one does not"
+        elif not np.allclose(motions, motions[0]):
+            why = "all surfaces of an object have one motion"
+        elif np.abs(motions[0, 3:5]).max() > 1e-9:
+            why = "surfaces turn about the object's z axis"
+        if why:
+            self.reader.notes.add(element.place, f"surfacevel of '{name}' is left out: {why}")
+            return {}
+        velocity, turn = tuple(rounded(each) for each in motions[0, :3]), rounded(motions[0, 5])
+        words: dict[str, Any] = {"surface_velocity": velocity} if any(velocity) else {}
+        return words | ({"surface_rotation": turn} if turn else {})
 
     def _left_out(self) -> set[int]:
         """Bodies that are no rigid objects, and the bases of robots; with notes."""
