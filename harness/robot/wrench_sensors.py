@@ -27,6 +27,31 @@ def with_wrench_sensors(
     return replace(description, wrench_sensors={**description.wrench_sensors, **sensors})
 
 
+def refuse_suction(description: RobotDescription) -> None:
+    """Refuse sensors that carry suction cups: their readings would leave out the vacuum's force.
+
+    Raises:
+        RobotOptionError: There is such a sensor.
+    """
+    cups = {cup.link for gripper in description.grippers for cup in gripper.cups}
+    for name, sensor in description.wrench_sensors.items():
+        if cups & _carried(sensor.link, description.joints):
+            raise RobotOptionError(
+                f"wrench_sensors.{name}",
+                "it carries suction cups, and the force of a vacuum is not among what a sensor"
+                " reads; use fingers, or leave the sensor out",
+            )
+
+
+def _carried(link: str, joints: Collection[Joint]) -> set[str]:
+    """A link, and all links that it carries; parents stand before children in `joints`."""
+    carried = {link}
+    for joint in joints:
+        if joint.parent in carried:
+            carried.add(joint.child)
+    return carried
+
+
 def flaw(sensor: WrenchSensor, links: Collection[Link], joints: Collection[Joint]) -> str:
     """Why a sensor cannot measure anything; empty where it can.
 
@@ -42,10 +67,7 @@ def flaw(sensor: WrenchSensor, links: Collection[Link], joints: Collection[Joint
         return (
             f"the robot has a link '{sensor.frame_id}', as the sensor's frame is called: rename it"
         )
-    carried = {sensor.link}
-    for joint in joints:
-        if joint.parent in carried:
-            carried.add(joint.child)
+    carried = _carried(sensor.link, joints)
     if any(link.collisions or link.inertial is not None for link in links if link.name in carried):
         return ""
     return (

@@ -190,6 +190,15 @@ def test_bad_input_is_a_located_error(tmp_path, robot, rest, said):
         assert words in str(result)
 
 
+def test_a_sensor_does_not_carry_suction_cups_whose_vacuum_it_would_not_read(tmp_path):
+    file = tmp_path / "still.scenario.yaml"
+    text = STILL % (", wrench_sensors: {wrist: tool0}", "")
+    file.write_text(text.replace("rh_p12_rn_a", "suction_cup"), encoding="utf-8")
+    result = harness.run(file)
+    assert result.case.outcome == "invalid"
+    assert "it carries suction cups" in str(result)
+
+
 JUDGED = """
 expect:
   - wrench: {below: 30 N, force_window: 0}

@@ -1,0 +1,1 @@
+"""How smooth and how direct motions are."""

@@ -1,0 +1,1 @@
+"""Expectations of smooth and direct motions."""
