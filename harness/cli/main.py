@@ -107,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not _load_plugins(getattr(parsed, "plugins", ())):
             return USAGE_EXIT_CODE
         json_only = only_json_on_stdout() if is_json else nullcontext()
-        with _package_path(getattr(parsed, "package_folders", ())), json_only:
+        with json_only:
             code: object = guarded(lambda: _begun(command.run, parsed), ticks=ticks)
         sys.stdout.flush()
     except BrokenPipeError:
@@ -127,14 +127,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _begun(run: Callable[[argparse.Namespace], int], parsed: argparse.Namespace) -> int:
-    """Run a command that can write where its report goes."""
+    """Run a command that can write where its report goes, with its folders of packages."""
     if getattr(parsed, "report_dir", None) and not getattr(parsed, "no_report", False):
         from pathlib import Path
 
         from harness.suite.folders import refuse_unwritable
 
         refuse_unwritable(Path(parsed.report_dir))
-    return run(parsed)
+    with _package_path(getattr(parsed, "package_folders", ())):
+        return run(parsed)
 
 
 def _abandon_stdout() -> None:

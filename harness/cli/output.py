@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import shutil
@@ -181,6 +182,10 @@ def indented(message: str) -> str:
     return message.replace("\n", "\n    ")
 
 
+OF_A_PATH = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EROFS, errno.ENOSPC, errno.EDQUOT)
+"""What is wrong with a path that a user gave, or with its disk, and never with the program."""
+
+
 def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
     """Run a command; errors that are raised on purpose are shown without a traceback.
 
@@ -211,6 +216,9 @@ def guarded(work: Callable[[], int], *, ticks: bool = True) -> int:
             raise KeyboardInterrupt from error
         if missing := missing_extra(error):
             complain(f"harness: {missing}")
+            return USAGE_EXIT_CODE
+        if isinstance(error, OSError) and error.errno in OF_A_PATH:
+            complain(printable(f"harness: '{cropped(str(error.filename), 200)}': {error.strerror}"))
             return USAGE_EXIT_CODE
         complain(error_text(error).rstrip())
         return EXIT_CODES["error"]

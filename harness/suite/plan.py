@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from harness.core.lazy import LazySequence
+from harness.core.variation import MOST_SAMPLES
 from harness.session.run_request import RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import folder_name, report_folders
@@ -167,13 +168,17 @@ def cases_of(headers: Sequence[tuple[Path, ScenarioHeader]], request: SuiteReque
     """Every case that the request selects, of files whose headers are known, in file order.
 
     Raises:
-        UsageError: `-k` cannot be read.
+        UsageError: `-k` cannot be read, or a file has too many cases.
     """
     root = request.report_root
     files = [file for file, _ in headers]
     folders = [None] * len(files) if root is None else report_folders(files, root)
     found: list[FileCases] = []
     for (file, header), folder in zip(headers, folders, strict=True):
+        if (count := header.variation.counted(request.samples)) > MOST_SAMPLES:
+            raise UsageError(
+                f"'{file}' has {count} cases; at most {MOST_SAMPLES} are run of a file"
+            )
         cases = header.variation.cases(request.seed, request.samples)
         found.append(FileCases(file, header, folder, cases, request))
     plan = Plan(found if request.hooks.cases is None else request.hooks.cases(found))

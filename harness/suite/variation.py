@@ -103,7 +103,14 @@ class Variation:
     @property
     def count(self) -> int:
         """How many cases there are, samples included."""
-        return max(1, self.samples) * count_of(self.parametrize)
+        return self.counted()
+
+    def counted(self, samples: int | None = None) -> int:
+        """How many cases `cases` gives, which may be too many for a sequence."""
+        return max(1, self._sampled(samples)) * count_of(self.parametrize)
+
+    def _sampled(self, samples: int | None) -> int:
+        return samples if samples and self.samples else self.samples
 
     def cases(self, seed: int | None = None, samples: int | None = None) -> Cases:
         """Every case, in file order; samples of one parametrised case together.
@@ -113,7 +120,7 @@ class Variation:
             samples: Instead of the file's, where it has some.
         """
         base = self.seed if seed is None else seed
-        return Cases(self, base, samples if samples and self.samples else self.samples)
+        return Cases(self, base, self._sampled(samples))
 
     def parametrized(self) -> Iterator[Case]:
         """The cases without their samples."""

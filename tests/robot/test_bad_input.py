@@ -65,6 +65,11 @@ CASES = {
         ("arm.xacro", 'type="fixed">', "type=fixed>", "20:26: not well-formed XML"),
         ("arm.xml", "</mujoco>", "</mujocoo>", "37:3: not well-formed XML: mismatched tag"),
     ],
+    "a state that is out of all measure": [
+        ("arm.srdf", 'value="0.1"', 'value="1e308"', "5:31: 1e+308 is too large; at most 1e+09"),
+        ("arm.srdf", 'value="0.7"', 'value="-1e300"', "6:31: -1e+300 is too large"),
+        ("arm.srdf", 'value="0.05"', 'value="2e9"', "7:32: 2e+09 is too large"),
+    ],
     "a missing mesh": [
         (
             "arm.urdf", SHAPE, SHAPE + TOUCHED.format("gone.stl"),

@@ -36,12 +36,33 @@ def harness(*words, **environment):
         ("run", "a.scenario.yaml", "--report-dir", LONG),
         ("run", "a.scenario.yaml", "--report-dir", f"reports/{LONG}"),
         ("run", "a.scenario.yaml", "--conditions", LONG),
+        ("run", "a.scenario.yaml", "--package-path", LONG),
+        ("grade", "a.scenario.yaml", LONG),
+        ("view", LONG),
+        ("judge", LONG),
+        ("film", LONG),
+        ("compare", LONG, LONG),
+        ("results", LONG),
+        ("new", f"{LONG}.scenario.yaml"),
+        ("new", "--project", LONG),
+        ("import", "mjcf", LONG),
+        ("course", "start", "3", LONG),
+        ("mcp", "--root", LONG),
     ],
 )
 def test_a_name_that_is_too_long_is_wrong_usage(words, capsys):
     assert main([*words]) == 2
     said = capsys.readouterr().err
     assert LONG[:60] in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize("words", [("run",), ("view",), ("grade", "a.scenario.yaml")])
+def test_a_link_that_leads_to_itself_is_wrong_usage(words, folder, capsys):
+    (folder / "loop").symlink_to(folder / "loop")
+    assert main([*words, "loop/b"]) == 2
+    said = capsys.readouterr().err
+    assert "loop" in said
     assert "Traceback" not in said
 
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from harness.core.errors import SpecError
 from harness.language.reading.load import load_scenario
+from harness.suite.discovery import UsageError
 from harness.suite.header import read_header, stated_variation
 from harness.suite.plan import planned_cases
 from harness.suite.request import SuiteRequest
@@ -254,6 +255,14 @@ def test_more_cases_than_a_file_may_have_are_refused(tmp_path, lines):
     with pytest.raises(SpecError, match=r"more than 10000 cases|at most 100000"):
         load_scenario(file)
     assert read_header(file).variation.count == 1
+
+
+@pytest.mark.parametrize("samples", [100_001, 10**15, 10**30])
+def test_more_samples_than_a_file_may_have_are_refused_as_an_option(tmp_path, samples):
+    file = tmp_path / "a.scenario.yaml"
+    file.write_text(f"{HEADER}randomize: {{low: {{uniform: [1, 2]}}}}\n")
+    with pytest.raises(UsageError, match=f"has {samples} cases; at most 100000 are run of a file"):
+        planned_cases([file], SuiteRequest(samples=samples))
 
 
 @pytest.mark.parametrize(

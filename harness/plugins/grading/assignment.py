@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError, model_validator
 
 from harness.core.errors import Problem, SpecError
+from harness.core.files import is_file
 from harness.language.base import (
     Angle,
     Count,
@@ -263,8 +264,8 @@ def _scenario_file(
     if not name:
         return None
     file = folder / name
-    is_inside = file.resolve().is_relative_to(folder.resolve())
-    if is_inside and file.is_file():
+    is_inside = "\0" not in name and file.resolve().is_relative_to(folder.resolve())
+    if is_inside and is_file(file):
         return file
     bundled: Mapping[str, Path] = bundled_scenarios()
     if name.removesuffix(SUFFIX) in bundled:

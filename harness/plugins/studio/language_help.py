@@ -20,6 +20,7 @@ Path = tuple[str, ...]
 ITEM = "-"  # in a path: an item of a list
 MARK = "\ue000"  # a character of no script, put where the cursor is
 
+_OTHER_BREAKS = re.compile("[\r\x85\u2028\u2029]")  # lines of YAML, not of the page
 _WORD = re.compile(r"[\w./-]*$")
 
 
@@ -76,10 +77,10 @@ def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
     Raises:
         ValueError: The line is not YAML, or the place is in a comment.
     """
-    lines = text.split("\n")[: line + 1]
+    lines = _OTHER_BREAKS.sub(" ", text).split("\n")[: line + 1]
     lines[-1] = _WORD.sub("", lines[-1][:column])
-    broken = -1
-    while broken < line:
+    for _ in lines:  # each time without one that has a mistake
+        broken = line
         for end in (":", ""):  # a key, else a value
             try:
                 return _path_to_mark("\n".join(lines) + MARK + end)
@@ -87,8 +88,9 @@ def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:
                 broken = error.problem_mark.line if error.problem_mark else line
             except yaml.YAMLError as error:  # of characters, which have no mark
                 raise ValueError("the text has characters that YAML does not know") from error
-        if broken < line:
-            lines[broken] = ""
+        if broken >= line:
+            break
+        lines[broken] = ""
     raise ValueError("this line is not YAML")
 
 

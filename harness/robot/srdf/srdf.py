@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from harness.language.files.xml_file import XmlElement, parse_xml
 from harness.robot.description import NamedState
-from harness.robot.urdf.values import number
+from harness.robot.urdf.values import bounded_number
 
 READ = frozenset(
     {"group", "group_state", "end_effector", "passive_joint", "virtual_joint", "disable_collisions"}
@@ -114,7 +114,7 @@ def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
                 item.need("name"),
                 item.get("group"),
                 {
-                    joint.need("name"): number(joint, "value")
+                    joint.need("name"): bounded_number(joint, "value")
                     for joint in item.findall("joint")
                     if not has_several_values(joint)
                 },

@@ -23,6 +23,13 @@ def number(element: XmlElement, name: str, default: float | None = None) -> floa
     return values[0]
 
 
+def bounded_number(element: XmlElement, name: str) -> float:
+    """A number in a required attribute, as large as a scenario may have one."""
+    value = number(element, name)
+    _refuse_beyond(element, name, value)
+    return value
+
+
 def text_number(element: XmlElement) -> float:
     """A finite number that is an element's text."""
     values = _floats(element.text)

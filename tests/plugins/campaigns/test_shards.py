@@ -231,6 +231,16 @@ def test_impossible_variations_in_a_description_are_refused(parts, tmp_path, var
         read_shard_records([broken])
 
 
+def test_a_description_with_endless_samples_is_refused(parts, tmp_path):
+    broken = shutil.copytree(parts / "at1", tmp_path / "broken")
+    record = json.loads((broken / "shard.json").read_text())
+    record["selection"]["samples"] = 2**53
+    (broken / "shard.json").write_text(json.dumps(record))
+    refused = harness("merge", broken, "--report-dir", "out", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "cases; at most 100000 are run of a file" in refused.stderr
+
+
 def test_a_folder_without_a_part_and_a_part_twice_are_refused(parts, tmp_path):
     nothing = harness("merge", parts / "at1", parts / "whole", cwd=tmp_path)
     assert nothing.returncode == 2

@@ -93,3 +93,25 @@ def test_names_are_offered_in_any_style_of_yaml(text, offered):
     found = {option.text for option in complete(text.replace("|", ""), line, column, NAMES)}
     assert offered <= found
     assert bool(offered) == bool(found)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "scenar\u2028(io: x\nrobot: ur3e\nst",
+        "scenario: x\x85[: y\nrobot: ur3e\n",
+        "a\u2029b\u2029c: {\nrobot: ur3e\nst",
+        "a: 1\rb: (\r: c\n]\n",
+        "- [\n- [\n- [\n- [\n",
+    ],
+)
+def test_help_ends_whatever_breaks_the_lines(text):
+    """Characters that are line breaks for YAML alone, and lines that stay wrong without others."""
+    for line, content in enumerate(text.split("\n")):
+        assert isinstance(complete(text, line, len(content), NAMES), list)
+        assert isinstance(hover(text, line, 0), str)
+
+
+def test_keys_are_offered_after_a_line_with_other_breaks():
+    text = "scenario: x\u2028y\nrobot: ur3e\nst"
+    assert "steps" in [option.text for option in complete(text, 2, 2, NAMES)]
