@@ -70,7 +70,7 @@ def _cell(
 SMALL = ("joint1", "joint2", "joint3", "joint4")
 UR = ("shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_3_joint")
 TABLE = _box("table", [0.1, 0.3, 0.04], [0.25, 0.1, 0.02], static=True)
-BLOCK = _box("block", [0.02, 0.02, 0.04], [0.2, -0.1, 0.0199], mass=0.02)
+BLOCK = _box("block", [0.03, 0.03, 0.04], [0.2, -0.1, 0.0199], mass=0.02)
 BALL = {
     "name": "ball", "sphere": {"radius": 0.02}, "mass": 0.02, "pose": {"xyz": [0.1, 0.2, 0.0199]},
 }  # fmt: skip
@@ -119,7 +119,7 @@ CELLS = {
     ),
     "belt": _cell(
         {"robot": "open_manipulator_x"},
-        [BELT, PLATE, _box("can", [0.02, 0.02, 0.04], [0.0, 0.2, 0.0599], mass=0.02), BLOCK],
+        [BELT, PLATE, _box("can", [0.03, 0.03, 0.04], [0.0, 0.2, 0.0599], mass=0.02), BLOCK],
         SMALL, ("link5", "end_effector_link"),
         [{"conveyor": {"object": "belt", "velocity": 0.03}}],
         [{"conveyor": {"object": "plate", "rotation": 0.5}}],

@@ -10,6 +10,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import pinocchio as pin
 
+from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.robot.description import RobotDescription
@@ -60,8 +61,15 @@ class RobotModel:
         return configuration
 
     def frame_id(self, link: str) -> int:
-        """Pinocchio's frame of a link."""
-        return int(self._frame_ids[link])
+        """Pinocchio's frame of a link.
+
+        Raises:
+            PlanningFailed: INVALID_LINK_NAME; a step may name an object that is not held.
+        """
+        if link not in self._frame_ids:
+            reason = f"'{link}' is neither a link nor an attached object"
+            raise PlanningFailed("INVALID_LINK_NAME", reason)
+        return self._frame_ids[link]
 
     @cached_property
     def _frame_ids(self) -> dict[str, int]:
