@@ -12,7 +12,7 @@ from harness.core.printable import printable
 from harness.plugins.studio.language_help import GRIPPER_TARGET, Names
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.session import Message
-from harness.plugins.studio.texts import MOTIONS, ObjectForm, gripper_steps, of_arm
+from harness.plugins.studio.texts import MOTIONS, ObjectForm, gripper_steps
 from harness.recording.step_record import StepRecord
 from harness.reporting.explanation import explanation_lines
 from harness.robot.description import RobotDescription
@@ -54,7 +54,6 @@ def robot_message(cell: LiveCell) -> Message:
         if gripper is None
         else {
             "steps": gripper_steps(description),
-            "step": of_arm(description, "gripper: {width: WIDTH}"),
             "narrowest": 0.0 if gripper.cups else float(gripper.widths[:, 1].min()),
             "widest": 0.0 if gripper.cups else float(gripper.widths[:, 1].max()),
         },

@@ -9,16 +9,25 @@ import numpy as np
 
 from harness.core.printable import printable
 from harness.core.spatial import SE3
+from harness.language.step import STEPS
 from harness.plugins.studio.document import Document
 from harness.plugins.studio.files import StudioFiles
 from harness.plugins.studio.goal_actions import GoalActions
 from harness.plugins.studio.language_help import complete, hover
+from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.messages import failure_message, names_of, resizable, robot_message
 from harness.plugins.studio.proposals import proposals
 from harness.plugins.studio.session import Message, RefusedError
-from harness.plugins.studio.texts import object_spec, pose_keys_of, step_text
+from harness.plugins.studio.texts import object_spec, of_arm, pose_keys_of, step_text
 from harness.recording.step_record import StepRecord
 from harness.session.prepare import prepare
+
+
+def of_selected_arm(cell: LiveCell, text: str) -> str:
+    """A step on one line with the arm that it moves, of a robot with several."""
+    step = STEPS.get(text.partition(":")[0].strip())
+    is_moved = step is not None and (step.moves_arm or step.moves_gripper)
+    return of_arm(cell.description, text) if is_moved and "\n" not in text else text
 
 
 class Studio(GoalActions):
@@ -67,7 +76,8 @@ class Studio(GoalActions):
     def do_execute(self, message: Message) -> Message:
         """Execute a step; recorded, it becomes the scenario's next one."""
         is_goal = not message.get("step")
-        text = self.motion_text(message) if is_goal else str(message["step"])
+        given = str(message.get("step", ""))
+        text = self.motion_text(message) if is_goal else of_selected_arm(self.cell, given)
         count = self.cell.document.step_count
         is_recorded = bool(message.get("record", self.is_recording))
         results: list[StepRecord] = []

@@ -88,15 +88,13 @@ def gripper_steps(description: RobotDescription) -> dict[str, str]:
     steps = {state: f"gripper: {state}" for state in description.states_of(gripper.group)}
     if gripper.cups:
         ends = {"open": gripper.open_position, "close": gripper.closed_position}
-        found = {word: step_text("gripper", {"position": end}) for word, end in ends.items()}
-        return {word: of_arm(description, step) for word, step in (found | steps).items()}
+        return {word: step_text("gripper", {"position": end}) for word, end in ends.items()} | steps
     widths = gripper.widths[:, 1]
     narrowest, widest = np.ceil(1e4 * widths.min()) / 1e4, np.floor(1e4 * widths.max()) / 1e4
     closed = next((steps.pop(word) for word in ("closed", "close") if word in steps), None)
     opened = steps.pop("open", None) or step_text("gripper", {"width": float(widest)})
     closed = closed or step_text("gripper", {"width": float(narrowest)})
-    found = {"open": opened, "close": closed, **steps}
-    return {word: of_arm(description, step) for word, step in found.items()}
+    return {"open": opened, "close": closed, **steps}
 
 
 AXES: dict[str, tuple[int, ...]] = {"box": (0, 1, 2), "cylinder": (0, 2), "sphere": (2,)}

@@ -5,7 +5,7 @@ import { $ } from "./dom.js";
 import { scene } from "./scene.js";
 import { aboutAxis, axesOf, product } from "./turns.js";
 
-const ARROW = 84, RING = 58, TIP = 13, SQUARE = 6; // [pixels]
+const ARROW = 84, RING = 58, TIP = 13, SQUARE = 6, OUTSIDE = 16; // [pixels]; squares lie outside, so that bodies can be dragged
 const NAMES = ["x", "y", "z"];
 const EDGE_ON = 0.12; // cosine below which a plane is seen too flat to be dragged in
 const RING_POINTS = 48;
@@ -35,6 +35,7 @@ export function holdGizmo(what) {
   layer.replaceChildren();
   parts.clear();
   if (!held) return;
+  if (held.kind === "tcp") part("move freely", "free", ["circle", "hit point"], ["circle", "shown tip"]); // bodies are dragged themselves
   NAMES.forEach((name, axis) => {
     if (held.turns === "all" || (held.turns === "pitch" && axis === 1) || (held.turns === "yaw" && axis === 2)) part(`turn ${name}`, name, ["path", "hit"], ["path", "shown ring"]);
   });
@@ -42,7 +43,6 @@ export function holdGizmo(what) {
     part(`move ${name}`, name, ["path", "hit"], ["path", "shown"], ["path", "shown tip"]);
     if (held.half?.[axis]) part(`size ${name}`, name, ["circle", "hit point"], ["rect", "shown tip"]);
   });
-  part("move freely", "free", ["circle", "hit point"], ["circle", "shown tip"]);
   scene.viewer?.redraw();
 }
 
@@ -99,11 +99,11 @@ function place() {
       const [dx, dy] = [(ex - cx) / long, (ey - cy) / long];
       const isSeen = long > 0.2 * ARROW; // an arrow that points at the eye cannot be dragged
       const from = [cx + 9 * dx, cy + 9 * dy], to = [ex - TIP * dx, ey - TIP * dy];
-      hit.setAttribute("d", isSeen ? line([[cx + 16 * dx, cy + 16 * dy], [ex, ey]]) : "");
+      hit.setAttribute("d", isSeen ? line([[cx + 24 * dx, cy + 24 * dy], [ex, ey]]) : "");
       shown.setAttribute("d", isSeen ? line([from, to]) : "");
       tip.setAttribute("d", isSeen ? `${line([[ex, ey], [to[0] - 5.5 * dy, to[1] + 5.5 * dx], [to[0] + 5.5 * dy, to[1] - 5.5 * dx]])}Z` : "");
     } else {
-      const [x, y] = at(addScaled(centre, own[axis], held.half[axis]));
+      const [x, y] = at(addScaled(centre, own[axis], Math.max(held.half[axis], (ARROW + OUTSIDE) * unit)));
       for (const [key, value] of [["cx", x], ["cy", y], ["r", 11]]) hit.setAttribute(key, value);
       for (const [key, value] of [["x", x - SQUARE], ["y", y - SQUARE], ["width", 2 * SQUARE], ["height", 2 * SQUARE], ["rx", 2]]) shown.setAttribute(key, value);
     }

@@ -38,7 +38,8 @@ export function startGoal(action) {
   startGizmo((held, what, isEnd) => {
     if (held.kind === "tcp") return sendDrag({ kind: "tcp", pose: held.pose, end: isEnd });
     if (what !== "size") return sendDrag({ kind: "object", name: held.kind, pose: held.pose, end: isEnd });
-    showSize(held);
+    if (isEnd) scene.labels?.show([]);
+    else showSize(held);
     return isEnd ? sendDrag({ kind: "size", name: held.kind, half: held.half.map((each) => each ?? 0), pose: held.pose, end: true }) : null;
   });
   onUnits(() => {

@@ -64,14 +64,14 @@ function showGripper() {
   const box = $("gripper");
   width = null;
   if (!robot.gripper) return box.replaceChildren(element("p", {}, "This robot has no gripper."));
-  const { steps, narrowest, widest, step } = robot.gripper;
+  const { steps, narrowest, widest } = robot.gripper;
   const buttons = Object.entries(steps)
     .filter(([word]) => widest || !["open", "close"].includes(word)) // of cups: the keys o and p alone
     .map(([word, text]) => element("button", { title: { open: "key o", close: "key p" }[word] ?? "", onclick: () => run(text) }, word));
   box.replaceChildren(element("div", { class: "row" }, ...buttons));
   if (!widest) return;
   width = jointRow({ name: "width", label: "width", lower: narrowest, upper: widest, slides: true, isCalm: true },
-    (value, isLast) => isLast && run(step.replace("WIDTH", value.toFixed(4))));
+    (value, isLast) => isLast && run(`gripper: {width: ${value.toFixed(4)}}`));
   box.prepend(width.row);
   keepUnits([width], box);
 }
@@ -151,7 +151,7 @@ const goal = () => ({ verb: $("verb").value, state: $("goal-kind").value === LIS
 function showPlan(reply) {
   $("plan-result").replaceChildren(reply.error
     ? element("div", { class: "failed" }, reply.error, ...(reply.explanation ?? []).map((l) => element("div", { class: "explanation" }, l)))
-    : element("div", {}, reply.duration === undefined ? reply.note ?? `executed: ${reply.step}` : `${reply.step} takes ${reply.duration} s over ${amount(reply.length, "m")} (${reply.planner})`));
+    : element("div", { title: reply.step }, reply.duration === undefined ? reply.note ?? `executed: ${reply.step}` : `takes ${reply.duration.toFixed(2)} s over ${amount(reply.length, "m")} (${reply.planner})`));
 }
 
 const click = (id, action) => $(id).addEventListener("click", action);

@@ -81,6 +81,9 @@ const COLORED = (name, index) => {
   return element("span", {}, sign, name);
 };
 
+/** The newest value of each line, as it is drawn; for tests and for readers of the screen. */
+export const latest = () => plot?.data && Object.fromEntries(plot.data.series.map(({ name, values }) => [name, values.at(-1)]));
+
 export function startPlots() {
   plot = new Plot([], { onSeek() {}, onZoom() {}, onReset() {} });
   $("plot").append(plot.canvas);

@@ -15,7 +15,7 @@ import { amount } from "./quantities.js";
 
 const CREASE = 0.76; // cosine of the largest angle of a mesh that is smoothed
 const FLOOR = 12; // half the side of the floor of a world without one [m]
-const SOLID = 0.78, FAINT = 0.16, HIDDEN = 0.06; // opacity of ghosts
+const SOLID = 0.78, FAINT = 0.16; // opacity of ghosts
 const SAME = { position: 0.003, turn: 0.99998 }; // a ghost's link so near to the robot's is not drawn [m], cosine of half an angle
 const MOVING = 150; // [ms] after a pose in which the picture is drawn in fewer pixels where that is slow
 const CHOSEN = 0.3; // glow of what is selected
@@ -172,16 +172,20 @@ export function showPlanned(poses, points) {
 
 function showGhosts() {
   if (!scene.viewer) return;
-  const shown = plan ? [plan] : ghosts;
+  const chosen = hovered >= 0 ? ghosts.filter(({ way }) => way === hovered) : ghosts.toSorted((a, b) => b.solid - a.solid);
+  const shown = plan && hovered < 0 ? [plan] : chosen;
+  const drawn = scene.links.map((link) => [link.pose]); // a surface is drawn once at a place: two would flicker
   while (copies.length < shown.length) copies.push(scene.links.map(copyOf));
   const tones = new Map();
   copies.forEach((bodies, number) => {
     const ghost = shown[number];
-    const opacity = !ghost ? 0 : hovered >= 0 ? (ghost.way === hovered ? SOLID : HIDDEN) : ghost.solid ? SOLID : FAINT;
+    const opacity = hovered >= 0 || ghost?.solid ? SOLID : FAINT;
     if (ghost && !tones.has(ghost.tone)) tones.set(ghost.tone, rgba(themeColor(ghost.tone)).slice(0, 3));
     bodies.forEach((body, index) => {
       const pose = ghost?.poses[index];
-      put(body, pose && !isSame(pose, scene.links[index].pose) ? pose : null);
+      const isNew = pose && !drawn[index].some((other) => isSame(pose, other));
+      put(body, isNew ? pose : null);
+      if (isNew) drawn[index].push(pose);
       if (ghost) for (const { surface } of body.pieces) surface.color = [...tones.get(ghost.tone), opacity];
     });
   });
