@@ -120,15 +120,8 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     facts = next((part.facts.gripper for part in parts[::-1] if part.facts.gripper), None)
     bounds = first.facts.controller_tolerances
     hand = None if facts is None else _gripper(facts)
-    return RobotDescription(
-        name=source,
-        urdf=write_urdf(source, tree_links, tree_joints),
-        srdf=write_srdf(source, srdf),
-        links=tree_links,
-        joints=tree_joints,
-        groups=planning_groups(srdf, tree_joints, source),
-        named_states=srdf.states,
-        allowed_collisions=srdf.disabled,
+    return replace(
+        robot_of_tree(source, tree_links, tree_joints, srdf),
         arm_group="" if arm is None else arm.facts.arm_group or "",
         gripper=hand,
         tcp_link=tcp_link,
@@ -157,6 +150,27 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
             for number, each in enumerate(first.arms)
         ),
         default_arm=first.default_arm,
+    )
+
+
+def robot_of_tree(
+    name: str, links: tuple[Link, ...], joints: tuple[Joint, ...], srdf: Srdf
+) -> RobotDescription:
+    """A robot of which only its tree and its SRDF are known yet."""
+    return RobotDescription(
+        name=name,
+        urdf=write_urdf(name, links, joints),
+        srdf=write_srdf(name, srdf),
+        links=links,
+        joints=joints,
+        groups=planning_groups(srdf, joints, name),
+        named_states=srdf.states,
+        allowed_collisions=srdf.disabled,
+        arm_group="",
+        gripper=None,
+        tcp_link="",
+        base_link="",
+        start_state={},
     )
 
 

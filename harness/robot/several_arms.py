@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from harness.core.errors import RobotError, RobotOptionError
-from harness.robot.compose import refuse_clashes
+from harness.robot.compose import refuse_clashes, robot_of_tree
 from harness.robot.description import (
     ALL_ARMS,
     WORLD,
@@ -18,11 +18,9 @@ from harness.robot.description import (
     RobotDescription,
     TrackingTolerances,
 )
-from harness.robot.groups import planning_groups
 from harness.robot.srdf.all_arms import with_group_of_all
 from harness.robot.srdf.srdf import Srdf, SrdfGroup, link_pair, parse_srdf, write_srdf
 from harness.robot.tree import in_tree_order
-from harness.robot.urdf.write import write_urdf
 
 Name = Callable[[str], str]
 
@@ -58,15 +56,8 @@ def joined_arms(robots: Mapping[str, RobotDescription]) -> RobotDescription:
         raise RobotOptionError(
             "joint_controller", "all arms have the same one: " + ", ".join(sorted(controllers))
         )
-    return RobotDescription(
-        name=source,
-        urdf=write_urdf(source, links, ordered),
-        srdf=write_srdf(source, srdf),
-        links=links,
-        joints=ordered,
-        groups=planning_groups(srdf, ordered, source),
-        named_states=srdf.states,
-        allowed_collisions=srdf.disabled,
+    return replace(
+        robot_of_tree(source, links, ordered, srdf),
         arm_group=first.arm_group,
         gripper=first.gripper,
         tcp_link=first.tcp_link,
