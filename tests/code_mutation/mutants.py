@@ -18,6 +18,9 @@ SCOPE = (
     "harness/planning/verification",
     "harness/recording/digest.py",
     "harness/session",
+    "harness/plugins/cameras/expectations",
+    "harness/plugins/faults/observers",
+    "harness/plugins/paths",
 )
 
 
