@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from harness.core.deferred_import import deferred
+import sys
+from typing import Any, cast
 
-with deferred("glfw"):
+modules = cast("dict[str, Any]", sys.modules)
+is_hidden = modules.setdefault("glfw", None) is None  # a module that is None cannot be imported
+try:
     import mujoco as mujoco
+finally:
+    if is_hidden:
+        del modules["glfw"]
