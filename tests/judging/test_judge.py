@@ -12,7 +12,6 @@ from harness.judging.expectations.always import Always
 from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
 from harness.judging.expectations.duration import DurationCheck
-from harness.judging.expectations.fraction import FractionCheck
 from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.in_ import In
 from harness.judging.expectations.lifted import Lifted
@@ -34,6 +33,7 @@ from harness.judging.placed import PlacedExpectation, describe
 from harness.language.poses import Pose
 from harness.plugins.cameras.expectations.sees import HueRange, Sees
 from harness.plugins.formulas.expectations.formula import Formula
+from harness.plugins.paths.expectations.fraction import FractionCheck
 from harness.plugins.paths.expectations.tcp_path import TcpPath
 from tests.judging.synthetic_run import attachment, heights, lift_run, make_run
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from harness.judging.expectations.fraction import FractionCheck
 from harness.judging.expectations.gripper import GripperState
 from harness.judging.recorded import guard_unrecorded
 from harness.judging.window import NotObservable
+from harness.plugins.paths.expectations.fraction import FractionCheck
 from tests.judging.synthetic_run import lift_run, make_run, verdict
 
 READINGS = {

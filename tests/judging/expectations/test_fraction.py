@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.judging.expectations.fraction import FractionCheck
+from harness.plugins.paths.expectations.fraction import FractionCheck
 from harness.plugins.paths.expectations.tcp_path import TcpPath
 from harness.reporting.margins import allowance_used, margin_share, used_allowance
 from tests.judging import evidence_runs as shared

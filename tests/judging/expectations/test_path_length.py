@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.judging.expectations.path_length import PathLength
+from harness.plugins.paths.expectations.path_length import PathLength
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import AT_ONCE, Evidence, Free, Three
 from tests.judging.synthetic_run import heights, make_run, verdict

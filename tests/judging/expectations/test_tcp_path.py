@@ -7,8 +7,8 @@ import pytest
 
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
-from harness.judging.expectations.fraction import FractionCheck
 from harness.judging.window import NotObservable
+from harness.plugins.paths.expectations.fraction import FractionCheck
 from harness.plugins.paths.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.reporting.margins import allowance_used, margin_share
 from harness.robot.description import fixed_joint
