@@ -4,10 +4,11 @@ import base64
 import json
 import sys
 from functools import partial
+from importlib.util import find_spec
 
 import pytest
 
-mcp = pytest.importorskip("mcp")
+pytestmark = pytest.mark.skipif(find_spec("mcp") is None, reason="the extra `mcp` is not installed")
 
 WRONG = """\
 scenario: Pick a cube from the table
