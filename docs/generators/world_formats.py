@@ -103,6 +103,21 @@ angles. Files outside the scene's folder are read in the folders of `model_path`
 | `composite`, `flexcomp`, `extension`, `model` | refused | |"""
 
 
+URDF = """## Objects in URDF
+
+`world: cabinet.urdf` reads one object whose root stands at the world's origin; the robot's `base` is placed
+relative to it.
+
+| in | here | |
+| --- | --- | --- |
+| links that no joint moves | read | one static object with the name of the robot |
+| revolute, continuous and prismatic joints of these links | read | its `joints`, with limits, friction and damping |
+| joints further out | ignored | held at zero, with a note |
+| `mimic` | ignored | each joint moves alone, with a note |
+| inertial | read | without one, the mass follows from the volume |
+| names of collisions, else of links | read | names of shapes: `open` takes the one called `handle` |"""
+
+
 COMMAND = """## Conversion to world files
 
 `harness import sdf FILE`, `import mjcf FILE` and `import scene FILE` write an equivalent
@@ -167,6 +182,7 @@ def formats_page() -> str:
         MJCF.format(shapes=", ".join(SHAPES), rows=rows),
         SCENES,
         MESSAGES,
+        URDF,
         COMMAND,
     ]
     return "\n\n".join(parts) + "\n"

@@ -106,7 +106,8 @@ def start_physics(
 def overlap_note(prepared: Prepared, touch: Touch) -> str:
     """An overlap at the start, with the place of the object in the file."""
     locs = prepared.program.object_locs
-    known = [locs[name] for name in (touch.second, touch.first) if name in locs]
+    names = [name.partition("/")[0] for name in (touch.second, touch.first)]  # of parts: fixtures
+    known = [locs[name] for name in names if name in locs]
     loc = min(known, key=lambda each: each == ("world",))  # the world's objects are listed last
     problem = prepared.loaded.lines.problem(loc, overlap_text(touch))
     return f"{problem.path}:{problem.line}:{problem.column}: {problem.message}"

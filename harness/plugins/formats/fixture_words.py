@@ -55,7 +55,10 @@ class PartJoint:
         return not all(map(math.isfinite, self.limits))
 
     def words(
-        self, shapes: list[ShapeSpec], visuals: list[ShapeSpec], mass: MassProperties
+        self,
+        shapes: list[ShapeSpec],
+        visuals: list[ShapeSpec],
+        mass: MassProperties | None = None,
     ) -> dict[str, Any]:
         """The keys of the joint, with the shapes of its part in the fixture's frame."""
         lower, upper = (rounded(limit) for limit in self.usable_limits)
@@ -75,7 +78,7 @@ class PartJoint:
             self.kind: motion,
             "shapes": tuple(shapes),
             "visuals": tuple(visuals),
-            **mass_words(mass),
+            **({} if mass is None else mass_words(mass)),
         }
 
 

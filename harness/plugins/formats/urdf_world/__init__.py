@@ -1,0 +1,1 @@
+"""Objects with joints in URDF: cabinets, doors, drawers."""
