@@ -105,17 +105,17 @@ angles. Files outside the scene's folder are read in the folders of `model_path`
 
 URDF = """## Objects in URDF
 
-`world: cabinet.urdf` reads one object whose root stands at the world's origin; the robot's `base` is placed
-relative to it.
+`world: cabinet.urdf` reads one object whose root stands at the world's origin; the robot's `base`
+is placed relative to it.
 
 | in | here | |
 | --- | --- | --- |
 | links that no joint moves | read | one static object with the name of the robot |
-| revolute, continuous and prismatic joints of these links | read | its `joints`, with limits, friction and damping |
+| joints of these that turn or slide | read | its `joints`, with limits, friction and damping |
 | joints further out | ignored | held at zero, with a note |
 | `mimic` | ignored | each joint moves alone, with a note |
 | inertial | read | without one, the mass follows from the volume |
-| names of collisions, else of links | read | names of shapes: `open` takes the one called `handle` |"""
+| names of collisions or links | read | names of shapes: `open` takes the one called `handle` |"""
 
 
 COMMAND = """## Conversion to world files

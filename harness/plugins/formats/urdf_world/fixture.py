@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Shape, Sphere
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement, read_xml
@@ -95,7 +97,7 @@ class _Fixture:
             message = f"the joint '{joint.name}' and what it moves are left out"
             self._notes.add(element.place, f"{message}: nothing of it touches")
             return None
-        axis, point = on_fixture(self._poses[joint.child], joint.axis, (0.0, 0.0, 0.0))
+        axis, point = on_fixture(self._poses[joint.child], joint.axis, np.zeros(3))
         part = PartJoint(
             name=joint.name,
             kind="slide" if joint.kind == "prismatic" else "hinge",
