@@ -96,7 +96,9 @@ class Verdict:
         reason: One sentence with the numbers, for a failure why.
         measures: What was measured at the deciding sample.
         observed: How much it is based on; None where nothing could be judged.
+        points: The points that it is worth; None where the file states none.
         warnings: Why it shows less than it seems to; `--strict` turns them into failures.
+        earned: The points that a grader awarded; None of a run that is not graded.
     """
 
     expectation: str
@@ -111,3 +113,13 @@ class Verdict:
     points: float | None = None
     observed: Observed | None = None
     warnings: tuple[VerdictWarning, ...] = ()
+    earned: float | None = None
+
+    @property
+    def credit(self) -> str:
+        """`4 of 5 points`, or what it is worth; empty where it is worth nothing."""
+        if not self.points:
+            return ""
+        if self.earned is None:
+            return f"{self.points:g} points"
+        return f"{self.earned:g} of {self.points:g} points"

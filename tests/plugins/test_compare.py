@@ -124,9 +124,9 @@ def test_many_changed_lines_are_counted():
         (Verdict("path", "passed", 0.05, "1"), Verdict("path", "passed", 0.04, "1"),
          "path: 0.05 -> 0.04 (-0.01)"),
         (Verdict("path", "passed", 0.05, "1"), Verdict("path", "passed", 0.003, "m"),
-         "path: 0.05 -> 0.003 m"),
+         "path: 0.05 -> 3.0 mm"),
         (Verdict("path", "passed", 0.05, "m"), Verdict("path", "passed", 0.04, "m"),
-         "path: 0.05 m -> 0.04 m (-0.01 m)"),
+         "path: 50.0 mm -> 40.0 mm (-10.0 mm)"),
     ],
 )  # fmt: skip
 def test_a_plain_number_has_no_unit(before, after, said):

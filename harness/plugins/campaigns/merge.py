@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from harness.core.activity import Activity, unobserved
 from harness.plugins.campaigns.conditions import read_conditions
 from harness.plugins.campaigns.shards import ShardRecord, read_shard_records
 from harness.reporting.json_text import compact_json
@@ -32,12 +33,15 @@ from harness.suite.stream import (
 from harness.suite.suite_run import SuiteRun
 
 
-def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardRecord]:
+def merge_parts(
+    folders: Sequence[Path], target: Path, activity: Activity = unobserved
+) -> tuple[SuiteRun, ShardRecord]:
     """Merge report folders of `harness run --shard`.
 
     Args:
         folders: The report folders of the parts.
         target: The folder that gets the results of all parts as one `results.jsonl`.
+        activity: Called with the number of results that are merged, and their number.
 
     Returns:
         The whole suite, counted as one run would count it, and the description of the first part.
@@ -65,7 +69,8 @@ def merge_parts(folders: Sequence[Path], target: Path) -> tuple[SuiteRun, ShardR
     try:
         for listed in inputs:
             stream.append(checked_line(compact_json(listed)))
-        for index, result, line in heapq.merge(*parts, key=_index):
+        for done, (index, result, line) in enumerate(heapq.merge(*parts, key=_index)):
+            activity("merging", done, len(plan))
             suite.take(index, result, stream.append(line))
         stream.rename()
     finally:

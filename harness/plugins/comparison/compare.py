@@ -9,6 +9,7 @@ from itertools import zip_longest
 
 import numpy as np
 
+from harness.core.amounts import amount, amounts
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.plugins.comparison.alignment import StepPair, aligned_steps, names_of
@@ -29,6 +30,7 @@ class Change:
         name: The name of the step, expectation or library.
         before: The value in the first run, in words; `-` where it has none.
         amount: After less before, where both are one number; NaN elsewhere.
+        unit: The unit of the amount, which `difference` writes.
     """
 
     what: str
@@ -37,6 +39,15 @@ class Change:
     after: str
     amount: float = float("nan")
     unit: str = ""
+
+    @property
+    def difference(self) -> str:
+        """`+2.0 mm`, or how far apart two trajectories are; empty where there is no number."""
+        if np.isnan(self.amount):
+            return ""
+        if self.what == "trajectory":
+            return f"{self.amount:.3g} {self.unit}"
+        return f"{'-' if self.amount < 0 else '+'}{amount(abs(self.amount), self.unit)}"
 
 
 @dataclass(frozen=True)
@@ -156,7 +167,7 @@ def _verdicts(ours: Mapping[str, Verdict], theirs: Mapping[str, Verdict]) -> lis
 def _margin(name: str, one: Verdict, two: Verdict) -> Change:
     if one.unit == two.unit:
         return _number("margin", name, one.margin, two.margin, one.unit)
-    before, after = (_with_unit(f"{each.margin:.6g}", each.unit) for each in (one, two))
+    before, after = (amount(each.margin, each.unit) for each in (one, two))
     return Change("margin", name, before, after)
 
 
@@ -183,17 +194,11 @@ def _judged(verdict: Verdict | None) -> str:
         return NONE
     if np.isnan(verdict.margin):
         return verdict.status
-    return f"{verdict.status} by {_with_unit(f'{abs(verdict.margin):.4g}', verdict.unit)}"
+    return f"{verdict.status} by {amount(abs(verdict.margin), verdict.unit)}"
 
 
 def _number(what: str, name: str, before: float, after: float, unit: str) -> Change:
-    words = [_with_unit(f"{value:.6g}", unit) for value in (before, after)]
-    return Change(what, name, words[0], words[1], after - before, unit)
-
-
-def _with_unit(number: str, unit: str) -> str:
-    """A number and its unit; a plain number has none."""
-    return number if unit in ("", "1") else f"{number} {unit}"
+    return Change(what, name, *amounts(before, after, unit), after - before, unit)
 
 
 def _findings(one: Run, two: Run) -> list[Change]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
@@ -97,7 +96,5 @@ def _groups(changes: Sequence[Change]) -> list[dict[str, Any]]:
 
 
 def _row(change: Change) -> dict[str, str]:
-    amount = "" if math.isnan(change.amount) else f"{change.amount:+.3g} {change.unit}".rstrip(" 1")
-    if change.what == "trajectory":
-        amount = amount.removeprefix("+")
+    amount = change.difference
     return {"name": change.name, "before": change.before, "after": change.after, "amount": amount}

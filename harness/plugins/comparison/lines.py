@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 
+from harness.core.quantity import distinct
 from harness.plugins.comparison.compare import Change, FirstDifference, RunComparison
 from harness.reporting.terminal import PLAIN, Style
 
@@ -50,10 +51,8 @@ def parting_text(first: FirstDifference) -> str:
     where = f"in step {first.step}, " if first.step else ""
     if first.signal == "times":
         return f"one run continues {where}after t={first.time:.3f} s"
-    return (
-        f"first {where}at t={first.time:.3f} s: {first.signal}"
-        f" is {first.before:.9g} and {first.after:.9g}"
-    )
+    values = distinct(first.before, first.after, lambda value, more: f"{value:.{3 + more}g}")
+    return f"first {where}at t={first.time:.3f} s: {first.signal} is {' and '.join(values)}"
 
 
 def _line(change: Change) -> str:
@@ -61,9 +60,8 @@ def _line(change: Change) -> str:
     if change.before == change.after:
         return f"{name}{change.before}"
     line = f"{name}{change.before} -> {change.after}"
-    if change.what == "trajectory" and change.unit:
-        return f"{line}, up to {change.amount:.3g} {change.unit}"
-    if change.unit:
-        unit = "" if change.unit == "1" else f" {change.unit}"
-        return f"{line} ({change.amount:+.3g}{unit})"
-    return line
+    if not change.difference:
+        return line
+    if change.what == "trajectory":
+        return f"{line}, up to {change.difference}"
+    return f"{line} ({change.difference})"

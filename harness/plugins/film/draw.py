@@ -13,6 +13,7 @@ from harness.cameras.caption import DARK, RED, captioned, jpeg
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
 from harness.cameras.stills import INK, overview
+from harness.core.activity import Activity, unobserved
 from harness.core.errors import HarnessError
 from harness.core.extras import install_command
 from harness.core.spatial import SE3
@@ -26,13 +27,19 @@ RATE = 15.0  # frames per second of simulated time
 MOST_FRAMES = 3000  # three minutes; of longer runs fewer a second
 
 
-def draw_film(stored: StoredRun, size: tuple[int, int] = SIZE, rate: float = RATE) -> bytes:
+def draw_film(
+    stored: StoredRun,
+    size: tuple[int, int] = SIZE,
+    rate: float = RATE,
+    activity: Activity = unobserved,
+) -> bytes:
     """An MP4 of the replay in real time, with the step and its verdict below the picture.
 
     Args:
         stored: A run with its verdicts.
         size: Width and height in pixels, both even.
         rate: Frames per second of simulated time; fewer of long runs.
+        activity: Called with the number of frames that are drawn, and their number.
 
     Raises:
         HarnessError: The extra `video` is not installed.
@@ -44,7 +51,7 @@ def draw_film(stored: StoredRun, size: tuple[int, int] = SIZE, rate: float = RAT
 
     rate = min(rate, MOST_FRAMES / max(stored.run.duration, 1e-9))
     with closing(ReplayRenderer(stored, size)) as renderer:
-        return encoded_film(renderer.pictures(rate), rate, size)
+        return encoded_film(renderer.pictures(rate, activity), rate, size)
 
 
 def draw_moment(stored: StoredRun, size: tuple[int, int] = SIZE) -> bytes:
@@ -72,9 +79,11 @@ class ReplayRenderer:
         self._renderer = make_renderer(self._picture, width, height, "auto")
         self._view = overview(run.robot, self._objects, run).view
 
-    def pictures(self, rate: float) -> Iterator[np.ndarray]:
+    def pictures(self, rate: float, activity: Activity = unobserved) -> Iterator[np.ndarray]:
         """The captioned pictures of a film, RGB."""
-        for frame in frames_of(self._stored, rate):
+        frames = list(frames_of(self._stored, rate))
+        for number, frame in enumerate(frames):
+            activity("drawing", number, len(frames))
             picture = self.picture(frame)[:, :, ::-1]
             for _ in range(frame.repeats):
                 yield picture

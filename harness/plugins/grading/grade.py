@@ -18,10 +18,11 @@ from harness.language.reading.resolve import resolved_text
 from harness.plugins.grading.bag.content import BagTopics
 from harness.plugins.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
 from harness.plugins.grading.credit import credit_of_run
-from harness.plugins.grading.points import Grade, graded
+from harness.plugins.grading.points import Grade, Graded, graded
 from harness.recording.digest import digest
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
+from harness.recording.verdict import Verdict, VerdictWarning
 from harness.recording.write_run import run_folder, write_document
 from harness.reporting.reporter import Reports
 from harness.session.prepare import Prepared, prepare
@@ -106,12 +107,22 @@ def _write_page(run: Run, grade: Grade, folder: Path) -> None:
     from harness.session.observation.visuals import mesh_records
 
     run = replace(run, meshes=mesh_records(run))
-    verdicts = tuple(row.verdict for row in grade.rows)
+    verdicts = tuple(_credited(row) for row in grade.rows)
     outcome = "passed" if grade.is_full else "failed"
     stored = StoredRun(run, verdicts, outcome, digest(run, verdicts), {})
     with run_folder(folder, run) as target:
         write_document(target, stored)
         Reports(["html"]).write(target, stored)
+
+
+def _credited(row: Graded) -> Verdict:
+    """The verdict with its points, as the page shows it."""
+    verdict = replace(row.verdict, points=row.points, earned=row.earned)
+    if not row.is_withheld:
+        return verdict
+    doubts = ", ".join(f"--allow {kind}" for kind in row.withheld)
+    withheld = VerdictWarning("points withheld", f"{row.points:g}, but for {doubts}")
+    return replace(verdict, warnings=(*verdict.warnings, withheld))
 
 
 def _withheld(

@@ -69,8 +69,12 @@ def groups_of(run: Run, verdicts: Sequence[Verdict] = ()) -> Iterator[Group]:
     )  # fmt: skip
     for make in makers:
         group = make(run)
-        if group is not None and group.series:
+        if group is not None and _is_known(group):
             yield _with_expected(group, verdicts)
+
+
+def _is_known(group: Group) -> bool:
+    return any(np.isfinite(values).any() for values in group.series.values())
 
 
 def _with_expected(group: Group, verdicts: Sequence[Verdict]) -> Group:

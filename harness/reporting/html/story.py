@@ -99,6 +99,7 @@ def verdict_facts(run: Run, verdict: Verdict) -> dict[str, Any]:
         "measures": finite(verdict.measures),
         "plot": (first.plot or None) if first else None,
         "points": _points(verdict),
+        "credit": verdict.credit,
         "nearest": nearest_points(run, verdict),
         "bodies": bodies_of(run, verdict),
     }

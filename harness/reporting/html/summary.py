@@ -72,7 +72,19 @@ def header_facts(stored: StoredRun) -> list[tuple[str, str]]:
         ("digest", stored.digest[:12]),
         ("file", run.file),
         ("case", run.case),
+        ("points", _earned(stored)),
     ]
+
+
+def _earned(stored: StoredRun) -> str:
+    """`9 of 10` points of a run that was graded; empty of others."""
+    if all(verdict.earned is None for verdict in stored.verdicts):
+        return ""
+    earned, worth = (
+        sum(getattr(verdict, key) or 0.0 for verdict in stored.verdicts)
+        for key in ("earned", "points")
+    )
+    return f"{earned:g} of {worth:g}"
 
 
 def summary_facts(stored: StoredRun) -> list[tuple[str, str]]:
@@ -98,10 +110,11 @@ def summary_tables(stored: StoredRun) -> list[Table]:
 def _verdicts(stored: StoredRun) -> Iterator[Row]:
     source = stored.run.source.splitlines()
     for number, verdict in enumerate(stored.verdicts, start=1):
-        holds, line = verdict.status == "passed", verdict.line
+        holds, line, credit = verdict.status == "passed", verdict.line, verdict.credit
         yield Row(
             "good" if holds else "bad",
-            (str(number), verdict.expectation, verdict_line(verdict), _used(verdict),
+            (str(number), f"{verdict.expectation}{credit and f' ({credit})'}",
+             verdict_line(verdict), _used(verdict),
              str(line or "")),
             source="" if holds or not 0 < line <= len(source) else source[line - 1].strip(),
             warnings=tuple(map(str, verdict.warnings)),

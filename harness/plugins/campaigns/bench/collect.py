@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 
 from harness.cell.program import ProgramStep, step_seed
+from harness.core.activity import Activity, unobserved
 from harness.core.errors import HarnessError
 from harness.planning.collision.scene import CoalScene
 from harness.planning.search.find_pipeline import with_planner
@@ -51,6 +52,7 @@ def collect(
     on_motion: OnMotion,
     *,
     overrides: Mapping[str, str] | None = None,
+    on_trial: Activity = unobserved,
 ) -> list[MotionTrials]:
     """Plan every free motion (`move_to`) of a scenario with every planner and seed.
 
@@ -63,12 +65,13 @@ def collect(
         seeds: Scenario seeds; `harness run --seed` plans the same motions.
         on_motion: Called with each motion when its trials are complete.
         overrides: Dotted path in the file -> new value, as YAML text.
+        on_trial: Called before each trial.
 
     Raises:
         SpecError: The file has problems; the error holds all of them.
     """
     prepared = prepare(path, overrides)
-    bench = _BenchPlanner(prepared, str(path), planners, seeds, on_motion)
+    bench = _BenchPlanner(prepared, str(path), planners, seeds, on_motion, on_trial)
     simulator = DrySimulator(prepared.program, prepared.ports.scene)
 
     def watch(step: ProgramStep, record: StepRecord | None) -> None:
@@ -89,6 +92,7 @@ class _BenchPlanner(DryPlanner):
         planners: Sequence[str],
         seeds: Sequence[int],
         on_motion: OnMotion,
+        on_trial: Activity,
     ) -> None:
         super().__init__(prepared.ports.planner, prepared.program.description)
         if not isinstance(prepared.ports.scene, CoalScene):
@@ -96,7 +100,8 @@ class _BenchPlanner(DryPlanner):
         self.motions: list[MotionTrials] = []
         self._real = prepared.ports.planner
         self._scene = prepared.ports.scene
-        self._file, self._planners, self._seeds, self._on_motion = file, planners, seeds, on_motion
+        self._file, self._planners, self._seeds = file, planners, seeds
+        self._on_motion, self._on_trial = on_motion, on_trial
         self.step: ProgramStep | None = None  # the one that began last
 
     def plan(self, request: MotionRequest) -> MotionPlan:
@@ -105,7 +110,9 @@ class _BenchPlanner(DryPlanner):
         if step is None or not isinstance(motion, FreeMotion) or motion.constraints is not None:
             return jump
         trials: list[Trial] = []
+        total = len(self._planners) * len(self._seeds)
         for planner, seed in product(self._planners, self._seeds):
+            self._on_trial(f"planning {step.id}", len(trials), total)
             chosen = with_planner(request.options, planner)
             chosen = replace(chosen, seed=step_seed(seed, step.path))
             one = replace(request, options=chosen)

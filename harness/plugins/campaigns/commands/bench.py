@@ -10,6 +10,7 @@ from harness.cli.arguments import whole_number
 from harness.cli.command import SEARCHES, Command
 from harness.cli.output import complain, say, say_json, say_text
 from harness.cli.shared_options import add_json, add_paths, add_report_dir
+from harness.cli.work_bar import WorkBar
 from harness.core.errors import SpecError
 from harness.suite.discovery import UsageError, discover
 from harness.suite.outcome import EXIT_CODES
@@ -67,7 +68,7 @@ def _bench(
 
     seeds = list(range(1, arguments.seeds + 1))
     motions: list[MotionTrials] = []
-    code = 0
+    code, work_bar = 0, WorkBar()
     for file in files:
         try:
             motions += collect(
@@ -76,6 +77,7 @@ def _bench(
                 seeds,
                 lambda motion: say(motion_line(motion)),
                 overrides=dict(arguments.overrides),
+                on_trial=work_bar,
             )
         except SpecError as error:
             complain(str(error))

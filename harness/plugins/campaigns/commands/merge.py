@@ -11,6 +11,7 @@ from harness.cli.command import RESULTS, Command
 from harness.cli.output import complain
 from harness.cli.shared_options import add_format, add_history, add_report_dir
 from harness.cli.suite_output import show_json, show_lines, show_results, write_suite_files
+from harness.cli.work_bar import WorkBar
 from harness.suite.hooks import SuiteHooks
 
 
@@ -36,7 +37,7 @@ class MergeCommand(Command):
 
         start = time.monotonic()
         suite, record = merge_parts(
-            [Path(each) for each in arguments.folders], Path(arguments.report_dir)
+            [Path(each) for each in arguments.folders], Path(arguments.report_dir), WorkBar()
         )
         selection = record.selection
         options = argparse.Namespace(

@@ -9,6 +9,7 @@ from typing import ClassVar
 from harness.cli.command import RESULTS, Command
 from harness.cli.files import refusing_unwritable, run_folder
 from harness.cli.output import say
+from harness.cli.work_bar import WorkBar
 
 
 class FilmCommand(Command):
@@ -32,7 +33,10 @@ class FilmCommand(Command):
 
         stored, target = read_run(folder), Path(arguments.to or folder)
         with blames_changes(folder, stored):
-            files = {"film.mp4": draw_film(stored), "moment.jpg": draw_moment(stored)}
+            files = {
+                "film.mp4": draw_film(stored, activity=WorkBar()),
+                "moment.jpg": draw_moment(stored),
+            }
         with refusing_unwritable():
             target.mkdir(parents=True, exist_ok=True)
             for name, content in files.items():

@@ -30,6 +30,7 @@ function verdict(run, each, index, select) {
     { type: "button", onclick: () => select(index), "data-verdict": index },
     element("i.sign", { role: "img", "aria-label": each.status }),
     element("b", {}, each.text),
+    each.credit && element("span.credit", {}, each.credit),
     each.status !== "passed" && each.status !== "failed" && element("span.what", {}, each.status),
     each.status === "passed" ? null : element("span.reason", {}, each.reason),
     ...each.warnings.map((warning) => element("span.reason", {}, `warning: ${warning}`)),
