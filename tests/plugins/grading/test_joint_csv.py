@@ -90,10 +90,16 @@ def test_a_class_that_hands_in_tables_gets_points_and_pages_with_the_arm(exercis
     (tmp_path / "all/late").mkdir(parents=True)
     table(tmp_path / "all/good.csv", [], motion(0.01)[1])
     table(tmp_path / "all/late/short.csv", [], motion(0.01, target=0.9)[1])
+    (tmp_path / "all/no_joints.csv").write_text("a,b\n1,2\n")
     words = ["grade-class", str(tmp_path / "turn"), str(tmp_path / "all")]
     assert main([*words, "--report-dir", str(tmp_path / "grades")]) == 1
     rows = list(csv.DictReader((tmp_path / "grades/grades.csv").read_text().splitlines()))
-    assert [(row["submission"], row["points"]) for row in rows] == [("good", "5"), ("late", "2")]
+    assert {row["submission"]: row["points"] for row in rows} == {
+        "good": "5",
+        "late": "2",
+        "no_joints": "0",
+    }
+    assert rows[-1]["remark"].startswith("no_joints.csv: the first line names no joint")
     kept = read_run(tmp_path / "grades/students/good/run")
     assert kept.run.meshes
     assert (tmp_path / "grades/students/good/run/report.html").is_file()

@@ -78,7 +78,12 @@ def run_graded_case(case: RunRequest, notify: Notify) -> CaseResult:
             case.confinement.own_folder()
             return _KINDS[case.assignment.model.kind](case, notify)
     except SpecError as error:
-        return replace(_blank(case, "invalid"), problems=tuple(error.problems))
+        place = f"{case.scratch}{os.sep}"  # a student knows the name of the file alone
+        problems = [
+            replace(each, path=Path(each.path).name) if each.path.startswith(place) else each
+            for each in error.problems
+        ]
+        return replace(_blank(case, "invalid"), problems=tuple(problems))
     except HarnessError as error:
         return _blank(case, "error", str(error))
     finally:

@@ -157,7 +157,8 @@ class StudentGrade:
                     f"{step.summary}: {step.error_code}: {step.message}"
                     for step in root_failures(run.result.steps)
                 ]
-                return (failed or [f"{lost.criterion.text}: {lost.reason}"])[0].splitlines()[0]
+                named = f"{lost.criterion.text}: {lost.reason}" if lost.verdict else lost.reason
+                return (failed or [named])[0].splitlines()[0]
         return ""
 
 
