@@ -42,7 +42,11 @@ PROMISES = (
     ),
     (
         "A clock that is set back changes no verdict: time is simulated, or recorded",
-        ("tests/plugins/grading/test_recorded_times.py", "tests/system/test_determinism.py"),
+        (
+            "tests/system/test_clock_and_network.py",
+            "tests/plugins/grading/test_recorded_times.py",
+            "tests/system/test_determinism.py",
+        ),
     ),
     (
         "A graphics library or an optional package that is missing stops no run that does not"
@@ -59,7 +63,15 @@ PROMISES = (
     ),
     (
         "No network is used: what listens does so on the loopback",
-        ("tests/plugins/studio/test_strangers.py", "tests/reporting/test_content_policy.py"),
+        (
+            "tests/system/test_clock_and_network.py",
+            "tests/plugins/studio/test_strangers.py",
+            "tests/reporting/test_content_policy.py",
+        ),
+    ),
+    (
+        "A request to the MCP server reads, writes and runs nothing outside its folder, and no code",
+        ("tests/plugins/test_mcp_strangers.py", "tests/plugins/test_mcp.py"),
     ),
     (
         "Strangers and pages of other sites can neither save nor run in the studio",
@@ -70,12 +82,18 @@ PROMISES = (
         ("tests/plugins/ros/test_robustness.py", "tests/plugins/ros/test_poses_of_messages.py"),
     ),
     (
-        "Valid scenarios of random steps end with an outcome, and with the same digest again",
+        "Valid scenarios of random steps end with an outcome and, run again, with the same digest;"
+        " motions are within limits, and what is attached changes by steps that say so",
         ("tests/campaigns/test_generated_scenarios.py",),
     ),
     (
         "The planning scene is what a simple model says after any attach, detach, add and remove",
         ("tests/campaigns/test_scene_model.py",),
+    ),
+    (
+        "A suite of 10,000 cases, 500 objects, an hour of recording and 100 shards need no more"
+        " than their size",
+        ("tests/system/test_long_and_large.py", "tests/reporting/test_suite_page.py"),
     ),
 )
 """Promises, and the tests that hold them."""

@@ -18,7 +18,7 @@ from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.header import read_header
 from harness.suite.hooks import SuiteHooks
-from harness.suite.plan import planned_cases
+from harness.suite.plan import cases_of, planned_cases
 from harness.suite.request import SuiteRequest
 from harness.suite.stream import Stream, StreamEntry, entry_of
 from harness.suite.suite_run import SuiteRun
@@ -43,7 +43,7 @@ def command(folder, *words):
     return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
-def parts_of(folder, count):
+def parts_of(folder, count, parts=PARTS):
     """Report folders of parts with that many results, each a copy of one that was computed."""
     (folder / "ball.scenario.yaml").write_text(ball(2))
     command(folder, "run", "ball.scenario.yaml", "--shard", "1/1", "--report-dir", "one")
@@ -52,19 +52,20 @@ def parts_of(folder, count):
     entry = entry_of(line)
     record = json.loads((folder / "one/shard.json").read_text())
     streams = []
-    for number in range(1, PARTS + 1):
+    for number in range(1, parts + 1):
         root = folder / f"{count}/{number}"
         streams.append(Stream(root))
         selection = {**record["selection"], "samples": count}
-        part = {"shard": {"number": number, "count": PARTS}, "root": str(root)}
+        part = {"shard": {"number": number, "count": parts}, "root": str(root)}
         part |= {"selection": selection}
         (root / "shard.json").write_text(json.dumps({**record, **part}))
-    cases = read_header(folder / "ball.scenario.yaml").variation.cases(None, count)
-    for index, case in enumerate(cases):
-        stream = streams[Shard(1, PARTS).number_of(index) - 1]
+    header = read_header(folder / "ball.scenario.yaml")
+    for planned in cases_of([(Path("ball.scenario.yaml"), header)], SuiteRequest(samples=count)):
+        case = planned.of.cases[planned.position]
+        stream = streams[Shard(1, parts).number_of(planned) - 1]
         result = replace(entry.result, case=case.name, seed=int(case.overrides["seed"]))
         stream.append(StreamEntry(f"{entry.key}{case.name}", result, case.values).line)
-    return [folder / f"{count}/{number}" for number in range(1, PARTS + 1)]
+    return [folder / f"{count}/{number}" for number in range(1, parts + 1)]
 
 
 def test_a_merge_of_many_results(tmp_path, print_row):

@@ -21,6 +21,7 @@ import tempfile
 import time
 import traceback
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +113,7 @@ def _wait(process: Any, last: LastInput) -> bool:
     return False
 
 
-def main() -> int:
+def main(words: Sequence[str] | None = None) -> int:
     """Run the campaigns, print their counts and write them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("readers", nargs="*", metavar="READER", help=f"of {', '.join(READERS)}")
@@ -120,7 +121,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--guided", action="store_true", help="by coverage (pip install atheris)")
     parser.add_argument("--folder", type=Path, help="keeps the inputs that ended badly")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words)
     unknown = [name for name in arguments.readers if name not in READERS]
     if unknown:
         parser.error(f"no reader is called {unknown[0]}; there are {', '.join(READERS)}")

@@ -215,7 +215,7 @@ def ends_well(seed: int, folder: Path) -> tuple[str, set[str]]:
     return first.outcome, words
 
 
-def _by_hand(first: int, count: int) -> int:
+def run_many(first: int, count: int) -> int:
     """Print how many drawn scenarios ended how, and every bad end."""
     ends: Counter[str] = Counter()
     seen: Counter[str] = Counter()
@@ -236,4 +236,4 @@ def _by_hand(first: int, count: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(_by_hand(int(sys.argv[1]), int(sys.argv[2])) > 0)
+    sys.exit(run_many(int(sys.argv[1]), int(sys.argv[2])) > 0)

@@ -1,6 +1,5 @@
 """Mistakes are reported before meshes are cut, hulls are not cut, and long work is reported."""
 
-import time
 from functools import partial
 
 import pytest
@@ -12,6 +11,7 @@ from harness.robot.collision_shapes import mesh_shapes
 from harness.robot.decomposed_meshes import decompose_meshes
 from tests.robot.arm_files import INERTIAL, SHAPE, SRDF, URDF, load_arm, write_arm
 from tests.robot.vessels import vessel, write_obj
+from tests.waiting import wait_for
 
 MESH = '<collision><geometry><mesh filename="bin.obj"/></geometry></collision>'
 HOLLOW = URDF.replace(SHAPE, MESH)
@@ -89,18 +89,25 @@ def test_a_damaged_mesh_is_reported_at_its_element_after_the_rest(tmp_path):
 
 
 def test_work_that_takes_long_is_reported_on_stderr(capfd):
+    said = ""
+
+    def heard():
+        nonlocal said
+        said += capfd.readouterr().err
+        return said
+
     with reported("computing convex shapes of bin.obj, 1 of 1", after=0.01):
-        time.sleep(0.5)
+        wait_for(heard)
     with reported("not this", after=600):
         pass
-    assert capfd.readouterr().err == "computing convex shapes of bin.obj, 1 of 1\n"
+    assert heard() == "computing convex shapes of bin.obj, 1 of 1\n"
 
 
 def test_work_that_takes_long_is_reported_to_a_listener(capfd):
     reports = []
     with reported_to(reports.append):
         with reported("computing", after=0.01):
-            time.sleep(0.5)
+            wait_for(lambda: reports)
         with reported("not this", after=600):
             pass
     assert (reports, capfd.readouterr().err) == (["computing"], "")

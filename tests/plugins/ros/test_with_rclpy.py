@@ -17,6 +17,7 @@ from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.handover import replay
 from harness.recording.read_run import read_run
 from tests.plugins.ros.bridging import PYTHON, bridge, require_control_msgs, scenario
+from tests.waiting import HANG
 
 pytestmark = pytest.mark.needs_ros
 STUDENT = Path(__file__).parent / "student"
@@ -130,7 +131,7 @@ def test_a_driver_on_rclpy_executes_a_plan_and_is_stopped_where_it_strays(tmp_pa
         options = ["--robot", "ros2", "--yes", "--no-report", "--domain", str(domain)]
         code = main(["run", str(file), *options])
         driver.terminate()
-        executed = driver.communicate(timeout=20)[0].split()
+        executed = driver.communicate(timeout=HANG)[0].split()
     said = " ".join(capsys.readouterr().out.split())
     assert (code, executed) == ((1, ["canceled"]) if strays else (0, ["executed"] * 2)), said
     assert ("CONTROL_FAILED: joint1 is 0.5 rad off its trajectory" in said) is strays

@@ -10,6 +10,7 @@ from harness.plugins.studio.guard import Guard
 from harness.plugins.studio.server import StudioServer, page_assets
 from harness.plugins.studio.session import guarded
 from harness.plugins.studio.studio import Studio
+from tests.waiting import HANG
 
 
 class Served:
@@ -37,7 +38,7 @@ class Served:
             done.set()
 
         self.studio.session.post(job)
-        assert done.wait(60)
+        assert done.wait(HANG)
         return replies[0]
 
     def close(self):
