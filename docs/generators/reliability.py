@@ -127,7 +127,7 @@ size run each night. What they gave when they were run last:
 | a suite's page of 10,000 rows | opens in Chromium |
 | 10,000,000 messages in a recording | read with less than 100 MB, where they are not judged |
 | a suite of 10,000 cases | {suite} |
-| two simulated hours | one run may have 600 s (20 s of processor time); twelve were not run yet |"""
+| two simulated hours | one run may have 600 s (20 s of processor time), so twelve; not run yet |"""
 
 SUITE = (
     "stopped after 3,777: the process of the suite grew from 71 to 93 MB, 6 kB for a case; its"
