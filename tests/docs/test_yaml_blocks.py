@@ -22,6 +22,16 @@ BELT = """\
      surface_velocity: %s}
   - {name: can, box: {size: [4 cm, 6 cm, 5 cm]}, pose: {xyz: [-0.4, 0.28, 0.125]}, mass: 0.2}
 """
+PRESSES = """\
+robot: {model: ur5e, gripper: rh_p12_rn_a, wrench_sensors: {wrist: rh_p12_rn_base}}
+objects:
+  - {name: block, static: true, friction: 0.1, box: {size: [0.3, 0.3, 0.15]},
+     pose: {xyz: [0.5, 0.1, 0.075]}}
+steps:
+  - gripper: close
+  - move_to: {pose: {xyz: [0.5, 0.1, 0.173], rpy: [180 deg, 0, 0]}}
+  - tare: wrist
+"""
 BEFORE = {
     "docs/guides/belts.md": [
         "robot: ur5e\nsteps: [{wait: 0.5}]\n",
@@ -38,6 +48,19 @@ objects:
   - {name: box, box: {size: [6 cm, 6 cm, 10 cm]}, pose: {xyz: [0.8, 0, 0.06]}, mass: 0.2}
 """,
         "steps: [{move_to: up}]\n",
+    ],
+    "docs/guides/contact.md": [
+        "",
+        PRESSES + "  - comply: {wrench: {z: -10 N}, during: [{wait: 0.8}]}\n",
+        PRESSES,
+        PRESSES,
+        "robot: ur5e\nsteps: [{wait: 0.1}]\n",
+        "robot: open_manipulator_x\nsteps: [{wait: 0.35}]\nobjects:\n"
+        "  - {name: block, static: true, pose: {xyz: [0.5, 0.1, 0.025]},"
+        " box: {size: [8 cm, 8 cm, 5 cm], hole: {diameter: 20.2 mm, depth: 40 mm}}}\n"
+        "  - {name: peg, cylinder: {radius: 1 cm, length: 8 cm},"
+        " pose: {xyz: [0.5, 0.1, 0.0905]}}\n",
+        None,  # it is a part of the lesson
     ],
     "docs/guides/failure_search.md": [
         """\
@@ -58,8 +81,10 @@ samples: 2
     "docs/guides/several_arms.md": [
         "",
         TWO_ARMS,
+        TWO_ARMS,
         TWO_ARMS + "steps: [{move_to: {pose: {xyz: [0.5, 0.45, 0.3], rpy: [180 deg, 0, 0]}},"
         " robot: left}]\n",
+        None,  # expectations of an arm that holds a rod
     ],
     "docs/guides/studio.md": [
         "robot: open_manipulator_x\nobjects:\n"

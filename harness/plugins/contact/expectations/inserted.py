@@ -37,6 +37,7 @@ class Inserted(Predicate):
 
     subject = "peg"
     judged: ClassVar[Judged] = "at_end"
+    sentence = "{peg} is {depth} deep in the hole of {hole}"
     is_change: ClassVar[bool] = True
     quantities = (DEPTH, OFFSET)
     synonyms = ("insertion", "in_hole")

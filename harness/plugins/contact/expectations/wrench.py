@@ -44,6 +44,10 @@ class Wrench(Predicate):
     short = "below"
     some_of = ("below", "above", "torque_below", "torque_above")
     judged: ClassVar[Judged] = "always"
+    sentence = (
+        "force at the wrist is[ at most {below}][ at least {above}]"
+        "[, torque at most {torque_below}][, torque at least {torque_above}]"
+    )
     quantities = (FORCE, TORQUE)
     is_upper_bound = True
     synonyms = ("force_torque", "ft_sensor", "wrist_force")

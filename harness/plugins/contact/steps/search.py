@@ -23,7 +23,8 @@ from harness.language.step import Step
 from harness.plugins.contact.guarded import LOOK, follow_until
 from harness.ports.motions import TimedLinkMotion
 
-RAMP = 0.1  # [s], in which the link gets to its speed along the spiral, and to rest
+SHORTEST_RAMP = 0.1  # [s], in which the link gets to its speed along the spiral, and to rest
+TURNING = 0.2  # [m/s^2], across the spiral's narrow first turns: joints of 1 rad/s^2 follow it
 LONGEST = 120.0  # [s], of a search
 PRESSED = 0.1  # [N]; less is no contact, as of `move_until`
 
@@ -84,7 +85,14 @@ class Search(Step):
 
     @property
     def _duration(self) -> float:
-        return self._length / self.speed + RAMP
+        return self._length / self.speed + self._ramp
+
+    @property
+    def _ramp(self) -> float:
+        """The time to the full speed, which it has where that turns with `TURNING` [s]."""
+        radius = self.speed**2 / TURNING
+        reached = 2 * math.pi * radius**2 / self.pitch / self.speed
+        return min(max(reached, SHORTEST_RAMP), self._length / self.speed)
 
     def summary(self) -> str:
         return f"within {1e3 * self.radius:g} mm"
@@ -150,11 +158,12 @@ class Search(Step):
 
     def _pose(self, centre: SE3, axis: FloatArray, time: float) -> SE3:
         """T_world_link at a time from the beginning [s]."""
-        cruise = self._duration - RAMP
-        begun, ended = min(time, RAMP), max(time - cruise, 0.0)
+        ramp = self._ramp
+        cruise = self._duration - ramp
+        begun, ended = min(time, ramp), max(time - cruise, 0.0)
         travelled = self.speed * (
-            begun**2 / (2 * RAMP) + max(min(time, cruise) - RAMP, 0.0) + ended
-            - ended**2 / (2 * RAMP)
+            begun**2 / (2 * ramp) + max(min(time, cruise) - ramp, 0.0) + ended
+            - ended**2 / (2 * ramp)
         )  # fmt: skip
         angle = math.sqrt(4 * math.pi * max(travelled, 0.0) / self.pitch)
         out = self.pitch * angle / (2 * math.pi)
