@@ -96,6 +96,8 @@ def test_an_object_is_selected_with_a_click_and_dragged(view):
     wait(lambda: view.spec()["pose"]["xyz"] != [0.2, -0.15, 0.03])
     assert view.spec()["pose"]["xyz"] == pytest.approx([0.26, -0.12, 0.03], abs=8e-3)
     wait(lambda: "xyz: [0.2, -0.15" not in view.opened.editor())
+    assert view.page.evaluate(SELECTED) == "box", "it stays selected, and its handles on it"
+    wait(lambda: np.hypot(*np.subtract(view.middle_of("move x"), end)) < 100)
     view.page.keyboard.press("Escape")
     wait(lambda: view.page.evaluate(SELECTED) == "")
 

@@ -46,6 +46,12 @@ export function holdGizmo(what) {
   scene.viewer?.redraw();
 }
 
+/** Move the handles with what they are on; whether they are on it. */
+export function followGizmo(kind, pose) {
+  if (held?.kind === kind && !dragging) held.pose = [...pose];
+  return held?.kind === kind;
+}
+
 function part(label, tone, ...shapes) {
   const group = document.createElementNS(SVG, "g");
   group.setAttribute("class", tone);

@@ -2,7 +2,7 @@
 
 import { request, on } from "./connection.js";
 import { $, element, icon } from "./dom.js";
-import { holdGizmo, startGizmo } from "./gizmo.js";
+import { followGizmo, holdGizmo, startGizmo } from "./gizmo.js";
 import { amount, angleUnit, digits, nudge, onUnits, read, shown, unitName } from "./quantities.js";
 import { previewWay, scene, select, showPlanned } from "./scene.js";
 import { eulerOf } from "./turns.js";
@@ -57,6 +57,12 @@ function showSize(held) {
 }
 
 const values = (kind) => AXES.filter(([, unit]) => unit === kind).map(([name, unit]) => Number($(`goal-${name}`).value || 0) * (kind === "m" ? read(1, unit) : 1));
+
+// the handles stay on what is selected, wherever it goes
+on("frame", () => {
+  const body = scene.objects.get(scene.selected);
+  if (body?.pose && !followGizmo(body.name, body.pose)) showHandle();
+});
 
 /** Without a goal, the fields show where the TCP is. */
 on("frame", (message) => { if (!goal && message.tcp && !$("pose").contains(document.activeElement)) fillPose(message.tcp); });

@@ -115,10 +115,11 @@ function dragBodies() {
       sendDrag({ kind: "object", name: body.name, pose, end: false });
     };
     const end = (last) => {
-      for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]]) canvas.removeEventListener(name, listener);
+      last.stopPropagation(); // it is no click on the picture
+      for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]]) view.removeEventListener(name, listener, true);
       if (hasMoved) sendDrag({ kind: "object", name: body.name, pose: poseAt(last), end: true });
       else pick(body.name);
     };
-    for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]]) canvas.addEventListener(name, listener);
+    for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]]) view.addEventListener(name, listener, true);
   }, { capture: true });
 }
