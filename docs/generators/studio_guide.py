@@ -87,6 +87,7 @@ def main() -> None:
         arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=arguments)
         page = browser.new_page(viewport={"width": 1400, "height": 800})
+        page.set_default_timeout(600_000)  # pictures are drawn in software
         page.goto(f"http://127.0.0.1:{server.port}/")
         page.wait_for_selector(".joint")
         page.wait_for_timeout(6000)

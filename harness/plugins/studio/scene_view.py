@@ -24,7 +24,7 @@ MOST_TRIANGLES = 20_000  # of the whole robot; its meshes are coarsened until th
 GRID = 0.002  # the first cell size in which vertices are merged [m]
 LARGE = 0.6  # an object that reaches farther does not widen the first view [m]
 MOST_FRAMES = 61  # poses of a plan; the page draws those between them
-STILL = 1e-5  # a pose that differs by less is not sent again [m, and parts of a quaternion]
+STILL = 1e-4  # a pose that differs by less is not sent again [m, and parts of a quaternion]
 
 Tone = Literal["--accent", "--bad"]
 GOAL: Tone = "--accent"
