@@ -145,6 +145,7 @@ class Scope:
             beyond HD counts by its pixels.
         problems: The problems, to which mistakes are added.
         link_pose: T_world_link at joint positions in description order.
+        gravity: The gravitational acceleration of the world [m/s^2].
     """
 
     def __init__(
@@ -161,6 +162,7 @@ class Scope:
         self.attached: dict[str, None] = {}
         self.added: dict[str, None] = {}
         self.cameras: dict[str, Camera] = {}
+        self.gravity = 9.8
         self.requested_time = 0.0
         self.requested_pictures = 0.0
         self.step_ids: dict[str, str] = {}  # with the arm of each

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -93,6 +94,7 @@ class _Compiler:
         objects = self._objects_at_start()
         for obj in objects:
             self.scope.add_object(obj, present=True)
+        self.scope.gravity = math.hypot(*sources.world.world.physics.gravity)
         self.scope.cameras = all_cameras(
             sources.description.cameras,
             sources.world.world.cameras,

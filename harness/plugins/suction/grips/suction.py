@@ -24,7 +24,6 @@ from harness.robot.description import Cup, RobotDescription
 STANDOFF = 0.0005
 """Between the rims and the face that they approach [m]: within every lip, and the planner sees that
 nothing touches; suction draws the two together."""
-EARTH = 9.8  # Gravity of most worlds, by which a file is checked before it runs [m/s^2]
 MARGIN = 0.001  # Between a rim and the edge of its face [m]
 TURNS = [np.pi / 4 * eighth for eighth in (0, 2, 1, 3, 4, 6, 5, 7)]  # about the normal of a face
 UPRIGHT = 0.1  # Largest downward part of the normal of a face that is approached
@@ -175,8 +174,8 @@ class SuctionGrip(Grip):
     name: ClassVar[str] = "suction"
 
     def check(self, obj: WorldObject | None, at: At, mode: str, *, by_all_cups: bool) -> None:
-        description = at.scope.description
-        why = "" if obj is None else why_not_held(obj, description, EARTH, by_all=by_all_cups)
+        description, gravity = at.scope.description, at.scope.gravity
+        why = "" if obj is None else why_not_held(obj, description, gravity, by_all=by_all_cups)
         if why:
             hint = "take a smaller load, or a gripper with other cups"
             at.scope.problems.add(at.key("object"), why, hint)
