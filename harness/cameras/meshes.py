@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import RobotError
+from harness.core.errors import MissingPackage, RobotError
+from harness.core.extras import missing_extra
 from harness.core.geometry import Mesh, Rgba
 from harness.core.inputs import read_input
 from harness.core.limits import READING_MEMORY
@@ -175,6 +176,8 @@ def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
                 case _:
                     triangles = read_triangles(geometry)
                     return (MeshPart(*coarsen(triangles.vertices, triangles.faces), None),)
+    except MissingPackage:
+        raise
     except (RobotError, OSError, ValueError, IndexError, MemoryError):
         return ()
 
@@ -186,9 +189,14 @@ def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
 
     Raises:
         RobotError: The file is too large or damaged, or its scene has no triangles.
+        MissingPackage: The extra `meshes` is not installed.
     """
-    import collada  # here: few robots have COLLADA files
-    import collada.common
+    try:
+        import collada  # here: few robots have COLLADA files
+        import collada.common
+    except ModuleNotFoundError as error:
+        name = geometry.path.name
+        raise MissingPackage(f"{name} cannot be read: {missing_extra(error)}") from error
 
     scale = metres_per_unit(geometry) * np.array(geometry.scale)
     refuse_unreadable(geometry.path.read_bytes(), geometry.path.name)

@@ -164,6 +164,10 @@ class RobotError(HarnessError):
     """A robot's description, or a file it names, cannot be used."""
 
 
+class MissingPackage(RobotError):
+    """A mesh file needs a package that is not installed; the message has the command for it."""
+
+
 class RobotOptionError(RobotError):
     """A key of a scenario's `robot` does not fit the robot, or names what does not exist.
 

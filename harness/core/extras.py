@@ -16,6 +16,9 @@ EXTRAS = {
     "lz4": "bags",
     "cmaes": "search",
     "hypothesis": "ik-test",
+    "scipy": "meshes",
+    "trimesh": "meshes",
+    "collada": "meshes",
 }
 """Packages that only some commands import, and the extra that has each."""
 

@@ -19,7 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from harness.core.errors import RobotError
+from harness.core.errors import MissingPackage, RobotError
+from harness.core.extras import missing_extra
 from harness.core.geometry import Hull, Mesh, Shape
 from harness.core.inputs import read_input
 from harness.core.limits import MESH_FILE, READING_MEMORY
@@ -57,6 +58,7 @@ def read_triangles(geometry: Mesh) -> Triangles:
 
     Raises:
         RobotError: The file is of an unsupported kind, too large, or damaged.
+        MissingPackage: The extra `meshes` is not installed.
     """
     path = geometry.path
     scale = np.array(geometry.scale, dtype=float) * metres_per_unit(geometry)
@@ -69,6 +71,8 @@ def read_triangles(geometry: Mesh) -> Triangles:
             vertices, faces = _read(content, kind)
             vertices = vertices * scale
             corners = vertices[faces]
+    except ModuleNotFoundError as error:
+        raise MissingPackage(f"{path.name} cannot be read: {missing_extra(error)}") from error
     except MemoryError as error:
         most = f"{READING_MEMORY / 1e9:g} GB"
         raise RobotError(f"{path.name} takes more than {most} to read") from error

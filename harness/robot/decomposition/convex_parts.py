@@ -8,10 +8,12 @@ import platform
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
+from harness.core.errors import MissingPackage
+from harness.core.extras import missing_extra
 from harness.core.types import FloatArray
 from harness.core.user_cache import cached, store
 
@@ -49,14 +51,20 @@ def stored_decomposition(
         triangles: Reads the corners [m], shape (M, 3, 3).
         is_hull: Whether the hull is the only part in any case.
     """
+    try:
+        versions = _versions()
+    except PackageNotFoundError as error:
+        raise MissingPackage(f"convex parts cannot be computed: {missing_extra(error)}") from error
     key = hashlib.sha256(content)
-    key.update(repr((factors.tolist(), METHOD, *_versions())).encode())
+    key.update(repr((factors.tolist(), METHOD, *versions)).encode())
     name = f"convex_{'hulls' if is_hull else 'parts'}/{key.hexdigest()}.npz"
     stored = cached(name)
     if stored is not None:
         return _read(stored)
-    from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
-
+    try:
+        from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
+    except ModuleNotFoundError as error:
+        raise MissingPackage(f"convex parts cannot be computed: {missing_extra(error)}") from error
     found = decompose(triangles(), is_hull=is_hull)
     store(name, _content(found))
     return found

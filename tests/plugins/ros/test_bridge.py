@@ -1,5 +1,7 @@
 """The bridge and a node over RTPS, in one process, with the real physics."""
 
+import re
+
 import cv2
 import numpy as np
 import pytest
@@ -196,6 +198,20 @@ def test_cameras_send_pictures_while_someone_watches(tmp_path):
     decoded = cv2.imdecode(small[0].data, cv2.IMREAD_COLOR_RGB)
     assert np.abs(decoded.astype(int) - picture).mean() < 12
     assert info[0].k[2] == 320
+
+
+def test_a_camera_that_is_drawn_more_slowly_than_its_rate_is_said(tmp_path):
+    camera = (
+        "cameras:\n  - {name: wide, image: {width: 1280, height: 960}, update_rate: 100,"
+        " pose: {xyz: [1, 0, 1]}, look_at: [0, 0, 0]}\n"
+    )
+    with bridge(scenario(tmp_path, HOLD, camera)) as (node, results):
+        images = node.listen("/wide/image", "sensor_msgs/msg/Image")
+        node.wait(lambda: len(images) > 1)
+    [said] = [each for each in results[0].remarks if "pictures of 'wide'" in each]
+    sent, requested = map(int, re.findall(r"\d+", said)[:2])
+    assert 2 <= sent < requested
+    assert "s late in simulated time" in said
 
 
 def test_a_gripper_stalls_on_an_object(tmp_path):

@@ -61,6 +61,22 @@ def test_a_planned_scenario_moves_a_robot_and_is_judged_from_its_topics(tmp_path
     assert results[0].commands == 2
 
 
+def test_a_robot_whose_joints_have_a_prefix_is_moved_and_observed_by_names_without_it(tmp_path):
+    prefix = "ros2: {prefix: left_}\n"
+    (tmp_path / "plan").mkdir()
+    plan = scenario(tmp_path / "plan", STEPS, prefix + EXPECT.replace("  - never: collision\n", ""))
+    with bridge(scenario(tmp_path, HOLD, prefix)) as (node, results):
+        states = node.listen("/joint_states", "sensor_msgs/msg/JointState")
+        node.ready()
+        assert remote(plan, node, "--yes", "--velocity-scaling", "0.5") == 0
+        node.wait(lambda: states)
+    [record] = (plan.parent / "r").rglob("run.json")
+    verdicts = json.loads(record.read_text())["verdicts"]
+    assert [verdict["status"] for verdict in verdicts] == ["passed", "passed"]
+    assert states[-1].name[0] == "left_joint1"
+    assert results[0].commands == 2
+
+
 def test_nothing_moves_before_the_user_agrees(tmp_path, plan, capsys, monkeypatch):
     answer = io.StringIO("no\n")
     answer.isatty = lambda: True
