@@ -150,7 +150,8 @@ class Clearance(Predicate):
         """
         words = [word for word in self.between if is_of_robot(window.run, word)]
         others = set(self.between) - set(words)
-        run = of_arm(window.run, "" if words in ([], ["robot"]) else words[0])
+        arm = next((word for word in words if word != "robot"), "")
+        run = of_arm(window.run, arm)
         is_one = words and others and "any" not in others
         if not (is_one and self.at_least) or "contact_forces" in run.unrecorded:
             return ()
