@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from harness.core.files import is_dir
 from harness.core.printable import printable
 from harness.core.suggestion import did_you_mean, nearest
 
@@ -105,7 +106,7 @@ class CommandParser(Parser):
 
 def folder(text: str) -> Path:
     """A folder that exists."""
-    if not Path(text).is_dir():
+    if not is_dir(Path(text)):
         raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
     return Path(text)
 

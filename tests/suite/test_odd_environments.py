@@ -36,7 +36,6 @@ def harness(*words, **environment):
         ("run", "a.scenario.yaml", "--report-dir", LONG),
         ("run", "a.scenario.yaml", "--report-dir", f"reports/{LONG}"),
         ("run", "a.scenario.yaml", "--conditions", LONG),
-        ("run", "a.scenario.yaml", "--package-path", LONG),
         ("grade", "a.scenario.yaml", LONG),
         ("view", LONG),
         ("judge", LONG),
@@ -55,6 +54,12 @@ def test_a_name_that_is_too_long_is_wrong_usage(words, capsys):
     said = capsys.readouterr().err
     assert LONG[:60] in said
     assert "Traceback" not in said
+
+
+def test_a_folder_of_packages_whose_name_is_too_long_is_wrong_usage(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["run", "a.scenario.yaml", "--package-path", LONG])
+    assert LONG in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [("run",), ("view",), ("grade", "a.scenario.yaml")])
