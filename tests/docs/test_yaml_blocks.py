@@ -84,7 +84,8 @@ samples: 2
         TWO_ARMS,
         TWO_ARMS + "steps: [{move_to: {pose: {xyz: [0.5, 0.45, 0.3], rpy: [180 deg, 0, 0]}},"
         " robot: left}]\n",
-        None,  # expectations of an arm that holds a rod
+        TWO_ARMS + "steps: [{move_to: up, robot: left}]\nobjects: [{name: rod, mass: 0.1,"
+        " box: {size: [2 cm, 2 cm, 20 cm]}, pose: {xyz: [0.5, 0.4, 0.1]}}]\n",
     ],
     "docs/guides/studio.md": [
         "robot: open_manipulator_x\nobjects:\n"
@@ -104,7 +105,11 @@ samples: 2
     ],
     "docs/reference/steps.md": [LESSON],
 }
-"""What stands before or next to the blocks of a page: its other keys, and steps before its own."""
+"""What stands before or next to the blocks of a page: its other keys, and steps before its own.
+
+None: a block of keys that need a peg, a block or a cup, as the scenarios in scenarios/contact and
+the tests of the step have; its schema alone is checked here.
+"""
 
 ELSEWHERE = {
     "README.md": "tests/docs/test_readme.py: it is the file of a lesson",

@@ -111,7 +111,7 @@ class GradeCommand(Command):
             {recorded: name for name, recorded in arguments.joints},
             tuple(arguments.objects),
             dict(arguments.object_poses),
-            arguments.csv_period,
+            csv_period=arguments.csv_period,
         )
         bag, folder = Path(arguments.bag), None
         if arguments.report_dir and not arguments.no_report:
