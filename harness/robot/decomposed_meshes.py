@@ -1,15 +1,16 @@
-"""Decomposes the meshes of a robot, and reports what takes long."""
+"""Decomposes the meshes of a robot, and leaves out those that cannot be drawn here."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterable
+from dataclasses import replace
 
-from harness.core.errors import RobotError
+from harness.core.errors import MissingPackage, RobotError
 from harness.core.geometry import Mesh
 from harness.core.slow_work import PATIENCE, reported
-from harness.robot.description import Link
-from harness.robot.mesh_file import decomposition_of
+from harness.robot.description import Link, RobotDescription
+from harness.robot.mesh_file import decomposition_of, require_reader
 from harness.robot.urdf.urdf import MeshElements
 
 
@@ -38,3 +39,23 @@ def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
             if element is None:
                 raise
             element.refuse(f"link '{link}': mesh {error}", at="filename")
+
+
+def without_undrawable(description: RobotDescription) -> RobotDescription:
+    """The robot without the visuals of mesh files whose reader is not installed, with a note."""
+    links, left_out = list(description.links), dict[str, str]()
+    for number, link in enumerate(description.links):
+        try:
+            for shape in link.visuals:
+                if isinstance(shape.geometry, Mesh):
+                    require_reader(shape.geometry)
+        except MissingPackage as error:
+            links[number] = replace(link, visuals=())
+            left_out.setdefault(str(error), link.name)
+    if not left_out:
+        return description
+    notes = (
+        f"link '{name}' is drawn by its collision shapes, and others may be too: {why}"
+        for why, name in left_out.items()
+    )
+    return replace(description, links=tuple(links), notes=(*description.notes, *notes))

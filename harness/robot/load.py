@@ -25,7 +25,7 @@ from harness.robot.bare_arm import without_gripper
 from harness.robot.calibration import calibrated
 from harness.robot.collision_shapes import with_collision_modes, with_collision_shapes
 from harness.robot.compose import RobotPart, compose_robot
-from harness.robot.decomposed_meshes import decompose_meshes
+from harness.robot.decomposed_meshes import decompose_meshes, without_undrawable
 from harness.robot.description import Joint, RobotDescription
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
@@ -176,7 +176,7 @@ def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) ->
     described = with_collision_modes(description.links, links, collision)
     elements = [part.urdf.mesh_elements for part in (main, tool) if part is not None]
     decompose_meshes(described, dict(ChainMap(*map(dict, elements))))
-    return with_collision_shapes(description, links, collision)
+    return with_collision_shapes(without_undrawable(description), links, collision)
 
 
 def _parts(

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,18 @@ class Triangles:
 
     vertices: FloatArray
     faces: IntArray
+
+
+def require_reader(geometry: Mesh) -> None:
+    """Check that the package which reads a mesh file is installed.
+
+    Raises:
+        MissingPackage: It is not.
+    """
+    package = {".dae": "collada", ".obj": ""}.get(geometry.path.suffix.lower(), "trimesh")
+    if package and find_spec(package) is None:
+        missing = ModuleNotFoundError(name=package)
+        raise MissingPackage(f"{geometry.path.name} cannot be read: {missing_extra(missing)}")
 
 
 @lru_cache(maxsize=128)

@@ -131,6 +131,22 @@ def test_a_mesh_without_what_reads_it_is_refused_at_its_line(
     assert f"{sys.executable} -m pip install" in said
 
 
+@pytest.mark.nightly(but=["part.stl-trimesh"])
+@pytest.mark.parametrize(
+    ("file", "package"), [("part.stl", "trimesh"), ("part.dae", "collada"), ("part.obj", "")]
+)
+def test_a_robot_is_drawn_without_the_meshes_that_nothing_reads(file, package, tmp_path):
+    visual = f'<visual><geometry><mesh filename="{file}"/></geometry></visual><collision>'
+    box = ARM.replace('<mesh filename="part.stl"/>', '<box size="0.1 0.1 0.1"/>')
+    (tmp_path / "arm.urdf").write_text(box.replace("<collision>", visual, 1))
+    (tmp_path / file).write_text("v 0 0 0")
+    (tmp_path / "a.scenario.yaml").write_text(OF_ARM)
+    done = without(["trimesh", "collada"], tmp_path, "check", "a.scenario.yaml")
+    assert done.returncode == 0, done.stderr
+    note = f"{file} cannot be read: the Python package {package} is not installed; install it by: "
+    assert (note in done.stdout + done.stderr) == bool(package)
+
+
 DISTRIBUTIONS = {"collada": "pycollada"}  # of packages that are called otherwise
 
 
