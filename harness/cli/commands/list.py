@@ -123,16 +123,14 @@ def _packages() -> Rows:
                 continue
             row = (parts[2], "built in") if is_bundled else (package, _version_of(package))
             provided.setdefault(row, []).append(f"{noun(kind)} {name}")
-    named = set[str]()
     for (name, source), words in sorted(provided.items()):
         lacks = ""
         if (BUNDLED / name / "__init__.py").is_file():
             needed: dict[str, str] = getattr(import_module(f"harness.plugins.{name}"), "EXTRAS", {})
             extras = dict.fromkeys(e for package, e in needed.items() if find_spec(package) is None)
-            lacks = ", ".join(f"without the extra `{extra}`" for extra in extras)
-            for extra in [each for each in extras if each not in named]:
-                named.add(extra)
-                complain(f"the extra `{extra}` is installed by: {install_command(extra)}")
+            lacks = ", ".join(
+                f"without the extra `{extra}`: {install_command(extra)}" for extra in extras
+            )
         yield name, source, ", ".join(words), lacks
 
 
