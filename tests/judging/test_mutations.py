@@ -58,7 +58,7 @@ FORCES_AND_DISTANCES = (
     *("contact_forces", "presses", "frictions", "support_forces", "slides"),
     *("clearances", "planned_clearances", "link_overlaps"),
 )
-MAPPINGS = ("frames", "object_poses", *FORCES_AND_DISTANCES)
+MAPPINGS = ("frames", "object_poses", "wrenches", *FORCES_AND_DISTANCES)
 SHOWN_ONLY = {
     ("collision", "clearances"): "contacts decide; how near it came is the margin of what did not"
 }

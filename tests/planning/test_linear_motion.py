@@ -99,7 +99,7 @@ def test_a_relative_motion_goes_as_far_as_it_can_between_its_distances(cell):
         )
     assert caught.value.code == "PLANNING_FAILED"
     assert caught.value.facts["reached"] == pytest.approx(reached, abs=0.01)
-    assert "of 500.0 mm" in caught.value.message
+    assert "not 500.0 mm" in caught.value.message
 
 
 def test_four_joints_keep_position_and_pitch_on_a_line():

@@ -116,7 +116,7 @@ def test_a_start_and_a_goal_outside_the_constraints_are_distinguished(cell):
         cell.planner.plan, MotionRequest(ARM, cell.state, FreeMotion(beyond(cell), off), OPTIONS)
     )
     assert start.code == "START_STATE_VIOLATES_PATH_CONSTRAINTS"
-    assert "turned -0.300 rad about x" in start.message
+    assert "turned -17.2 deg about x" in start.message
     held = PathConstraints(orientation=OrientationBand(TCP, pose.rotation, (0.1, 0.1, 0.1)))
     away = PoseGoal(TCP, SE3(turned, pose.translation))
     goal = failure(

@@ -35,6 +35,7 @@ def test_faults_that_change_nothing_are_findings_with_their_reason(tmp_path):
     result, saved = run(
         tmp_path,
         """
+        - settle: {}  # while contacts take the weight, a push may move the box by a micrometre
         - inject:
             friction: {green_cylinder: 0.1, red_box: 30}
             gripper_effort: 0.5

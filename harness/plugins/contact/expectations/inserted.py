@@ -11,6 +11,7 @@ from pydantic import Field
 from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Sphere
+from harness.core.hole import Hole
 from harness.core.pose_arrays import compose, conjugate, rotate
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
@@ -32,7 +33,8 @@ class Inserted(Predicate):
     The axis of the peg is that of its longest extent, through the middle of its shapes. Its lower
     end must be below the opening, along the hole's axis, by the depth; and as far as the peg is
     below the opening, its axis must be near the hole's. A peg that stands next to its hole, or on
-    its rim, is not inserted. Where the peg is, is measured in the physics.
+    its rim, is not inserted, and neither is one that fell through it. Where the peg is, is measured
+    in the physics.
     """
 
     subject = "peg"
@@ -85,7 +87,7 @@ class Inserted(Predicate):
         ends = _ends(object_record(run, self.peg))
         peg = window.cut(physical_poses(run, self.peg))
         block = window.cut(physical_poses(run, self.hole))
-        found = [_in_hole(ends, peg, compose(block, np.array(h.pose))) for h in record.holes]
+        found = [_in_hole(ends, peg, block, hole) for hole in record.holes]
         offsets = np.stack([offset for _, offset in found])
         nearest = offsets.argmin(axis=0)
         rows = np.arange(len(nearest))
@@ -159,22 +161,29 @@ def _corners(geometry: object) -> FloatArray:
     return signs * half
 
 
-def _in_hole(ends: FloatArray, peg: FloatArray, hole: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _in_hole(
+    ends: FloatArray, peg: FloatArray, block: FloatArray, hole: Hole
+) -> tuple[FloatArray, FloatArray]:
     """How deep the lower end is, and how far the axis below the opening is from the hole's, (N,).
+
+    Of a peg that is below the hole as a whole, how far it is: less than nothing.
 
     Args:
         ends: The ends of the peg's axis in its frame [m], shape (2, 3).
         peg: T_world_peg, shape (N, 7).
-        hole: T_world_hole, shape (N, 7).
+        block: T_world_block, shape (N, 7).
+        hole: The hole in the block.
     """
-    back = conjugate(hole[:, 3:])
+    opening = compose(block, np.array(hole.pose))
+    back = conjugate(opening[:, 3:])
     first, second = (
-        rotate(back, peg[:, :3] + rotate(peg[:, 3:], end) - hole[:, :3]) for end in ends
+        rotate(back, peg[:, :3] + rotate(peg[:, 3:], end) - opening[:, :3]) for end in ends
     )
     is_lower = first[:, 2:] < second[:, 2:]
     low, high = np.where(is_lower, first, second), np.where(is_lower, second, first)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.clip(-low[:, 2] / (high[:, 2] - low[:, 2]), 0.0, 1.0)
-    opening = low + np.nan_to_num(share)[:, None] * (high - low)
-    offset = np.maximum(*(np.linalg.norm(each[:, :2], axis=1) for each in (low, opening)))
-    return -low[:, 2], offset
+    entered = low + np.nan_to_num(share)[:, None] * (high - low)
+    offset = np.maximum(*(np.linalg.norm(each[:, :2], axis=1) for each in (low, entered)))
+    left = hole.depth + high[:, 2]
+    return np.where(left <= 0, left, -low[:, 2]), offset

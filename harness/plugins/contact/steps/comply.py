@@ -27,12 +27,12 @@ class Yielded(Detail):
     """How far the link strayed from its commanded path, and what the joints gave.
 
     Attributes:
-        deviation: The largest deviation along x, y, z [m] and about them [rad], in the frame.
+        largest_deviation: Along x, y and z of the frame [m], and about them [rad].
         effort_share: The largest share of an effort limit that was commanded; more than 1 is cut.
         joint: The joint of which it is.
     """
 
-    deviation: Floats
+    largest_deviation: Floats
     effort_share: float
     joint: str
 

@@ -130,7 +130,7 @@ class Search(Step):
         def notices() -> bool:
             advances.append(float((_measured(cell, link) - begin) @ axis))
             forces.append(cell.simulator.force_on_robot(LOOK, cell.held_objects))
-            return advances[-1] >= self.drop
+            return advances[-1] >= self.drop or math.isinf(forces[-1])  # inf: without physics
 
         stopped = follow_until(planned, cell, notices)
         if stopped is None:

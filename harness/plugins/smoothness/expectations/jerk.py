@@ -39,7 +39,9 @@ class Jerk(Predicate):
         description="The largest jerk of a joint [rad/s^3, m/s^3]."
     )
     window: PositiveDuration = Field(
-        default=0.01, description="The time over which velocities and accelerations change [s]."
+        default=0.01,
+        description="The time over which velocities and accelerations change [s]; that between two"
+        " samples, where it is longer.",
     )
 
     def signal(self, window: Window) -> MarginSignal:
@@ -49,12 +51,13 @@ class Jerk(Predicate):
             NotObservable: No velocities of the arm's joints were recorded.
         """
         run = window.run
-        span = max(1, round(self.window / run.timestep))
+        velocities, times = run.signals.joint_velocities, run.signals.times
+        span = max(self.window, float(np.median(np.diff(times)))) if len(times) > 1 else self.window
         hands = gripper_joints(run)
         parts = [
             Part(
                 JERK,
-                window.cut(_jerk(run.signals.joint_velocities[:, column], span, run.timestep)),
+                window.cut(_jerk(velocities[:, column], times, span)),
                 self.at_most,
                 "<=",
                 detail=joint.name,
@@ -73,11 +76,10 @@ class Jerk(Predicate):
         return all_of(window, parts, text, shown=3)
 
 
-def _jerk(velocities: FloatArray, span: int, timestep: float) -> FloatArray:
-    """Size of the second change of velocities over so many samples, shape (N,).
+def _jerk(velocities: FloatArray, times: FloatArray, span: float) -> FloatArray:
+    """Size of the second change of velocities over a time span [s], per its square, shape (N,).
 
-    Before the first sample a joint has the velocity of that sample.
+    Between samples velocities are interpolated; before the first one a joint has its velocity.
     """
-    before = np.concatenate([np.repeat(velocities[:1], 2 * span), velocities])
-    changes = before[2 * span :] - 2 * before[span:-span] + before[: -2 * span]
-    return np.abs(changes) / (span * timestep) ** 2
+    once, twice = (np.interp(times - count * span, times, velocities) for count in (1, 2))
+    return np.abs(velocities - 2 * once + twice) / span**2
