@@ -41,7 +41,7 @@ EVIDENCE = Evidence(
         ),
         Three(
             Inserted(peg="peg", hole="block", depth=0.02, tolerance=0.002),
-            peg_at(*place(0.03, 0.001)),
+            peg_at(*place(0.035, 0.001)),
             peg_at(*place(0.03, 0.0021)),
             -1e-4,
             "m",

@@ -17,8 +17,8 @@ def of_speeds(speeds):
 
 
 def growing(jerk):
-    """A run in which the shoulder's acceleration grows evenly."""
-    return make_run(**of_speeds(jerk * TIMES**2 / 2))
+    """A run in which the shoulder's jerk grows evenly, to a value at the last sample."""
+    return make_run(**of_speeds(jerk * TIMES**3 / (6 * (TIMES[-1] - DT))))
 
 
 WAVE = 0.5 * (1 - np.cos(2 * np.pi * TIMES))  # accelerates by up to pi rad/s^2, within a second

@@ -23,13 +23,25 @@ def read(early, late=None):
     return make_run(robot=SENSED, steps=shared.LATE, wrenches={"wrist": rows})
 
 
+def nearest_at_once(wrench, change):
+    """A run whose sensor reads a wrench at one sample, and more or less of it at others."""
+    share = 1 + change * np.abs(np.arange(shared.N) - 150)
+    return make_run(robot=SENSED, wrenches={"wrist": np.outer(share, wrench)})
+
+
 EVIDENCE = Evidence(
     three_runs=(
-        Three(Wrench(below=20), read([0, 6, 8, 0, 0, 0]), read([0, 0, 20.1, 0, 0, 0]), -0.1, "N"),
         Three(
-            Wrench(torque_above=2, direction=ALONG_Z),
-            read([0, 0, 0, 0, 0, 3]),
-            read([0, 0, 0, 9, 0, 1.9]),
+            Wrench(below=20, force_window=0),
+            nearest_at_once([0, 6, 8, 0, 0, 0], -0.001),
+            nearest_at_once([0, 0, 20.1, 0, 0, 0], -0.001),
+            -0.1,
+            "N",
+        ),
+        Three(
+            Wrench(torque_above=2, direction=ALONG_Z, force_window=0),
+            nearest_at_once([0, 0, 0, 0, 0, 3], 0.001),
+            nearest_at_once([0, 0, 0, 9, 0, 1.9], 0.001),
             -0.1,
             "N*m",
         ),
