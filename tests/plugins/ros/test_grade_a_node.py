@@ -23,7 +23,7 @@ import os
 from tests.plugins.ros.nodes import Node, follow, point
 node = Node(int(os.environ["ROS_DOMAIN_ID"]))
 node.ready()
-assert node.send(follow(point(2, [0.6, 0.0, 0.0, 0.0]))).result.error_code == 0
+assert node.send(follow(point(2, [-0.6, 0.0, 0.0, 0.0]))).result.error_code == 0
 """
 LIFT = f"{sys.executable} {HERE / 'lift_the_box.py'}"
 
