@@ -9,8 +9,11 @@ from collections.abc import Iterable
 import mujoco
 import numpy as np
 
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.core.wrench_sensor import WrenchSensor
+
+BLOCK = 1024
+"""Readings whose noise is drawn at once: one look draws no more than its own blocks."""
 
 KINDS = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE
 
@@ -28,7 +31,7 @@ class WrenchSensors:
     """The readings of all sensors, which follow from what MuJoCo measures at each sample.
 
     A reading does not depend on when it is looked at: the noise of a sensor is one sequence from
-    the run's seed and the sensor's place, and each reading has its row of it.
+    the run's seed and the sensor's place, drawn in blocks, and each reading has its row of it.
     """
 
     def __init__(self, sensors: Iterable[WrenchSensor], timestep: float, seed: int) -> None:
@@ -66,10 +69,18 @@ class WrenchSensors:
         wrenches = -measured[rows, column : column + 6]  # MuJoCo has the force of the link before
         deviations = np.repeat([sensor.force_noise, sensor.torque_noise], 3)
         if deviations.any():
-            generator = np.random.default_rng([self._seed, column])
-            wrenches += deviations * generator.standard_normal((numbers[-1] + 1, 6))[numbers]
+            wrenches += deviations * self._noise(column, numbers)
         zero = np.zeros_like(wrenches)
         for since, which, wrench in self._tares if tared else ():
             if which == name:
                 zero[max(0, since - first) :] = wrench
         return wrenches - zero
+
+    def _noise(self, column: int, numbers: IntArray) -> FloatArray:
+        """Normally distributed numbers of readings, whose numbers ascend, shape (n, 6)."""
+        first, last = int(numbers[0]) // BLOCK, int(numbers[-1]) // BLOCK
+        blocks = [
+            np.random.default_rng([self._seed, column, block]).standard_normal((BLOCK, 6))
+            for block in range(first, last + 1)
+        ]
+        return np.concatenate(blocks)[numbers - first * BLOCK]

@@ -19,7 +19,7 @@ from harness.plugins.studio.judging import LiveVerdicts
 from harness.plugins.studio.live_camera import LiveCamera
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.messages import cell_message, problem_message, robot_message
-from harness.plugins.studio.reach import WHOLE_POSE_JOINTS, Reach, ReachStudy
+from harness.plugins.studio.reach import Reach, ReachStudy
 from harness.plugins.studio.scene_view import SceneView
 from harness.plugins.studio.session import FRAME, Message, RefusedError, Session
 from harness.plugins.studio.verdict_messages import NO_VERDICTS
@@ -224,9 +224,10 @@ class LiveStudio:
 
     def put_handle(self, pose: SE3 | None = None) -> None:
         """Put the handle on a goal of the TCP, or on the TCP itself."""
-        dof = len(self.cell.description.group_joints(self.cell.description.default_group))
+        description = self.cell.description
+        is_whole = description.task_space(description.default_group).holds_pose
         at = self.cell.tcp_pose() if pose is None else pose
-        self.view.put_handle(at.as_vector(), "all" if dof >= WHOLE_POSE_JOINTS else "pitch")
+        self.view.put_handle(at.as_vector(), "all" if is_whole else "pitch")
 
     def _recover(self) -> None:
         """Stand still where the steps executed so far left the cell."""

@@ -22,8 +22,6 @@ from harness.plugins.studio.live_cell import LiveCell
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.scene import Touch
 
-WHOLE_POSE_JOINTS = 6  # an arm of fewer joints cannot choose the whole orientation of its TCP
-
 
 @dataclass(frozen=True, eq=False)
 class Way:
@@ -95,7 +93,7 @@ class ReachStudy:
 
     def goal(self, pose: SE3) -> PoseGoal | PositionGoal:
         """The goal that the arm can choose: a pose, or a position and a pitch."""
-        if self._space.dof >= WHOLE_POSE_JOINTS:
+        if self._space.task_space.holds_pose:
             return PoseGoal(self._tcp, pose)
         return PositionGoal(self._tcp, pose.translation, pitch_of(pose.rotation))
 

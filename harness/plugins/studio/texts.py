@@ -13,7 +13,6 @@ from harness.core.types import FloatArray
 from harness.language.goals import GoalFields
 from harness.language.step import STEPS
 from harness.plugins.studio.document import flow
-from harness.plugins.studio.reach import WHOLE_POSE_JOINTS
 from harness.robot.description import RobotDescription
 
 _TO_A_GOAL = {verb: step for verb, step in STEPS.items() if issubclass(step, GoalFields)}
@@ -35,7 +34,7 @@ def pose_keys(description: RobotDescription, group: str, pose: SE3, frame: str) 
     """
     place: dict[str, Any] = {} if frame == "world" else {"frame": frame}
     place["xyz"] = [round(float(value), 5) for value in pose.translation]
-    if len(description.groups[group].joint_names) < WHOLE_POSE_JOINTS:
+    if not description.task_space(group).holds_pose:
         return {"position": place, "pitch": degrees(pitch_of(pose.rotation))}
     place["rpy"] = rpy_degrees(pose.rotation)
     return {"pose": place}

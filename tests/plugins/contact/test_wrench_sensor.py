@@ -11,6 +11,7 @@ from harness.core.wrench_sensor import WrenchSensor
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from harness.simulation.mujoco_simulator import MujocoSimulator
+from harness.simulation.wrench_sensors import WrenchSensors
 from tests.simulation.physics_scenes import a_box
 from tests.simulation.test_pushing import GANTRY
 
@@ -121,6 +122,16 @@ def test_noise_is_the_same_however_the_time_is_divided_and_whenever_it_is_read(u
     other = held_load(robot, SE3.identity(), loaded=False, seed=4)
     other.hold(0.3)
     assert not np.allclose(other.finish().wrenches["wrist"], first)
+
+
+@pytest.mark.parametrize("first", [0, 1000, 1024, 5000])
+def test_one_look_reads_what_the_whole_sequence_has(first):
+    sensors = WrenchSensors([WrenchSensor("wrist", "hand", force_noise=0.5)], 0.001, 7)
+    measured = np.zeros((6000, 6))
+    whole = sensors.readings("wrist", measured, 0, 6000)
+    assert (sensors.readings("wrist", measured, first, 900) == whole[first : first + 900]).all()
+    assert whole[:, :3].std(axis=0) == pytest.approx(0.5, rel=0.05)
+    assert np.corrcoef(whole[:1024, 0], whole[1024:2048, 0])[0, 1] == pytest.approx(0, abs=0.1)
 
 
 def test_a_rate_that_does_not_divide_the_step_reads_the_last_sample_that_was_due(ur5e):

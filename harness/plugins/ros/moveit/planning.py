@@ -52,8 +52,7 @@ MOST_ATTEMPTS = 10
 PRECISION = 1e-3
 """How far a Cartesian path may leave its lines [m]: MoveIt names none."""
 
-
-SECONDS = 1.0
+DEFAULT_TIME = 1.0
 """The `allowed_planning_time` of a request that has none or a negative one [s], as in MoveIt."""
 
 
@@ -146,7 +145,7 @@ def _budgeted(options: PlanningOptions, request: Any) -> PlanningOptions:
     """Options with the budget of a request, which its attempts share; the step's is the most."""
     attempts = min(max(1, int(request.num_planning_attempts)), MOST_ATTEMPTS)
     allowed = float(request.allowed_planning_time)
-    seconds = allowed if allowed > 0 else SECONDS
+    seconds = allowed if allowed > 0 else DEFAULT_TIME
     checks = min(float(options.max_state_checks), seconds * STATE_CHECKS_PER_SECOND)
     return replace(options, attempts=attempts, max_state_checks=max(1, int(checks / attempts)))
 
