@@ -28,9 +28,8 @@ from harness.robot.description import (
 )
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
-from harness.robot.srdf.default_pairs import adjacent_pairs
 from harness.robot.srdf.srdf import EndEffector, Srdf, write_srdf
-from harness.robot.tree import free_name, in_tree_order
+from harness.robot.tree import adjacent_pairs, free_name, in_tree_order
 from harness.robot.urdf.urdf import Urdf
 from harness.robot.urdf.write import write_urdf
 from harness.robot.wrench_sensors import flaw

@@ -36,20 +36,6 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
     return path
 
 
-def files_around(name: str, path: Path, given: Sequence[Path]) -> PackagePath:
-    """Where the files are that a robot's file names; of package://name/path, in all of its package.
-
-    Args:
-        name: The word by which the scenario names the robot's file.
-        path: The path of the robot's file.
-        given: The folders of `packages` of the scenario.
-    """
-    inside = Path(name.removeprefix("package://").partition("/")[2]).parts
-    if name.startswith("package://") and path.parts[-len(inside) :] == inside:
-        given = (*given, path.parents[len(inside) - 1])
-    return PackagePath.of_file(path, given)
-
-
 def _names(folder: Path) -> list[str]:
     return sorted(each.name for each in folder.iterdir()) if is_dir(folder) else []
 

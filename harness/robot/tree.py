@@ -8,6 +8,7 @@ from itertools import combinations, count
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.language.files.xml_file import XmlElement
 from harness.robot.description import Joint, Link, RobotDescription
+from harness.robot.srdf.srdf import link_pair
 
 Elements = Mapping[tuple[str, str], XmlElement]
 """Elements of links and joints, by kind (`link`, `joint`) and name."""
@@ -132,3 +133,17 @@ def excluded_contacts(robot: RobotDescription) -> frozenset[frozenset[str]]:
         or len(groups := frozenset(carrier[name] for name in pair)) == 1
         or groups in across
     )
+
+
+def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple[str, str], None]:
+    """Every link with shapes, with its nearest ancestor that has shapes, in link order."""
+    shaped = dict.fromkeys(link.name for link in links if link.collisions)
+    before = {joint.child: joint.parent for joint in joints}
+    found: dict[tuple[str, str], None] = {}
+    for name in shaped:
+        parent = before.get(name)
+        while parent is not None and parent not in shaped:
+            parent = before.get(parent)
+        if parent is not None:
+            found[link_pair(name, parent)] = None
+    return found

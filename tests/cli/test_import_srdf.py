@@ -8,9 +8,9 @@ import yaml
 
 from harness.cli.main import main
 from harness.language.scenario import RobotSpec
-from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.load import load_robot
+from harness.robot.random_positions import sample_robot_positions
 from tests.robot.arm_files import load_arm
 from tests.robot.hands import HAND, LEFT, PALM, RIGHT, write
 from tests.robot.test_mesh_file import STL

@@ -13,9 +13,10 @@ from docs import ROOT
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
 from harness.language.scenario import RobotSpec
-from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
+from harness.plugins.authoring.pair_statistics import self_touches
 from harness.recording.read_run import read_run
 from harness.robot.load import load_robot
+from harness.robot.random_positions import sample_robot_positions
 from harness.robot.robot_source import RobotSource, load_source
 
 pytestmark = pytest.mark.needs_packages

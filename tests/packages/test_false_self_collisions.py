@@ -11,10 +11,10 @@ import pinocchio as pin
 import pytest
 
 from harness.core.geometry import Mesh
-from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.robot.mesh_file import read_triangles
+from harness.robot.random_positions import sample_robot_positions
 from tests.packages.arms import ARMS
 from tests.packages.trial import Trial, loaded
 from tests.planning.test_false_self_collisions import self_collision

@@ -5,9 +5,9 @@ import pinocchio as pin
 import pytest
 
 from harness.language.scenario import RobotSpec
-from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
 from harness.robot.load import load_robot
+from harness.robot.random_positions import sample_robot_positions
 
 
 @pytest.mark.nightly

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from harness.core.errors import RobotOptionError
-from harness.planning.collision.pair_statistics import sample_robot_positions
+from harness.robot.random_positions import sample_robot_positions
 from tests.robot.arm_files import LIMIT, SHAPE, URDF, load_arm, write_arm
 
 CYLINDER = '<cylinder radius="0.03" length="0.14"/>'

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.planning.collision.scene import CoalScene
+from harness.plugins.authoring.pair_statistics import self_touches
+from harness.robot.random_positions import sample_robot_positions
 from tests.robot.arm_files import SRDF, load_arm, write_arm
 from tests.robot.hands import SIX
 

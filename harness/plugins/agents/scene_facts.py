@@ -16,11 +16,11 @@ from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.planning.backend import make_planning
-from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.ports.planning import PlanningPorts
 from harness.recording.explanation import Explanation
+from harness.robot.random_positions import sample_robot_positions
 from harness.session.dry_run import DrySimulator
 from harness.session.execute import ProgramExecution
 from harness.session.predict import predict

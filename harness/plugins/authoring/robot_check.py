@@ -11,18 +11,14 @@ import numpy as np
 from harness.cell.approach import approach_axis
 from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
-from harness.planning.collision.pair_statistics import (
-    REASONS,
-    SelfTouches,
-    sample_robot_positions,
-    self_touches,
-)
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring import robot_findings as look_at
 from harness.plugins.authoring.ik_trial import try_ik
+from harness.plugins.authoring.pair_statistics import REASONS, SelfTouches, self_touches
 from harness.plugins.authoring.robot_report import ArmLine, GroupLine, RobotFinding, RobotReport
 from harness.robot.description import Joint, RobotDescription
+from harness.robot.random_positions import sample_robot_positions
 
 KINEMATIC_SAMPLES = 20
 IK_SAMPLES = 100

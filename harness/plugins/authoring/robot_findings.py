@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.planning.collision.pair_statistics import SelfTouches
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring.agreement import link_poses_in_physics
 from harness.plugins.authoring.ik_trial import IkTrial
+from harness.plugins.authoring.pair_statistics import SelfTouches
 from harness.plugins.authoring.robot_report import RobotFinding
 from harness.robot.collision_shapes import mesh_shapes
 from harness.robot.description import Link, RobotDescription

@@ -11,11 +11,11 @@ import numpy as np
 from harness.cell.approach import approach_axis
 from harness.core.pose_arrays import rotations_of
 from harness.core.types import FloatArray
-from harness.planning.collision.pair_statistics import sample_robot_positions
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring.robot_findings import moving_mass
 from harness.robot.description import Gripper, RobotDescription
+from harness.robot.random_positions import sample_robot_positions
 
 SAMPLES = 5000  # Random configurations that measure the reach
 

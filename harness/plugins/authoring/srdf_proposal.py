@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from harness.core.kinematics import LinkPoses
-from harness.planning.collision.pair_statistics import SelfTouches
+from harness.plugins.authoring.pair_statistics import SelfTouches
 from harness.robot.description import RENAMED_ROOT, WORLD, RobotDescription
 from harness.robot.srdf.srdf import link_pair, parse_srdf, write_srdf
 from harness.robot.tree import is_rigid

@@ -13,12 +13,12 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.plugins.belts.closing_time import on_hundredths
 from harness.plugins.belts.ride import LOOK_AHEAD, Ride
 from harness.ports.goals import JointGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion, TimedLinkMotion
 from harness.recording.explanation import Explanation
-from harness.robot.gripper.closing_speed import on_hundredths
 
 PACES = (0.5, 0.8, 1.2, 1.8)
 """Durations of the approach that are tried, quickest first [s]."""

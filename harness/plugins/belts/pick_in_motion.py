@@ -16,6 +16,7 @@ from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.core.types import FloatArray
 from harness.language.poses import Direction
+from harness.plugins.belts.closing_time import closing_time
 from harness.plugins.belts.interception import (
     Company,
     Meeting,
@@ -26,7 +27,6 @@ from harness.plugins.belts.interception import (
 )
 from harness.plugins.belts.ride import ride_of
 from harness.ports.motion_planning import MotionPlan
-from harness.robot.gripper.closing_speed import closing_time
 from harness.steps.grasp import Grasp
 from harness.steps.lin import Lin
 from harness.steps.move_relative import MoveRelative

@@ -13,13 +13,13 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.poses import Pose
+from harness.plugins.belts.closing_time import closing_time
 from harness.plugins.belts.interception import PACES, Company, company_plan, divided
 from harness.plugins.belts.pick_in_motion import AJAR, BUILD_UP, PlannedLin
 from harness.plugins.belts.ride import Ride, ride_of
 from harness.ports.goals import PoseGoal
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion
-from harness.robot.gripper.closing_speed import closing_time
 from harness.steps.move_to import MoveTo
 from harness.steps.release import Release
 

@@ -170,7 +170,7 @@ def write_ik_report(report: IkReport, chain: Chain, folder: Path) -> IkReport:
 
 def _with_picture(finding: IkFinding, chain: Chain, folder: Path) -> IkFinding:
     """Draw the arm where its answer puts it, translucent where the target is reached."""
-    from harness.cameras.robot_pictures import draw_ik_comparison
+    from harness.plugins.iktest.comparison_picture import draw_ik_comparison
 
     target, answer = finding.target, finding.answer
     reached = answer if answer is not None and np.all(np.isfinite(answer)) else None

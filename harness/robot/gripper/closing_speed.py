@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from harness.robot.description import Gripper, RobotDescription
@@ -23,17 +21,3 @@ def joint_speed(description: RobotDescription, gripper: Gripper) -> float:
         return min(limit, abs(gripper.closed_position - gripper.open_position))
     steepest = float(np.abs(np.diff(gaps) / np.diff(positions)).max())
     return min(limit, CLOSING_SPEED / steepest)
-
-
-def closing_time(
-    description: RobotDescription, gripper: Gripper, start: float, goal: float
-) -> float:
-    """The time that the gripper's joint takes from one position to another, in hundredths [s]."""
-    speed = joint_speed(description, gripper)
-    rise = speed / description.joint_by_name[gripper.joint].acceleration
-    return on_hundredths(abs(goal - start) / speed + rise)
-
-
-def on_hundredths(duration: float) -> float:
-    """A duration lengthened to the next hundredth, the period of a trajectory's set points [s]."""
-    return math.ceil(100 * duration - 1e-6) / 100

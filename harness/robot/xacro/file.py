@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator
 
-from harness.core.errors import RobotOptionError
-from harness.language.files.xml_file import XmlElement, read_xml
+from harness.language.files.xml_file import XmlElement
 from harness.robot.xacro.render import OTHERS, PREFIX
 from harness.robot.xacro.substitution import ARG
 
@@ -41,25 +38,3 @@ def arguments_of(root: XmlElement) -> frozenset[str]:
     used = {found[1] for text in texts for found in ARG.finditer(text)}
     declared = {item.get("name") for item in root.walk() if item.tag == XACRO_ARG}
     return frozenset(declared | used)
-
-
-def refuse_unknown_arguments(args: Mapping[str, Any], paths: Sequence[Path]) -> None:
-    """Refuse arguments that none of a robot's files declares; included files may declare them.
-
-    Raises:
-        SpecError: A file is not XML.
-        RobotError: No file takes one of the arguments.
-    """
-    roots = {path: root for path in paths if args and is_xacro(root := read_xml(path))}
-    if args and not roots:
-        raise RobotOptionError("args", "only a xacro file takes arguments, and none is given")
-    declared = {name for root in roots.values() for name in arguments_of(root)}
-    includes = any(item.tag == "xacro:include" for root in roots.values() for item in root.walk())
-    unknown = [key for key in args if key not in declared]
-    if unknown and not includes:
-        names = " and ".join(path.name for path in roots)
-        raise RobotOptionError(
-            "args",
-            f"{names} takes no argument '{unknown[0]}'; "
-            f"known are {', '.join(sorted(declared)) or 'none'}",
-        )

@@ -14,9 +14,10 @@ import numpy as np
 
 from harness.core.geometry import CollisionMode
 from harness.language.scenario import RobotSpec
-from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
+from harness.plugins.authoring.pair_statistics import self_touches
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
+from harness.robot.random_positions import sample_robot_positions
 
 UR5_GROUP, GRIPPER_GROUP, UR5_FLANGE = "manipulator", "gripper", "tool0"
 UR5 = "models/ur_robot_model/ur5_gripper"

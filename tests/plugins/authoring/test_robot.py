@@ -11,10 +11,11 @@ import pytest
 from harness.cli.main import main
 from harness.core.resources import data_folder
 from harness.core.spatial import SE3
-from harness.planning.collision.pair_statistics import sample_robot_positions, self_touches
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring import robot_check, robot_findings
+from harness.plugins.authoring.pair_statistics import self_touches
 from harness.robot.description import Inertial
+from harness.robot.random_positions import sample_robot_positions
 from harness.robot.srdf.srdf import parse_srdf
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm
 from tests.robot.models import Arm, robot

@@ -113,7 +113,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 def _draw(description: RobotDescription, state: str, image: Path) -> list[str]:
     """Write a picture; returns the lines to print."""
-    from harness.cameras.robot_pictures import save_robot_picture
+    from harness.plugins.authoring.robot_picture import save_robot_picture
     from harness.robot.robot_source import positions_of
 
     positions = positions_of(description, state)

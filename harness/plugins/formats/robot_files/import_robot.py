@@ -11,20 +11,23 @@ from harness.language.files.xml_file import read_bounded
 from harness.language.scenario import RobotSpec
 from harness.plugins.formats.robot_files.checked_srdf import checked_srdf
 from harness.plugins.formats.robot_files.default_group import default_srdf
+from harness.plugins.formats.robot_files.imported_files import (
+    files_around,
+    refuse_unknown_arguments,
+)
 from harness.plugins.formats.robot_files.imported_part import imported_part, refuse_unknown_links
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
 from harness.robot.decomposed_meshes import decompose_meshes
 from harness.robot.description import RENAMED_ROOT, WORLD, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
-from harness.robot.find_file import files_around, find_file, find_folder
+from harness.robot.find_file import find_file, find_folder
 from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
 from harness.robot.robot_format import FORMATS
 from harness.robot.srdf.read import read_srdf
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf, parse_urdf
-from harness.robot.xacro.file import refuse_unknown_arguments
 from harness.robot.xacro.render import render
 
 

@@ -22,13 +22,13 @@ from harness.plugins.formats.robot_files.inferred_tcp import (
     tcp_without_gripper,
     with_integrated_gripper,
 )
+from harness.plugins.formats.touching_links import touching_pairs
 from harness.robot.assumed_limits import ACCELERATION, VELOCITY
 from harness.robot.compose import PartArm, RobotPart
 from harness.robot.description import Joint, PlanningGroup
 from harness.robot.groups import planning_groups
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.all_arms import with_group_of_all
-from harness.robot.srdf.default_pairs import touching_pairs
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf
 

@@ -14,12 +14,12 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.plugins.formats.touching_links import coal_transform, urdf_poses
 from harness.robot.collision_shapes import convex_shapes
 from harness.robot.description import Joint, Mimic, NamedState, PlanningGroup
 from harness.robot.mesh_file import hull_of, is_flat
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import DOT, coal_geometry, hull_corners
-from harness.robot.srdf.default_pairs import coal_transform, urdf_poses
 from harness.robot.srdf.srdf import Srdf, link_pair
 from harness.robot.urdf.urdf import Urdf
 

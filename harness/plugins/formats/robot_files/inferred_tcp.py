@@ -10,8 +10,8 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.plugins.formats.robot_files.inferred_gripper import IntegratedGripper
+from harness.plugins.formats.touching_links import urdf_poses
 from harness.robot.description import Link, PlanningGroup, fixed_joint
-from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf

@@ -16,9 +16,9 @@ from harness.plugins.formats.fixture_words import PartJoint, on_fixture
 from harness.plugins.formats.object_words import MassProperties, look_words, mass_words, together
 from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
+from harness.plugins.formats.touching_links import urdf_poses
 from harness.robot.description import Joint, Link
 from harness.robot.packages import PackagePath
-from harness.robot.srdf.default_pairs import urdf_poses
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf, parse_urdf
 from harness.world.imported import ImportedWorld

@@ -1,66 +1,22 @@
-"""Pictures of a robot without a scene: alone, and where an inverse kinematics answer puts it."""
+"""The picture of a robot where an inverse kinematics answer puts it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from harness.cameras.camera_scene import floor_height
 from harness.cameras.caption import captioned_jpeg
 from harness.cameras.marks import frame_mark, line_mark, mark
-from harness.cameras.picture_model import build_picture_model, undrawn
+from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import render_overview
 from harness.cameras.stills import HEIGHT, WIDTH
-from harness.core.geometry import bounding_radius
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.robot.description import Link, RobotDescription
-
-SIZE = 800  # [pixels], width and height of a picture of a robot alone
-SMALLEST, LARGEST = 0.03, 0.15  # [m], radius around a link's origin that is in view
-
-
-def save_robot_picture(
-    description: RobotDescription, joint_positions: FloatArray, file: Path
-) -> str:
-    """Draw a robot at joint positions, in description order.
-
-    Args:
-        joint_positions: Joint positions, shape (n,).
-        file: A PNG or JPEG file.
-
-    Returns:
-        A line that names the meshes that are not drawn; empty when all are.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    floor = floor_height(description, ())
-    picture = build_picture_model(description, (), floor_height=floor, width=SIZE, height=SIZE)
-    poses = description.link_poses(joint_positions)
-    links = [link for link in description.links if link.visuals or link.collisions]
-    links = links or description.links[1:]
-    centres = np.array([poses[link.name].translation for link in links])
-    radii = np.array([_radius(link) for link in links])
-    picture.pose(poses)
-    image = render_overview(picture, centres, radii, SIZE, SIZE)
-    done, encoded = cv2.imencode(file.suffix, np.ascontiguousarray(image[:, :, ::-1]))
-    if not done:
-        raise OSError(0, "cannot be encoded", str(file))
-    file.write_bytes(encoded.tobytes())
-    missing = undrawn(description, ())
-    return f"not in the picture: {', '.join(missing)}" if missing else ""
-
-
-def _radius(link: Link) -> float:
-    shapes = link.collisions or link.visuals
-    largest = max((bounding_radius(shape) for shape in shapes), default=SMALLEST)
-    return float(np.clip(largest, SMALLEST, LARGEST))
-
+from harness.robot.description import RobotDescription
 
 AXIS_LENGTH = 0.06  # of the target's frame [m]
 BLUE_GHOST = (0.15, 0.35, 0.95)

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from harness.judging.pictures import blob_pixels
 from harness.plugins.cameras.expectations.sees import HUES, HueRange
+from harness.plugins.cameras.pixels import blob_pixels
 
 STATED = {
     "red": [*range(340, 360), *range(18)],

@@ -20,9 +20,9 @@ from harness.core.types import BoolArray, FloatArray
 from harness.planning.collision.collision_model import Body, CollisionModel
 from harness.planning.collision.rigid_shapes import link_shapes
 from harness.planning.model.robot_model import RobotModel
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
 from harness.robot.srdf.srdf import link_pair
-from harness.robot.tree import carriers
+from harness.robot.tree import adjacent_pairs, carriers
 
 Reason = Literal["Adjacent", "Default", "Always", "Never"]
 REASONS: tuple[Reason, ...] = ("Adjacent", "Default", "Always", "Never")
@@ -78,32 +78,12 @@ class SelfTouches:
         }
 
     def _reason(self, index: int) -> Reason | None:
-        if self.pairs[index] in _neighbours(self.description):
+        if self.pairs[index] in adjacent_pairs(self.description.links, self.description.joints):
             return "Adjacent"
         if self.at_start[index]:
             return "Default"
         mean = float(self.touched[:, index].mean())
         return "Always" if mean >= ALWAYS else "Never" if mean == 0 else None
-
-
-def sample_robot_positions(
-    description: RobotDescription, samples: int, rng: np.random.Generator
-) -> FloatArray:
-    """Joint positions inside the limits, mimic joints following, shape (samples, n).
-
-    Turning joints are drawn from one turn at most, prismatic ones without limits from one metre.
-    """
-    ends = np.array([_ends(joint) for joint in description.movable_joints]).reshape(-1, 2)
-    drawn = rng.uniform(ends[:, 0], ends[:, 1], size=(samples, len(ends)))
-    return np.array([description.with_mimics(row) for row in drawn]).reshape(samples, len(ends))
-
-
-def _ends(joint: Joint) -> tuple[float, float]:
-    if joint.kind != "prismatic":
-        lower, upper = np.clip([-np.pi, np.pi], joint.lower, joint.upper)
-        return float(lower), float(upper)
-    lower = joint.lower if np.isfinite(joint.lower) else -0.5
-    return lower, joint.upper if np.isfinite(joint.upper) else lower + 1.0
 
 
 def self_touches(
@@ -174,17 +154,3 @@ class _Checker:
 def _across(description: RobotDescription) -> frozenset[tuple[str, str]]:
     """Pairs of links that a joint connects."""
     return frozenset(link_pair(joint.parent, joint.child) for joint in description.joints)
-
-
-def _neighbours(description: RobotDescription) -> frozenset[tuple[str, str]]:
-    """Pairs with one joint between them; links without a shape are looked through."""
-    shaped = {link.name for link in description.links if link.collisions}
-    before = {joint.child: joint.parent for joint in description.joints}
-    pairs: set[tuple[str, str]] = set()
-    for first in shaped:
-        above = before.get(first)
-        while above is not None and above not in shaped:
-            above = before.get(above)
-        if above is not None:
-            pairs.add(link_pair(first, above))
-    return frozenset(pairs)

@@ -1,10 +1,10 @@
-"""Allowed link pairs of a robot without an SRDF: those in contact at the start."""
+"""Poses of the links of a robot without an SRDF, and the links that touch each other there."""
 
 # pyright: reportAttributeAccessIssue=false
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,9 @@ import numpy as np
 from harness.core.kinematics import LinkPoses
 from harness.core.spatial import SE3
 from harness.robot.collision_shapes import collision_shapes
-from harness.robot.description import Joint, Link
 from harness.robot.solids import coal_geometry
 from harness.robot.srdf.srdf import link_pair
-from harness.robot.tree import carriers
+from harness.robot.tree import adjacent_pairs, carriers
 from harness.robot.urdf.urdf import Urdf
 
 NEARNESS = 0.001
@@ -54,20 +53,6 @@ def touching_pairs(urdf: Urdf, positions: Mapping[str, float]) -> tuple[tuple[st
             if result.isCollision():
                 found[pair] = None
     return tuple(found)
-
-
-def adjacent_pairs(links: Iterable[Link], joints: Iterable[Joint]) -> dict[tuple[str, str], None]:
-    """Every link with shapes, with its nearest ancestor that has shapes, in link order."""
-    shaped = dict.fromkeys(link.name for link in links if link.collisions)
-    before = {joint.child: joint.parent for joint in joints}
-    found: dict[tuple[str, str], None] = {}
-    for name in shaped:
-        parent = before.get(name)
-        while parent is not None and parent not in shaped:
-            parent = before.get(parent)
-        if parent is not None:
-            found[link_pair(name, parent)] = None
-    return found
 
 
 def urdf_poses(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, SE3]:
