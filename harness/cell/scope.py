@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
-from typing import Literal
 
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
@@ -16,12 +15,12 @@ from harness.core.world import WorldObject
 from harness.language.files.mistakes import MistakeError
 from harness.language.files.source import Loc, SourceMap
 from harness.language.poses import Pose
+from harness.language.reading.partial import Prerequisite
 from harness.language.units import in_si
 from harness.ports.simulation import LONGEST_RUN
 from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
 
-Prerequisite = Literal["robot", "world"]
 MOST_CAPTURES = 1000  # pictures that the steps of a file take; one of 640 x 480 takes 0.2 s
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
 
@@ -279,7 +278,7 @@ class Scope:
                 (*loc, key),
                 f"the robot has one arm, and '{robot}' selects one of several",
                 f"leave out `{key}`; `robots: {{{robot}: ...}}` in place of `robot` names arms",
-                needs=("robot",),
+                needs=("robot", "arms"),
             )
         elif robot not in arms:
             self.problems.unknown((*loc, key), "arm", robot, arms, needs=("robot",))

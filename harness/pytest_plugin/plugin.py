@@ -98,8 +98,8 @@ def pytest_configure(config: pytest.Config) -> None:
     modules = [*config.getini("harness_plugins"), *(config.getoption("--harness-plugin") or [])]
     if modules:
         _load_plugins(modules)
-    for name in config.getoption("--harness-reporter") or ():
-        _refuse_unknown_reporter(name)
+    if reporters := config.getoption("--harness-reporter"):
+        _check_reporters(config, reporters)
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(SessionResults(config), "armharness-session")
 
@@ -114,13 +114,16 @@ def _load_plugins(modules: list[str]) -> None:
         raise pytest.UsageError(str(error)) from error
 
 
-def _refuse_unknown_reporter(name: str) -> None:
-    from harness.reporting.reporter import find_reporter
+def _check_reporters(config: pytest.Config, reporters: list[str]) -> None:
+    from harness.core.error_text import error_text
+    from harness.core.errors import HarnessError
+    from harness.reporting.reporter import check_reporters
 
     try:
-        find_reporter(name)
-    except LookupError as error:
-        raise pytest.UsageError(f"--harness-reporter: {error.args[0]}") from None
+        check_reporters(reporters, report_root(config))
+    except (HarnessError, ModuleNotFoundError) as error:
+        text = str(error) if isinstance(error, HarnessError) else error_text(error)
+        raise pytest.UsageError(f"--harness-reporter: {text}") from None
 
 
 @pytest.hookimpl(wrapper=True)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import ClassVar
 
@@ -23,11 +24,25 @@ class Reporter(Plugin, ABC):
 
     Attributes:
         argument: The text after the name in `--reporter NAME=TEXT`; empty without one.
+        takes_argument: Whether a text after the name has a meaning; it is refused otherwise.
+        package: A package of an extra that it imports; empty if it needs none.
     """
 
     plugin_kind: ClassVar[str] = "reporter"
+    takes_argument: ClassVar[bool] = True
+    package: ClassVar[str] = ""
 
     argument: str = ""
+
+    def check(self, reports: Path | None) -> None:
+        """Refuse, before any case runs, what cannot be written; by default nothing.
+
+        Args:
+            reports: The folder of all reports; None where none is written.
+
+        Raises:
+            HarnessError: The argument is missing, or is not one of this reporter.
+        """
 
     def begin(self, stored: StoredRun) -> None:
         """Prepare what does not depend on pictures; by default nothing.
@@ -90,6 +105,29 @@ def find_reporter(text: str) -> Reporter:
     reporter: Reporter = registry(Reporter.plugin_kind).find(name)()
     reporter.argument = argument
     return reporter
+
+
+def check_reporters(names: Iterable[str], reports: Path | None) -> None:
+    """Refuse reporters that do not exist or cannot write, before any case runs.
+
+    Args:
+        names: Each `NAME` or `NAME=TEXT`.
+        reports: The folder of all reports; None where none is written.
+
+    Raises:
+        HarnessError: There is no such reporter, or what it is given does not suffice.
+        ModuleNotFoundError: A package that a reporter needs is not installed.
+    """
+    for text in names:
+        try:
+            reporter = find_reporter(text)
+        except LookupError as error:
+            raise HarnessError(str(error.args[0])) from error
+        if reporter.argument and not reporter.takes_argument:
+            raise HarnessError(f"the reporter `{reporter.name}` takes no text after its name")
+        reporter.check(reports)
+        if reporter.package:
+            import_module(reporter.package)
 
 
 @contextmanager

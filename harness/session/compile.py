@@ -12,7 +12,7 @@ import numpy as np
 
 from harness.cell.controllers import controller_names
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, with_arm
-from harness.cell.scope import At, Prerequisite, Problems, Scope
+from harness.cell.scope import At, Problems, Scope
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
@@ -22,6 +22,7 @@ from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
 from harness.language.reading.load import LoadedScenario
+from harness.language.reading.partial import Prerequisite
 from harness.language.step import Block, Step
 from harness.language.world import ObjectSpec
 from harness.ports.kinematics import Kinematics

@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 
 from harness.cell.program import Program
-from harness.cell.scope import Prerequisite
 from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
 from harness.core.geometry import Mesh
 from harness.judging.observations import Observations, merged
@@ -23,7 +22,7 @@ from harness.language.reading.load import (
     read_scenario,
     world_path,
 )
-from harness.language.reading.partial import STAND_IN_ROBOT
+from harness.language.reading.partial import STAND_IN_ROBOT, Prerequisite
 from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND

@@ -61,6 +61,8 @@ def test_the_first_commands_need_no_package_of_an_extra(tmp_path):
         ("hypothesis", ["ik-test", "numeric", "--robot", "open_manipulator_x"]),
         ("cmaes", ["search", "variation/pick_where_it_stands"]),
         ("rosbags", ["run", "lessons/04_gripper_alone", "--bag"]),
+        ("rosbags", ["run", "lessons/04_gripper_alone", "--reporter", "rosbag"]),
+        ("av", ["run", "lessons/04_gripper_alone", "--film"]),
         ("zstandard", ["grade", "lessons/04_gripper_alone", "a.bag"]),
         ("lz4", ["grade", "lessons/04_gripper_alone", "a.bag"]),
     ],

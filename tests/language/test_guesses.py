@@ -77,3 +77,32 @@ def test_the_name_of_a_case_is_its_id(tmp_path, cases, capsys):
     said = " ".join("".join(capsys.readouterr()).replace("|", "").split())
     assert ":6:" in said
     assert "with its name as `id`: `- {id: small, params.size: 2 cm}`" in said
+
+
+@pytest.mark.parametrize(
+    ("robot", "extra"),
+    [
+        ("{model: ur3e, manipulators: [left]}", ""),
+        ("{model: ur3e, kind_of: six_axes}", ""),
+        ("ur3e", "setting: {arms: [left]}\n"),
+        ("ur3e", "stuff: [{name: left}]\n"),
+    ],
+)
+def test_the_use_of_a_name_below_an_unknown_key_is_no_second_problem(
+    tmp_path, robot, extra, capsys
+):
+    file = tmp_path / "arms.scenario.yaml"
+    steps = "steps:\n  - {move_to: up, robot: left}\n  - {move_to: home, robot: left}\n"
+    file.write_text(f"scenario: x\nrobot: {robot}\n{extra}{steps}")
+    assert main(["check", str(file)]) == 2
+    printed = capsys.readouterr().out
+    assert "unknown key" in printed
+    assert printed.rstrip().endswith(": 1 problem")
+
+
+def test_an_arm_that_no_unknown_key_names_is_reported_with_it(tmp_path, capsys):
+    file = tmp_path / "arms.scenario.yaml"
+    text = "scenario: x\nrobot: ur3e\nstuff: [a]\nsteps: [{move_to: up, robot: left}]\n"
+    file.write_text(text)
+    assert main(["check", str(file)]) == 2
+    assert "the robot has one arm, and 'left' selects one" in capsys.readouterr().out

@@ -60,11 +60,22 @@ def test_without_an_earlier_run_there_is_no_page():
 
 @pytest.mark.parametrize(
     ("option", "words"),
-    [("green", "needs a folder: --reporter green=DIR"), ("green=reports", "choose another folder")],
+    [
+        ("green", "--reporter: the reporter `green` needs a folder: green=DIR"),
+        ("green=", "needs a folder: green=DIR"),
+        ("green=reports", "choose another folder"),
+        ("green=./kept/../reports", "choose another folder"),
+        ("green=still.scenario.yaml", "is no folder"),
+        ("green=still.scenario.yaml/below", "is no folder"),
+        ("html=kept", "the reporter `html` takes no text after its name"),
+    ],
 )
-def test_a_folder_is_needed_that_is_not_the_one_of_reports(option, words, capsys):
-    assert run("--reporter", option) == 3
-    assert words in capsys.readouterr().out
+def test_a_folder_that_is_not_the_one_of_reports_is_needed_before_anything_runs(
+    option, words, capsys
+):
+    assert run("--reporter", option) == 2
+    assert words in capsys.readouterr().err
+    assert not Path("reports").exists()
 
 
 def test_a_name_that_does_not_exist_is_refused_before_anything_runs(capsys):

@@ -416,3 +416,5 @@ def test_a_failed_case_is_compared_with_the_last_one_that_passed(pytester, write
     assert "at_most: 0.05 s" in page.read_text()
     wrong = run(pytester, "--harness-reporter", "gren=kept")
     wrong.stderr.fnmatch_lines(["*there is no reporter 'gren'; did you mean `green`?*"])
+    alone = run(pytester, "--harness-reporter", "green")
+    alone.stderr.fnmatch_lines(["*--harness-reporter: the reporter `green` needs a folder*"])

@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -128,7 +127,8 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
 
 
 def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> SuiteRun:
-    from harness.reporting.reporter import find_reporter
+    from harness.core.errors import HarnessError
+    from harness.reporting.reporter import check_reporters
     from harness.session.run_request import named_commands
     from harness.suite.plan import planned_cases
     from harness.suite.suite_run import SuiteRun
@@ -137,14 +137,11 @@ def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHoo
         case_runner("nodes")  # refuses where no plug-in runs them
     if arguments.history and not Path(arguments.history).is_dir():
         raise UsageError(f"--history '{arguments.history}' is no folder")
-    for name in [*arguments.reporters, *["rosbag"] * arguments.bag]:
-        try:
-            find_reporter(name)
-        except LookupError as error:
-            raise UsageError(f"--reporter: {error.args[0]}") from None
-    if arguments.bag or "rosbag" in arguments.reporters:
-        import_module("rosbags")  # refused here where it is not installed
     root = None if arguments.no_report else Path(arguments.report_dir)
+    try:
+        check_reporters([*arguments.reporters, *["rosbag"] * arguments.bag], root)
+    except HarnessError as error:
+        raise UsageError(f"--reporter: {error}") from error
     if root is not None:
         clean_report_folder(root)
     request = read_options(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Generic, Literal, TypeVar, cast
+from typing import Any, Generic, TypeVar, cast
 
 from pydantic import ValidationError
 
@@ -21,7 +21,7 @@ from harness.language.files.yaml_file import parse_yaml, read_text, require_key
 from harness.language.reading.includes import with_includes
 from harness.language.reading.overrides import apply_overrides, from_options
 from harness.language.reading.params import substitute
-from harness.language.reading.partial import PartialReader
+from harness.language.reading.partial import PartialReader, Prerequisite
 from harness.language.reading.short_forms import models_shape
 from harness.language.reading.varied_paths import check_variation, values_of_case
 from harness.language.reading.wording import is_follow_up, problems_of
@@ -85,13 +85,14 @@ class Reading:
     Attributes:
         loaded: The scenario; with problems, what remains of it; None when that is too little.
         doubtful: Words of what was left out; a mistake that names one may follow from another.
-        missing: `robot` or `world`, where something else stands in for what cannot be read.
+        missing: `robot` or `world`, where something else stands in for what cannot be read; `arms`,
+            where a key of `robot` is unknown, which may have named them.
     """
 
     loaded: LoadedScenario | None
     problems: tuple[Problem, ...] = ()
     doubtful: frozenset[str] = frozenset()
-    missing: frozenset[Literal["robot", "world"]] = frozenset()
+    missing: frozenset[Prerequisite] = frozenset()
 
 
 def read_scenario(
@@ -295,9 +296,9 @@ def _model(
         SpecError: With the problems found before and all that are found here.
     """
     guessed: set[tuple[str, int, int]] = set()
-    lines = SourceMap(models_shape(written, model, problems, notes, guessed))
-    data = lines.root.plain()
     reader, remains = PartialReader(), None
+    lines = SourceMap(models_shape(written, model, problems, notes, guessed, reader))
+    data = lines.root.plain()
     try:
         loaded = model.model_validate(data)
     except ValidationError as error:

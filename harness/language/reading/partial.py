@@ -20,6 +20,8 @@ from harness.language.plugin_field import PluginField
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import Step
 
+Prerequisite = Literal["robot", "world", "arms"]
+
 ABSENT: Any = object()  # in place of a value that cannot be read and that nothing can stand in for
 NO_NAME = "?"  # stands in for a name that cannot be read; problems with it follow from that
 STAND_INS = (1, 0, True, NO_NAME)  # the first valid one stands in for a value that is needed
@@ -41,13 +43,14 @@ class PartialReader:
 
     Attributes:
         words: Every word of what cannot be read: problems that name one may follow from it.
-        missing: `robot` or `world`, where something else stands in for it.
+        missing: `robot` or `world`, where something else stands in for it; `arms`, where a key of
+            `robot` is unknown, which may have named them.
         broken_rules: Errors of rules of whole models ("exactly one goal"), which pydantic does
             not check while a field cannot be read.
     """
 
     words: set[str] = field(default_factory=set[str])
-    missing: set[Literal["robot", "world"]] = field(default_factory=set[Literal["robot", "world"]])
+    missing: set[Prerequisite] = field(default_factory=set[Prerequisite])
     broken_rules: list[ErrorDetails] = field(default_factory=list[ErrorDetails])
 
     def scenario(self, data: dict[str, Any], places: list[Loc]) -> Scenario:

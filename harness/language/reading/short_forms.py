@@ -31,6 +31,7 @@ from harness.language.language import (
     UNTIL,
 )
 from harness.language.reading.names import UNTIL_USAGE, Words, take_apart, wrong_way_round
+from harness.language.reading.partial import PartialReader, texts
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, TAG, Step
 
@@ -44,26 +45,36 @@ def models_shape(
     problems: list[Problem],
     notes: list[Problem] | None = None,
     guessed: set[tuple[str, int, int]] | None = None,
+    reader: PartialReader | None = None,
 ) -> Located:
     """A file's values in the shape of its model.
 
     Args:
         notes: Gets what is allowed and probably not intended.
         guessed: Gets the places of values whose keys are guesses, whose mistakes may be none.
+        reader: Gets the words of what is left out: problems that name one may follow from it.
     """
     shaper = _Shaper(
-        problems, [] if notes is None else notes, set() if guessed is None else guessed
+        problems,
+        [] if notes is None else notes,
+        set() if guessed is None else guessed,
+        PartialReader() if reader is None else reader,
     )
     return shaper.model(item, model)
 
 
 class _Shaper:
     def __init__(
-        self, problems: list[Problem], notes: list[Problem], guessed: set[tuple[str, int, int]]
+        self,
+        problems: list[Problem],
+        notes: list[Problem],
+        guessed: set[tuple[str, int, int]],
+        reader: PartialReader,
     ) -> None:
         self.problems = problems
         self.notes = notes
         self.guessed = guessed
+        self.reader = reader
 
     def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
         self._note_unit(item, annotation, metadata)
@@ -132,6 +143,8 @@ class _Shaper:
                 near = self._unknown_key(key, item, model, inside, names)
                 if near is not None and near not in item.value:  # continue with the valid key
                     entries[near] = self._guessed(key, entry, near, model)
+                else:
+                    self.reader.words.update(texts(entry.value.plain()))
         return Located(entries, item.place)
 
     def _unknown_key(
@@ -147,6 +160,8 @@ class _Shaper:
         if key in model.not_yet:
             self.problems.append(place.problem(f"there is no `{key}` yet", model.not_yet[key]))
             return nearest(key, inside)
+        if issubclass(model, RobotSpec):
+            self.reader.missing.add("arms")
         where = names.get("verb") or names.get("word") or ""
         message = f"unknown key `{key}`" + (f" in `{where}`" if where else "")
         near = nearest(key, inside)

@@ -16,6 +16,7 @@ class HtmlReporter(Reporter):
     """The page of a run, report.html; written unless `--no-page` is given."""
 
     name: ClassVar[str] = "html"
+    takes_argument: ClassVar[bool] = False
 
     _page: Page | None = None
 

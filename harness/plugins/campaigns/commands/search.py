@@ -190,7 +190,7 @@ def _show_failure(each: WrittenFailure, found: SearchResult, report: str) -> Non
 
     failure = each.failure
     count = len(failure.samples)
-    say("", f"FAILED in {count} run{'s' if count > 1 else ''}: {failure.kind}")
+    say("", f"FAILED in {count} run{'s' if count > 1 else ''}: {failure.text}")
     changed = changes(found, failure.nearest)
     of = f"{len(changed)} of {len(found.space.parameters)} parameters"
     say(f"  smallest change that fails in this way ({of}, {failure.shrink_runs} runs to shrink):")

@@ -16,16 +16,21 @@ LEAST_SPREAD = 1e-12  # margins that vary less than this do not depend on what v
 Expectation = tuple[int, int]  # its line in the file, its number among the verdicts
 
 
+def failure_text(result: CaseResult) -> str:
+    """What failed at its root, with its line; empty if nothing."""
+    cause = cause_of(result)
+    if cause is None:
+        return ""
+    return f"{cause.group} (line {cause.line})" if cause.line else cause.group
+
+
 def failure_kind(result: CaseResult) -> str:
-    """What failed at its root, without numbers, which may vary from run to run; empty if nothing.
+    """What failed at its root, to compare runs: without numbers, which may vary; empty if nothing.
 
     Runs with the same kind failed in the same step with the same code, or in the same expectation.
     """
     cause = cause_of(result)
-    if cause is None:
-        return ""
-    group = NUMBER.sub("#", cause.group)
-    return f"{group} (line {cause.line})" if cause.line else group
+    return f"{NUMBER.sub('#', cause.group)} at {cause.line}" if cause else ""
 
 
 def margins(result: CaseResult, name: str | None = None) -> dict[Expectation, float]:

@@ -11,7 +11,7 @@ from harness.core.errors import HarnessError, SpecError
 from harness.core.suggestion import did_you_mean
 from harness.language.reading.load import load_scenario
 from harness.language.variation import Search
-from harness.plugins.campaigns.failure_search.closeness import failure_kind
+from harness.plugins.campaigns.failure_search.closeness import failure_kind, failure_text
 from harness.plugins.campaigns.failure_search.evaluator import Evaluator, OnRun, Sample
 from harness.plugins.campaigns.failure_search.explore import Exploration, explore
 from harness.plugins.campaigns.failure_search.shrink import shrink
@@ -82,15 +82,18 @@ class Failure:
     """A failure and its nearest neighbour of the nominal scenario.
 
     Attributes:
-        kind: What failed, without numbers.
         nearest: The smallest change that fails in this way.
         shrink_runs: How many runs the shrinking took.
     """
 
-    kind: str
     samples: tuple[Sample, ...]
     nearest: Sample
     shrink_runs: int
+
+    @property
+    def text(self) -> str:
+        """What the smallest change makes fail, with its line."""
+        return failure_text(self.nearest.result)
 
 
 @dataclass(frozen=True)
@@ -180,7 +183,7 @@ def search(
         )
     failures: list[Failure] = []
     for kind, samples in exploration.kinds.items():
-        on_stage(f"shrinking: {kind}")
+        on_stage(f"shrinking: {failure_text(samples[0].result)}")
         failures.append(_shrunk(space, evaluate, kind, samples))
     uncounted = sum(not is_counted(each) for each in exploration.samples)
     return SearchResult(
@@ -209,4 +212,4 @@ def _shrunk(
     smallest = min((each.point for each in samples), key=space.size)
     nearest = shrink(space, smallest, fails)
     [sample] = evaluate([nearest])
-    return Failure(kind, samples, sample, len(evaluate.samples) - before)
+    return Failure(samples, sample, len(evaluate.samples) - before)

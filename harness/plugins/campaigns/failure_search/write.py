@@ -105,7 +105,7 @@ def scenario_text(found: SearchResult, failure: Failure, folder: Path) -> str:
     loaded = load_scenario(found.request.file, overrides, found.request.settings.seed)
     lines = [
         f"The smallest change of '{found.request.file}' that was found to fail in this way:",
-        failure.kind,
+        failure.text,
         *changes(found, sample),
         f"digest: {sample.result.digest}",
     ]
@@ -146,7 +146,7 @@ def write_search(found: SearchResult, written: Written, folder: Path) -> Path:
     changes = [
         FailingChange(
             changed(found, each.failure.nearest),
-            cause.text if (cause := cause_of(each.result)) else each.failure.kind,
+            cause.text if (cause := cause_of(each.result)) else each.failure.text,
             len(each.failure.samples),
             (("the file as it is", unchanged), ("with the change", case)),
         )
@@ -228,7 +228,7 @@ def search_document(found: SearchResult, written: Written) -> dict[str, object]:
         "rate": exploration.rate,
         "failures": [
             {
-                "kind": each.failure.kind,
+                "kind": each.failure.text,
                 "cause": cause.text if (cause := cause_of(each.result)) else "",
                 "runs": len(each.failure.samples),
                 "shrink_runs": each.failure.shrink_runs,

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from harness.core.errors import HarnessError
+from harness.core.files import path_exists
 from harness.recording.stored_run import StoredRun
 from harness.reporting.reporter import Reporter
 
@@ -18,23 +19,25 @@ class GreenReporter(Reporter):
 
     name: ClassVar[str] = "green"
 
-    def write(self, folder: Path, stored: StoredRun) -> None:
-        """Write the page of a run that failed, and keep one that passed.
+    def check(self, reports: Path | None) -> None:
+        """Refuse an argument that is no folder of its own."""
+        kept = Path(self.argument)
+        if not self.argument:
+            raise HarnessError("the reporter `green` needs a folder: green=DIR")
+        if any(path_exists(each) and not each.is_dir() for each in (kept, *kept.parents)):
+            raise HarnessError(f"green={self.argument} is no folder; choose another one")
+        if reports is not None and kept.resolve() == reports.resolve():
+            raise HarnessError(
+                f"green={self.argument} is the folder of the reports, where each run replaces the"
+                " last one; choose another folder"
+            )
 
-        Raises:
-            HarnessError: No folder is given, or it is the one of the reports.
-        """
+    def write(self, folder: Path, stored: StoredRun) -> None:
+        """Write the page of a run that failed, and keep one that passed."""
         from harness.plugins.comparison.green import against_green, green_folder
         from harness.recording.write_run import write_run
 
-        if not self.argument:
-            raise HarnessError("the reporter `green` needs a folder: --reporter green=DIR")
         green = green_folder(Path(self.argument), stored.run)
-        if green.parent.resolve() == folder.parent.resolve():
-            raise HarnessError(
-                f"--reporter green={self.argument} is the folder of the reports, where each run"
-                " replaces the last one; choose another folder"
-            )
         if stored.outcome == "passed":
             write_run(green, stored)
         else:

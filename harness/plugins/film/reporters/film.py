@@ -13,6 +13,8 @@ class FilmReporter(Reporter):
     """The replay as `film.mp4`, and the moment that decided as `moment.jpg`; `--film` for short."""
 
     name: ClassVar[str] = "film"
+    takes_argument: ClassVar[bool] = False
+    package: ClassVar[str] = "av"
 
     def write(self, folder: Path, stored: StoredRun) -> None:
         """Write the film and the picture."""

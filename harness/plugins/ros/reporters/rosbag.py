@@ -13,6 +13,8 @@ class RosbagReporter(Reporter):
     """A rosbag2 in the folder `bag`; `--bag` is its short form."""
 
     name: ClassVar[str] = "rosbag"
+    takes_argument: ClassVar[bool] = False
+    package: ClassVar[str] = "rosbags"
 
     def write(self, folder: Path, stored: StoredRun) -> None:
         """Write the bag."""

@@ -84,13 +84,19 @@ def test_a_thin_failure_is_found_shrunk_to_its_boundary_and_written_as_a_scenari
     assert list((tmp_path / failure["report"]).rglob("*.jpg"))
 
 
-def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_path):
+def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_path, capsys):
     code, found = search(tmp_path, TWO_KINDS, "--runs", "40", "--start", "8", "-j", "2")
     assert code == 1
     causes = {tuple(each["changed"]): each["values"] for each in found["failures"]}
     assert set(causes) == {("x",), ("y",)}
     assert causes[("x",)]["x"] == pytest.approx(0.3, abs=0.005)
     assert causes[("y",)]["y"] == pytest.approx(-0.4, abs=0.005)
+    printed = capsys.readouterr().out
+    headings = re.findall(r"FAILED in \d+ runs?: (.*) \(line (\d+)\)", printed)
+    assert {*headings} == {
+        ("failed: formula always (x(ball) < 0.3)", "9"),
+        ("failed: formula always (y(ball) > -0.4)", "10"),
+    }
     [page] = (tmp_path / "reports").rglob("index.html")
     shown = re.findall(r"<article.*?</article>", page.read_text(), re.DOTALL)
     changed = [re.search("<code>(.)</code>", each)[1] for each in shown]
