@@ -202,14 +202,24 @@ class RobotSpec(SpecModel):
 ArmName = Annotated[Name, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]
 
 
-class Ros2Names(SpecModel):
-    """Names on the ROS 2 graph, where they differ from the robot's own."""
+class ControllerKeys(SpecModel):
+    """Names of the controllers of one arm on the ROS 2 graph."""
 
     arm_controllers: tuple[RosName, ...] | None = Field(
         default=None, description="The arm's trajectory controller; each name leads to the same."
     )
     gripper_controller: RosName | None = Field(
         default=None, description="The gripper's controller, of GripperCommand and trajectories."
+    )
+
+
+class Ros2Names(ControllerKeys):
+    """Names on the ROS 2 graph, where they differ from the robot's own."""
+
+    arms: dict[Name, ControllerKeys] = Field(
+        default_factory=dict,
+        description="Names of the controllers of each arm of a robot with several, by the arm's "
+        "name.",
     )
     prefix: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,39}$")] | None = Field(
         default=None,

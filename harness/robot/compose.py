@@ -118,6 +118,13 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
     srdf = replace(srdf, disabled=_allowed(srdf, tree_links, tree_joints, source))
     facts = next((part.facts.gripper for part in parts[::-1] if part.facts.gripper), None)
     bounds = first.facts.controller_tolerances
+    tolerances = None if bounds is None else TrackingTolerances(**bounds.model_dump())
+    controllers = {
+        kind: names
+        for part in parts
+        for kind, names in part.facts.controllers.model_dump().items()
+        if names
+    }
     hand = None if facts is None else _gripper(facts)
     return replace(
         robot_of_tree(source, tree_links, tree_joints, srdf),
@@ -129,14 +136,9 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
         cameras=_cameras(parts, tree_links),
         wrench_sensors=_wrench_sensors(parts, tree_links, tree_joints),
         tracking=TrackingTolerances(**first.facts.tracking.model_dump()),
-        controller_tolerances=None if bounds is None else TrackingTolerances(**bounds.model_dump()),
+        controller_tolerances=tolerances,
         ik_solver=first.facts.ik_solver,
-        controllers={
-            kind: names
-            for part in parts
-            for kind, names in part.facts.controllers.model_dump().items()
-            if names
-        },
+        controllers=controllers,
         notes=tuple(note for part in parts for note in part.notes),
         rejected_grippers=tuple(why for part in parts for why in part.rejected_grippers),
         arms=tuple(
@@ -145,6 +147,8 @@ def compose_robot(arm: RobotPart | None, gripper: RobotPart | None, base: SE3) -
                 each.tcp_link if number else tcp_link,
                 each.base_link,
                 (each.gripper and _gripper(each.gripper)) if number else hand,
+                {} if number else controllers,
+                tolerances,
             )
             for number, each in enumerate(first.arms)
         ),

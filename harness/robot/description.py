@@ -235,6 +235,15 @@ class Gripper:
         return self.palm_link in self.pads.values()
 
 
+@dataclass(frozen=True)
+class TrackingTolerances:
+    """Tolerances of a JointTrajectoryController for every joint [rad or m]."""
+
+    trajectory: float = 0.2
+    goal: float = 0.01
+    goal_time: float = 1.0
+
+
 @dataclass(frozen=True, eq=False)
 class Arm:
     """One of several arms of a robot; its name is that of its planning group.
@@ -244,21 +253,16 @@ class Arm:
         tcp_link: The link whose pose is the arm's TCP.
         base_link: The first link of the arm.
         gripper: Its gripper; None for an arm without one.
+        controllers: Names of its ROS 2 controllers, as in `RobotDescription`.
+        controller_tolerances: Tolerances of its ROS 2 controllers; None where they have none.
     """
 
     name: str
     tcp_link: str
     base_link: str
     gripper: Gripper | None = None
-
-
-@dataclass(frozen=True)
-class TrackingTolerances:
-    """Tolerances of a JointTrajectoryController for every joint [rad or m]."""
-
-    trajectory: float = 0.2
-    goal: float = 0.01
-    goal_time: float = 1.0
+    controllers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    controller_tolerances: TrackingTolerances | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -412,6 +416,8 @@ class RobotDescription:
                 gripper=arm.gripper,
                 tcp_link=arm.tcp_link,
                 base_link=arm.base_link,
+                controllers=arm.controllers,
+                controller_tolerances=arm.controller_tolerances,
                 selected_arm=arm.name,
             )
             for arm in self.arms
@@ -432,6 +438,16 @@ class RobotDescription:
             default = of_base.get(joint.child, found.get(joint.parent, ""))
             found[joint.child] = movers[0] if len(movers) == 1 else "" if movers else default
         return {link: arm for link, arm in found.items() if arm}
+
+    @property
+    def controller_names(self) -> Mapping[str, tuple[str, ...]]:
+        """Names of the controllers of the selected arm and gripper, of those that there are."""
+        groups = {"arm": self.arm_group, "gripper": self.gripper.group if self.gripper else ""}
+        return {
+            kind: self.controllers.get(kind, (f"{group}_controller",))
+            for kind, group in groups.items()
+            if group
+        }
 
     @property
     def recorded_tcp(self) -> str:

@@ -72,10 +72,24 @@ def joined_arms(robots: Mapping[str, RobotDescription]) -> RobotDescription:
         notes=tuple(note for robot in renamed for note in robot.notes),
         rejected_grippers=tuple(why for robot in renamed for why in robot.rejected_grippers),
         arms=tuple(
-            Arm(name, robot.tcp_link, robot.base_link, robot.gripper)
-            for name, robot in zip(robots, renamed, strict=True)
+            Arm(
+                name,
+                robot.tcp_link,
+                robot.base_link,
+                robot.gripper,
+                _in_namespace(name, own.controller_names),
+                robot.controller_tolerances,
+            )
+            for (name, own), robot in zip(robots.items(), renamed, strict=True)
         ),
     )
+
+
+def _in_namespace(
+    arm: str, controllers: Mapping[str, tuple[str, ...]]
+) -> Mapping[str, tuple[str, ...]]:
+    """Names of controllers below the name of their arm."""
+    return {kind: tuple(f"{arm}/{own}" for own in names) for kind, names in controllers.items()}
 
 
 def _renamed(arm: str, robot: RobotDescription) -> RobotDescription:

@@ -118,10 +118,9 @@ class MujocoSimulator(TrajectoryTracking):
         """Start moving a gripper; its set points join those of the arm's next motion."""
         self._grippers[self.gripper(joint).joint].start(position, max_effort)
 
-    def limit_gripper(self, effort: float) -> None:
-        """Limit the effort of the gripper's joint from now on."""
-        if self._grippers:
-            self.limit_grip(self.actuator_of(self.gripper("")), effort)
+    def limit_gripper(self, effort: float, joint: str) -> None:
+        """Limit the effort of a gripper's joint from now on."""
+        self.limit_grip(self.actuator_of(self.gripper(joint)), effort)
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
         """Hold until joints and objects have been slower than a limit for `SETTLE_FOR`.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -25,12 +25,32 @@ UPDATES = 100
 """Updates of the controllers in a second of simulated time."""
 
 
+def controller_managers(graph: Graph, cell: ExternalCell) -> list[ControllerManager]:
+    """A manager of the whole robot, and one in each namespace that has controllers."""
+    register_move_group()
+    spaces: dict[str, dict[str, Controller]] = {"": {}}
+    for name, controller in cell.controllers.items():
+        space, slash, own = name.rpartition("/")
+        spaces.setdefault(slash + space, {})[own] = controller
+    return [ControllerManager(graph, cell, space, own) for space, own in spaces.items()]
+
+
 class ControllerManager:
     """Lists the controllers, which are all active and stay so, and publishes their states."""
 
-    def __init__(self, graph: Graph, cell: ExternalCell) -> None:
-        register_move_group()
-        self._cell = cell
+    def __init__(
+        self, graph: Graph, cell: ExternalCell, space: str, controllers: Mapping[str, Controller]
+    ) -> None:
+        """Serve the controllers of a namespace, such as `/left`, by their names in it."""
+        self._cell, self._controllers = cell, controllers
+        self._joints = cell.description.movable_joints
+        if space:
+            own = {joint.name for each in controllers.values() for joint in each.joints}
+            self._joints = tuple(
+                joint
+                for joint in self._joints
+                if joint.name in own or (joint.mimic and joint.mimic.joint in own)
+            )
         for name, answer in (
             ("ListControllers", self._list),
             ("ListControllerTypes", self._types),
@@ -46,23 +66,23 @@ class ControllerManager:
         ):
             kind = SRV + name
             graph.serve(
-                f"/controller_manager/{_snake(name)}",
+                f"{space}/controller_manager/{_snake(name)}",
                 kind,
                 lambda request, reply, answer=answer, kind=kind: reply(
                     message(f"{kind}_Response", **answer(request))
                 ),
             )
         self._states: dict[str, Publisher] = {
-            name: graph.advertise(f"/{name}/controller_state", STATE)
-            for name, controller in cell.controllers.items()
-            if "gripper" not in controller.kinds
+            name: graph.advertise(f"{space}/{name}/controller_state", STATE)
+            for name, controller in controllers.items()
+            if controller.gripper is None
         }
 
     def publish(self) -> None:
         """Publish the desired and the measured motion of each trajectory controller."""
         for name, publisher in self._states.items():
             if publisher.subscribers:
-                controller = self._cell.controllers[name]
+                controller = self._controllers[name]
                 desired, measured = self._cell.motion_of(controller)
                 error = desired[: len(measured)] - measured
                 publisher.publish(
@@ -79,12 +99,12 @@ class ControllerManager:
                 )
 
     def _list(self, _request: Any) -> dict[str, Any]:
-        known = [_state(name, each) for name, each in self._cell.controllers.items()]
+        known = [_state(name, each) for name, each in self._controllers.items()]
         return {"controller": [_described("joint_state_broadcaster", BROADCASTER, ()), *known]}
 
     def _interfaces(self) -> dict[str, list[Any]]:
         """The interfaces of the joints: a position to command, and three states."""
-        moved = self._cell.description.movable_joints
+        moved = self._joints
         driven = [joint.name for joint in moved if joint.mimic is None]
         states = ("position", "velocity", "effort")
         read = [_interface(f"{joint.name}/{each}") for joint in moved for each in states]
@@ -123,12 +143,12 @@ class ControllerManager:
         return {"ok": self._knows(str(request.name))}
 
     def _knows(self, name: str) -> bool:
-        return name in self._cell.controllers or name == "joint_state_broadcaster"
+        return name in self._controllers or name == "joint_state_broadcaster"
 
 
 def _state(name: str, controller: Controller) -> Any:
     interfaces = [f"{joint.name}/position" for joint in controller.joints]
-    kind = GRIPPER if "gripper" in controller.kinds else TRAJECTORY
+    kind = TRAJECTORY if controller.gripper is None else GRIPPER
     return _described(name, kind, interfaces)
 
 

@@ -16,7 +16,6 @@ from harness.judging.ends import holds_now
 from harness.language.expectation import ExpectationFields
 from harness.plugins.ros.control.cell import ExternalCell
 from harness.plugins.ros.moveit.client_scene import ClientScene
-from harness.plugins.ros.one_arm import refuse_several_arms
 from harness.ports.external import ExternalRequest, ExternalResult
 from harness.recording.commands import CommandRecord
 from harness.recording.read_run import read_run
@@ -40,7 +39,6 @@ class HandOver(ABC):
     """Lets time pass while programs command the robot: what they do between two ticks."""
 
     def __init__(self, prepared: Prepared, simulator: MujocoSimulator) -> None:
-        refuse_several_arms(prepared)
         self.prepared, self.simulator = prepared, simulator
         self.cell = ExternalCell(simulator, prepared.program.controllers)
         self.robot = prepared.program.description

@@ -16,7 +16,7 @@ from harness.plugins.ros.bag.frames import camera_edges
 from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.camera_topics import CameraTopics
 from harness.plugins.ros.control.controller import Outcome
-from harness.plugins.ros.controller_manager import ControllerManager
+from harness.plugins.ros.controller_manager import controller_managers
 from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.handover import HandOver
 from harness.plugins.ros.interfaces import stamp
@@ -82,7 +82,7 @@ class LiveControl(HandOver):
         cameras = camera_edges(tuple(program.cameras.values()), self.robot, objects)
         self._states = StateTopics(graph, self.robot, cameras)
         self._wiring = Wiring(graph, self.cell, self._note)
-        self._manager = ControllerManager(graph, self.cell)
+        self._managers = controller_managers(graph, self.cell)
         self._move_group = MoveGroup(graph, self.cell, self._note, self._say_once)
         report = self.cell.on_outcome
         self.cell.on_outcome = lambda outcome: (report(outcome), self._end_of(outcome))
@@ -177,7 +177,8 @@ class LiveControl(HandOver):
         efforts[simulator.physics.actuated] = simulator.efforts()
         if self._pace.ticks % FEEDBACK_EVERY == 0:
             self._wiring.publish_feedback()
-            self._manager.publish()
+            for manager in self._managers:
+                manager.publish()
         self._states.publish(simulator.time, positions, velocities, efforts)
         for sensor in self.robot.wrench_sensors:
             wrench = simulator.wrench(sensor, simulator.timestep)

@@ -1,4 +1,4 @@
-"""Refuses robots with several arms, whose controllers are not served to ROS 2 nodes."""
+"""Refuses robots with several arms, which `--robot ros2` does not move."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ def refuse_several_arms(prepared: Prepared) -> None:
     arms = prepared.program.description.arms
     if arms:
         names = ", ".join(arm.name for arm in arms)
-        message = f"ROS 2 nodes and robots are connected to one arm, and this robot has {names}"
+        message = f"`--robot ros2` moves one arm, and this robot has {names}"
         loc, hint = (prepared.loaded.scenario.robot_key,), "write a scenario for each arm"
         raise SpecError([prepared.loaded.lines.problem(loc, message, hint)])

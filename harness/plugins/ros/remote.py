@@ -94,12 +94,13 @@ class RemoteArm:
         self.description = self._program.description
         self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
         names = self._program.controllers
+        own = names.by_arm[""]
         prefix = Prefix(names.prefix, self.description)
         graph.outward, graph.inward = prefix.outward, prefix.inward
         self._states = JointStates(graph, self.description)
-        arms = [ActionClient(graph, f"/{arm}/follow_joint_trajectory", FOLLOW) for arm in names.arm]
-        finger = f"/{names.gripper}/gripper_cmd"
-        self._gripper = ActionClient(graph, finger, GRIPPER) if names.gripper else None
+        arms = [ActionClient(graph, f"/{arm}/follow_joint_trajectory", FOLLOW) for arm in own.arm]
+        finger = f"/{own.gripper}/gripper_cmd"
+        self._gripper = ActionClient(graph, finger, GRIPPER) if own.gripper else None
         if not self._wait(lambda: any(arm.is_ready for arm in arms), PATIENCE):
             served = ", ".join(actions(graph.uses()[1])) or "no action"
             required = " or ".join(arm.name for arm in arms)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from harness.core.kinematics import LinkPoses
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.plugins.ros.bag.frames import Edge, robot_edges, transform_stamped
 from harness.plugins.ros.bag.messages import message, pose_message
 from harness.plugins.ros.bag.wrenches import WRENCH, wrench_message, wrench_topic
@@ -18,12 +18,62 @@ from harness.plugins.ros.interfaces import header, stamp
 from harness.plugins.ros.rtps.graph import Graph
 from harness.robot.description import RobotDescription
 
+STATE = "sensor_msgs/msg/JointState"
 TF = "tf2_msgs/msg/TFMessage"
 TF_EVERY = 2  # ticks between two messages of frames: 50 Hz
 PATH = "nav_msgs/msg/Path"
 PATH_EVERY, PATH_STEP, MOST_POSES = 20, 0.02, 10_000
 """Of the TCP's path: ticks between two messages (5 Hz), distance between two poses [m], as in the
 course's launch files, and poses that are kept."""
+
+
+class _Joints:
+    """Publishes the state of some joints."""
+
+    def __init__(
+        self, graph: Graph, topic: str, names: Sequence[str], places: slice | IntArray
+    ) -> None:
+        """Advertise a topic of the joints at some places in description order."""
+        self._publisher, self._places = graph.advertise(topic, STATE), places
+        self._state = message(STATE, name=names)
+
+    def publish(
+        self, moment: Any, positions: FloatArray, velocities: FloatArray, efforts: FloatArray
+    ) -> None:
+        state, places = self._state, self._places
+        state.header.stamp = moment
+        state.position, state.velocity = positions[places], velocities[places]
+        state.effort = efforts[places]
+        self._publisher.publish(state)
+
+
+def _joints_of_arms(graph: Graph, robot: RobotDescription) -> Iterator[_Joints]:
+    """A topic for each of several arms, with its joints and those of its gripper."""
+    for arm in robot.arms:
+        owners = (robot.arm_of_link.get(joint.child) for joint in robot.movable_joints)
+        places = np.flatnonzero([owner == arm.name for owner in owners])
+        names = [robot.joint_names[place] for place in places]
+        yield _Joints(graph, f"/{arm.name}/joint_states", names, places)
+
+
+class _Path:
+    """Publishes where a TCP was: a pose for each distance that it moved."""
+
+    def __init__(self, graph: Graph, topic: str, robot: RobotDescription, link: str) -> None:
+        self._publisher, self._robot, self._link = graph.advertise(topic, PATH), robot, link
+        self._poses: deque[Any] = deque(maxlen=MOST_POSES)
+        self._last = np.full(3, np.inf)
+
+    def publish(self, time: float, positions: FloatArray) -> None:
+        joints, link = self._robot.joints, self._link
+        row, root = LinkPoses(joints, positions, [link]).rows(link)[0], joints[0].parent
+        if not np.linalg.norm(row[:3] - self._last) < PATH_STEP:
+            self._last = row[:3]
+            kind, pose = "geometry_msgs/msg/PoseStamped", pose_message([*row])
+            self._poses.append(message(kind, header=header(time, root), pose=pose))
+        if self._publisher.subscribers:
+            head = header(time, root)
+            self._publisher.publish(message(PATH, header=head, poses=[*self._poses]))
 
 
 class StateTopics:
@@ -33,8 +83,8 @@ class StateTopics:
         """Advertise the topics, and publish what does not change, with the frames of cameras."""
         self._moved = robot.movable_joints
         self._clock = graph.advertise("/clock", "rosgraph_msgs/msg/Clock", Qos(depth=1))
-        self._joints = graph.advertise("/joint_states", "sensor_msgs/msg/JointState")
-        self._state = message("sensor_msgs/msg/JointState", name=robot.joint_names)
+        everything = _Joints(graph, "/joint_states", robot.joint_names, slice(None))
+        self._joints = [everything, *_joints_of_arms(graph, robot)]
         self._tf = graph.advertise("/tf", TF, Qos(depth=100))
         static = graph.advertise("/tf_static", TF, LATCHED)
         fixed = [
@@ -45,9 +95,8 @@ class StateTopics:
         description = graph.advertise("/robot_description", "std_msgs/msg/String", LATCHED)
         description.publish(message("std_msgs/msg/String", data=robot.urdf))
         self._ticks, self._robot = 0, robot
-        self._path = graph.advertise("/trajectory", PATH)
-        self._poses: deque[Any] = deque(maxlen=MOST_POSES)
-        self._last = np.full(3, np.inf)
+        tips = {f"/{arm.name}": arm.tcp_link for arm in robot.arms} or {"": robot.tcp_link}
+        self._paths = [_Path(graph, f"{arm}/trajectory", robot, tip) for arm, tip in tips.items()]
         self._wrenches = {
             name: graph.advertise(wrench_topic(name).name, WRENCH) for name in robot.wrench_sensors
         }
@@ -58,13 +107,12 @@ class StateTopics:
         """Publish the state of the joints, description order, at a simulated time [s]."""
         moment = stamp(time)
         self._clock.publish(message("rosgraph_msgs/msg/Clock", clock=moment))
-        state = self._state
-        state.header.stamp = moment
-        state.position, state.velocity, state.effort = positions, velocities, efforts
-        self._joints.publish(state)
+        for joints in self._joints:
+            joints.publish(moment, positions, velocities, efforts)
         self._ticks += 1
         if self._ticks % PATH_EVERY == 0:
-            self._publish_path(time, positions)
+            for path in self._paths:
+                path.publish(time, positions)
         if self._ticks % TF_EVERY == 0 and self._tf.subscribers:
             transforms = [
                 transform_stamped(
@@ -78,15 +126,3 @@ class StateTopics:
         """Publish what a sensor of force and torque reads, shape (6,), at a simulated time [s]."""
         sensor = self._robot.wrench_sensors[name]
         self._wrenches[name].publish(wrench_message(time, sensor, wrench))
-
-    def _publish_path(self, time: float, positions: FloatArray) -> None:
-        """Publish where the TCP was: a pose for each distance that it moved."""
-        link, root = self._robot.tcp_link, self._robot.joints[0].parent
-        row = LinkPoses(self._robot.joints, positions, [link]).rows(link)[0]
-        if not np.linalg.norm(row[:3] - self._last) < PATH_STEP:
-            self._last = row[:3]
-            kind, pose = "geometry_msgs/msg/PoseStamped", pose_message([*row])
-            self._poses.append(message(kind, header=header(time, root), pose=pose))
-        if self._path.subscribers:
-            head = header(time, root)
-            self._path.publish(message(PATH, header=head, poses=[*self._poses]))

@@ -138,7 +138,7 @@ def test_a_name_that_the_robot_uses_already_is_refused_before_the_run(tmp_path, 
         assert main([command, str(file), *options]) == 2
     said = capsys.readouterr()
     assert "test.scenario.yaml:5:25" in said.out + said.err
-    assert "need different names" in said.out + said.err
+    assert "needs a name of its own" in said.out + said.err
 
 
 @pytest.mark.parametrize("text", ["233", "-1", "abc"])

@@ -226,3 +226,25 @@ def test_a_client_in_cpp_plans_executes_attaches_and_stops_and_its_run_replays(t
     run = read_run(tmp_path / "run")
     assert [each.object for each in run.run.attachments] == ["cube"]
     assert replay(tmp_path / "run").digest == run.digest
+
+
+@pytest.mark.usefixtures("_control_msgs")
+def test_a_node_moves_two_arms_by_their_names_and_its_run_replays(tmp_path):
+    require_control_msgs("moveit_msgs.action")
+    file = tmp_path / "two.scenario.yaml"
+    node = f"{PYTHON} {STUDENT / 'two_arms.py'}"
+    file.write_text(
+        "scenario: two arms\nrobots:\n"
+        "  left: {model: open_manipulator_x, base: {xyz: [0, 0.3, 0]}}\n"
+        "  right: {model: open_manipulator_x, base: {xyz: [0, -0.3, 0]}}\n"
+        "steps:\n  - external: {timeout: 60 s}\n"
+        "expect:\n  - eventually: {joints: {positions: {left_joint1: 0.4}, tolerance: 1 deg}}\n"
+        "  - joints: {positions: {left_joint1: 0.1, right_joint1: 0.2}, tolerance: 1 deg}\n"
+        "  - never: collision\n"
+    )
+    folder = tmp_path / "reports"
+    options = ["--no-page", "--report-dir", str(folder)]
+    assert main(["grade", str(file), "--node", node, *options]) == 0
+    [run] = folder.rglob("run.json")
+    stored = read_run(run.parent)
+    assert replay(run.parent).digest == stored.digest

@@ -17,7 +17,7 @@ from harness.plugins.ros.control.gripper import GripperMotion
 from harness.plugins.ros.control.step_response import StepResponse
 from harness.plugins.ros.control.trajectory import follow_result, start_trajectory
 from harness.recording.commands import CommandKind, CommandRecord
-from harness.robot.description import TrackingTolerances
+from harness.robot.description import Gripper, TrackingTolerances
 
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator
@@ -49,26 +49,26 @@ class ExternalCell:
         self.change_scene: Callable[[Sequence[dict[str, Any]]], None] = lambda _: None
         self._rows = max(1, round(TICK / servos.timestep))
         self.controllers: dict[str, Controller] = {}
-        if names.arm:
-            joints = description.groups[description.arm_group].joint_names
-            bounds = description.controller_tolerances or UNBOUNDED
-            arm = self._controller(joints, bounds, ("trajectory",))
-            self.controllers.update(dict.fromkeys(names.arm, arm))
-        if description.gripper is not None:
-            finger = (description.gripper.joint,)
-            grip = self._controller(finger, UNBOUNDED, ("trajectory", "gripper"))
-            self.controllers[names.gripper] = grip
+        for arm, own in names.by_arm.items():
+            robot = description.of_arm.get(arm, description)
+            if own.arm:
+                joints, bounds = robot.group_joints(robot.arm_group), robot.controller_tolerances
+                mover = self._controller(joints, bounds or UNBOUNDED)
+                self.controllers.update(dict.fromkeys(own.arm, mover))
+            if robot.gripper is not None:
+                finger = (robot.gripper.joint,)
+                self.controllers[own.gripper] = self._controller(finger, UNBOUNDED, robot.gripper)
         self._each = tuple(dict.fromkeys(self.controllers.values()))
         self.begin()
 
     def _controller(
-        self, names: Sequence[str], bounds: TrackingTolerances, kinds: tuple[CommandKind, ...]
+        self, names: Sequence[str], bounds: TrackingTolerances, gripper: Gripper | None = None
     ) -> Controller:
         description = self.description
         joints = [description.joint_by_name[name] for name in names]
         places = np.array([description.joint_index[name] for name in names])
         columns = np.searchsorted(self._servos.physics.actuated, places)
-        return Controller(joints, columns, places, bounds, kinds)
+        return Controller(joints, columns, places, bounds, gripper)
 
     @property
     def time(self) -> float:
@@ -117,9 +117,9 @@ class ExternalCell:
 
     def _begin(self, controller: Controller, command: CommandRecord) -> None:
         """Let a controller follow a goal; what it followed before ends."""
-        start, gripper = self._last[:, :, controller.columns], self.description.gripper
-        if command.kind == "gripper":
-            motion = GripperMotion(self._servos, command, float(start[0, -1, 0]))
+        start, gripper = self._last[:, :, controller.columns], controller.gripper
+        if gripper is not None and command.kind == "gripper":
+            motion = GripperMotion(self._servos, gripper, command, float(start[0, -1, 0]))
         else:
             motion = start_trajectory(controller.joints, controller.bounds, command, start)
         self._interrupt(controller, Code.INVALID_GOAL, PREEMPTED)
@@ -127,8 +127,8 @@ class ExternalCell:
         if command.kind == "trajectory":
             jump = motion.at(np.array([self.time]))[0, 0] - start[0, 0]
             self._steps.add(self.time, controller.columns, jump)
-        if gripper is not None and "gripper" in controller.kinds:
-            self._servos.limit_gripper(motion.effort or gripper.grip_effort)
+        if gripper is not None:
+            self._servos.limit_gripper(motion.effort or gripper.grip_effort, gripper.joint)
 
     def _interrupt(self, controller: Controller, code: Code, reason: str) -> None:
         """End what a controller follows before it is reached."""

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from harness.core.types import FloatArray, IntArray
 from harness.plugins.ros.control.goals import Code
 from harness.recording.commands import CommandKind
-from harness.robot.description import Joint, TrackingTolerances
+from harness.robot.description import Gripper, Joint, TrackingTolerances
 
 Rows = FloatArray  # positions, velocities and accelerations, shape (3, N, dof)
 
@@ -81,7 +81,7 @@ class Controller:
         columns: Where its joints are among the actuated ones.
         places: Where they are in the description.
         bounds: The tolerances of a trajectory that has none of its own.
-        kinds: The commands that it takes.
+        gripper: The gripper whose joint it moves; None of an arm's controller.
         motion: What it follows; None while it follows nothing.
     """
 
@@ -89,5 +89,10 @@ class Controller:
     columns: IntArray
     places: IntArray
     bounds: TrackingTolerances
-    kinds: tuple[CommandKind, ...]
+    gripper: Gripper | None = None
     motion: Motion | None = None
+
+    @property
+    def kinds(self) -> tuple[CommandKind, ...]:
+        """The commands that it takes."""
+        return ("trajectory",) if self.gripper is None else ("trajectory", "gripper")

@@ -12,6 +12,7 @@ from harness.plugins.ros.control.controller import Outcome, Rows, Window
 from harness.plugins.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.plugins.ros.interfaces import GRIPPER
 from harness.recording.commands import CommandRecord
+from harness.robot.description import Gripper
 from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.gripper_drive import (
     GOAL_TOLERANCE,
@@ -27,7 +28,13 @@ if TYPE_CHECKING:
 class GripperMotion:
     """Moves the gripper's joint as the step `gripper` does, independent of the arm."""
 
-    def __init__(self, servos: MujocoSimulator, command: CommandRecord, commanded: float) -> None:
+    def __init__(
+        self,
+        servos: MujocoSimulator,
+        gripper: Gripper,
+        command: CommandRecord,
+        commanded: float,
+    ) -> None:
         """Plan the motion to `position` under `max_effort`, 0 for the gripper's own.
 
         Args:
@@ -36,8 +43,7 @@ class GripperMotion:
         Raises:
             GoalRefused: A number is not finite, or beyond the joint's limits.
         """
-        description, gripper = servos.description, servos.description.gripper
-        assert gripper is not None
+        description = servos.description
         target, effort = (float(command.content[key]) for key in ("position", "max_effort"))
         if not np.isfinite([target, effort]).all() or effort < 0:
             raise GoalRefused(

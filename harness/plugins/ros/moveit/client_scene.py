@@ -28,7 +28,7 @@ from harness.plugins.ros.interfaces import header
 from harness.plugins.ros.moveit.client_meshes import client_mesh, cone_mesh
 from harness.plugins.ros.moveit.goals import BOX, SPHERE
 from harness.plugins.ros.moveit.scene_changes import CYLINDER, Change
-from harness.plugins.ros.moveit.values import state_message
+from harness.plugins.ros.moveit.values import link_of, state_message
 from harness.robot.mesh_file import read_triangles
 
 GEOMETRIES: Mapping[str, Callable[[Change], Geometry]] = {
@@ -117,11 +117,12 @@ class ClientScene:
                 self.cell.remove_from_scene(name)
 
     def _attach(self, change: Change) -> None:
-        cell, hand = self.cell, self.cell.description.gripper
-        link = change["link"] or cell.description.tcp_link
+        cell, robot = self.cell, self.cell.description
+        link = link_of(cell, change["link"])
+        hand = robot.of_arm.get(robot.arm_of_link.get(link, ""), robot).gripper
         touch = change["touch_links"] or (hand.links if hand else ())
-        if unknown := {link, *touch} - {*cell.description.link_names}:
-            raise StepFailed("INVALID_LINK_NAME", f"the robot has no link '{min(unknown)[:80]}'")
+        for each in touch:
+            link_of(cell, each)
         if cell.scene.attached().get(change["name"]) == link:
             return
         cell.attach(change["name"], link, touch)

@@ -64,7 +64,7 @@ def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
             " a position is needed, and one of an orientation is possible",
         )
     place = places[0]
-    link = link_of(cell, place.link_name)
+    link = link_of(cell, place.link_name, group)
     middle, size = _region(cell, place)
     reach = max(TIGHTEST, min(size) / 2)
     offset = np.array([getattr(place.target_point_offset, axis) for axis in "xyz"], dtype=float)
@@ -73,7 +73,7 @@ def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
             _refuse("UNRECOGNIZED_GOAL_TYPE", "an offset of the target point needs an orientation")
         return PositionGoal(link, middle.translation, position_tolerance=reach)
     turn = turns[0]
-    if link_of(cell, turn.link_name) != link:
+    if link_of(cell, turn.link_name, group) != link:
         _refuse("UNRECOGNIZED_GOAL_TYPE", "position and orientation are of two links")
     rotation = _rotation(cell, turn)
     tolerance = _tolerances(turn)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -11,13 +12,14 @@ from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.cell import CANCELED, PREEMPTED
 from harness.plugins.ros.control.controller import Outcome
+from harness.plugins.ros.control.goals import MOTION
 from harness.plugins.ros.interfaces import EXECUTE, MOVE, SEQUENCE
 from harness.plugins.ros.moveit.planning import Planned, plan_fields, sequence_response
 from harness.plugins.ros.moveit.requests import Requests
 from harness.plugins.ros.moveit.scene_changes import changes_of_scene
 from harness.plugins.ros.moveit.values import error_code
 from harness.plugins.ros.rtps.graph import Graph
-from harness.plugins.ros.wiring import trajectory_content
+from harness.plugins.ros.wiring import Content, trajectory_content
 
 FARTHEST_START = 0.01
 """How far a joint may be from the start of a trajectory that is executed [rad or m]: MoveIt's
@@ -49,6 +51,7 @@ class Motions:
         """Serve them on a graph."""
         self._requests, self._control = requests, requests.control
         self._goals: dict[str, _Goal] = {}
+        self._parts: dict[str, str] = {}  # what a controller follows -> the goal it is a part of
         clock = lambda: requests.control.time  # noqa: E731 - one function for both
         self._servers = [
             ActionServer(graph, f"/{name}", kind, clock, partial(self._take, place), self._cancel)
@@ -70,15 +73,19 @@ class Motions:
 
     def finish(self, outcome: Outcome) -> None:
         """Give the client of a trajectory its result."""
-        if outcome.goal not in self._goals:
+        goal = self._parts.pop(outcome.goal, "")
+        if goal not in self._goals:
             return
+        others = [part for part, whole in self._parts.items() if whole == goal]
         reason = str(outcome.result.error_string)
         if outcome.has_succeeded and reason != CANCELED:
-            self._finish(outcome.goal)
-        else:
-            is_ended = reason in (PREEMPTED, CANCELED)
-            code = "PREEMPTED" if is_ended else "CONTROL_FAILED"
-            self._finish(outcome.goal, StepFailed(code, reason))
+            if not others:
+                self._finish(goal)
+            return
+        code = "PREEMPTED" if reason in (PREEMPTED, CANCELED) else "CONTROL_FAILED"
+        self._finish(goal, StepFailed(code, reason))
+        for part in others:  # between two ticks, so that a replay does the same
+            self._requests.put(partial(self._stop, part))
 
     def _take(self, place: int, goal: str, content: Any) -> bool:
         if self._requests.scene is None:
@@ -94,7 +101,12 @@ class Motions:
         if known is not None and not known.is_followed:
             self._finish(goal, StepFailed("PREEMPTED", f"{CANCELED} before it was begun"))
             return
-        self._requests.note(self._control.receive("cancel", goal=goal))
+        for part in [part for part, whole in self._parts.items() if whole == goal]:
+            self._stop(part)
+
+    def _stop(self, part: str) -> None:
+        if part in self._parts:
+            self._requests.note(self._control.receive("cancel", goal=part))
 
     def _take_event(self, event: Any) -> None:
         """Stop what is executed, and what waits to be."""
@@ -144,24 +156,35 @@ class Motions:
         self._follow(goal, self._goals[goal].content.trajectory)
 
     def _follow(self, goal: str, trajectory: Any) -> None:
-        """Give a trajectory to the controller that has its joints."""
+        """Give a trajectory to the controller that has its joints, or to several that have."""
         joints = trajectory.joint_trajectory
-        name = self._controller_of([str(each) for each in joints.joint_names])
-        if reason := self._start_error(joints) if name else "no controller has these joints":
+        names = self._controllers_of({str(each) for each in joints.joint_names})
+        if reason := self._start_error(joints) if names else "no controllers have these joints":
             failure = StepFailed("CONTROL_FAILED", reason)
             self._requests.report(failure)
             self._finish(goal, failure)
             return
         self._goals[goal].is_followed = True
         content = trajectory_content(joints)
-        self._requests.note(self._control.receive("trajectory", name, goal, **content))
+        parts = {name: f"{goal}:{place}" if place else goal for place, name in enumerate(names)}
+        self._parts |= dict.fromkeys(parts.values(), goal)
+        for name, part in parts.items():
+            if goal not in self._goals:  # another part was refused
+                del self._parts[part]
+                continue
+            own = [joint.name for joint in self._control.controllers[name].joints]
+            share = content if len(names) == 1 else _share(content, own)
+            self._requests.note(self._control.receive("trajectory", name, part, **share))
 
-    def _controller_of(self, joints: list[str]) -> str:
+    def _controllers_of(self, joints: set[str]) -> list[str]:
+        """Controllers that have some joints, and no others; none where a joint is left over."""
+        found: dict[int, str] = {}
         for name, controller in self._control.controllers.items():
-            fits = {joint.name for joint in controller.joints} == {*joints}
-            if fits and "trajectory" in controller.kinds:
-                return name
-        return ""
+            if joints.issuperset(joint.name for joint in controller.joints):
+                found.setdefault(id(controller), name)
+        chosen = [self._control.controllers[name] for name in found.values()]
+        covered = {joint.name for each in chosen for joint in each.joints}
+        return [*found.values()] if covered == joints else []
 
     def _start_error(self, trajectory: Any) -> str:
         """Why a trajectory cannot be begun from where the arm is; empty where it can."""
@@ -180,3 +203,14 @@ class Motions:
                     " present state"
                 )
         return ""
+
+
+def _share(content: Content, joints: Sequence[str]) -> Content:
+    """What a trajectory holds for some of its joints."""
+    columns = [content["joint_names"].index(name) for name in joints]
+    points = [
+        {"time": point["time"]}
+        | {key: [point[key][c] for c in columns] if point[key] else [] for key in MOTION}
+        for point in content["points"]
+    ]
+    return {**content, "joint_names": list(joints), "points": points}

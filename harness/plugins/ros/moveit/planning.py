@@ -212,7 +212,7 @@ def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float
     """
     cell.sync_scene()
     group = group_of(cell, request.group_name)
-    link = link_of(cell, request.link_name)
+    link = link_of(cell, request.link_name, group)
     if path_constraints_of(cell, request.path_constraints):
         raise StepFailed("FAILURE", "path constraints of a Cartesian path are not kept")
     if not request.waypoints or not 1e-4 <= request.max_step < np.inf:
@@ -247,7 +247,7 @@ def solve_pose(cell: Cell, request: Any) -> FloatArray:
     group, description = group_of(cell, request.group_name), cell.description
     if request.ik_link_names or request.pose_stamped_vector:
         raise StepFailed("FAILURE", "one link and one pose are solved")
-    stamped, link = request.pose_stamped, link_of(cell, request.ik_link_name)
+    stamped, link = request.pose_stamped, link_of(cell, request.ik_link_name, group)
     pose = frame_of(cell, str(stamped.header.frame_id)) @ pose_of(stamped.pose)
     seed, options = positions_of(cell, request.robot_state), cell.current.options
     columns = [description.joint_index[name] for name in description.groups[group].joint_names]
@@ -263,12 +263,13 @@ def solve_pose(cell: Cell, request: Any) -> FloatArray:
 
 
 def group_of(cell: Cell, name: str) -> str:
-    """A planning group by its name; an empty one is the arm's.
+    """A planning group by its name; an empty one is the arm's where there is one arm.
 
     Raises:
         StepFailed: INVALID_GROUP_NAME.
     """
-    group, groups = str(name) or cell.description.default_group, cell.description.groups
+    default = "" if cell.description.needs_arm else cell.description.default_group
+    group, groups = str(name) or default, cell.description.groups
     if group not in groups:
         reason = f"there is no group '{group[:80]}'; groups: {', '.join(groups)}"
         raise StepFailed("INVALID_GROUP_NAME", reason)

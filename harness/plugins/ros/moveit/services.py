@@ -69,7 +69,8 @@ def _inverse(cell: Cell, request: Any) -> Any:
 
 def _forward(cell: Cell, request: Any) -> Any:
     kind = f"{SRV}GetPositionFK_Response"
-    names = [str(name) for name in request.fk_link_names] or [cell.description.tcp_link]
+    tips = [arm.tcp_link for arm in cell.description.arms] or [cell.description.tcp_link]
+    names = [str(name) for name in request.fk_link_names] or tips
     frame_id = str(request.header.frame_id) or "world"
     try:
         back = frame_of(cell, frame_id).inverse()

@@ -16,6 +16,7 @@ from harness.core.types import FloatArray
 from harness.language.base import LARGEST_NUMBER
 from harness.plugins.ros.bag.messages import message, trajectory_message
 from harness.plugins.ros.interfaces import header
+from harness.robot.description import RobotDescription
 
 SUCCESS = 1
 SMALLEST_NORM = 1e-9  # of a quaternion; a smaller one is that of an empty message
@@ -87,13 +88,25 @@ def frame_of(cell: Cell, frame_id: str) -> SE3:
     return cell.frame(frame_id.lstrip("/") or "world")
 
 
-def link_of(cell: Cell, name: str) -> str:
-    """A link by its name; an empty one is the TCP's.
+def arm_of(cell: Cell, group: str) -> RobotDescription:
+    """The robot, with the arm selected that has a group's joints; unchanged where none has."""
+    robot = cell.description
+    return robot.of_arm.get(robot.arm_of_group(group), robot)
+
+
+def link_of(cell: Cell, name: str, group: str = "") -> str:
+    """A link by its name; an empty one is the TCP's of the arm that has a group's joints.
 
     Raises:
         StepFailed: INVALID_LINK_NAME.
     """
-    link = str(name) or cell.description.tcp_link
+    robot = arm_of(cell, group)
+    if not name and robot.needs_arm:
+        reason = (
+            f"a request names no link, and the robot has several arms: {', '.join(robot.of_arm)}"
+        )
+        raise StepFailed("INVALID_LINK_NAME", reason)
+    link = str(name) or robot.tcp_link
     if link not in cell.description.link_names:
         raise StepFailed("INVALID_LINK_NAME", f"the robot has no link '{link[:80]}'")
     return link
