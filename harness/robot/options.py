@@ -15,7 +15,7 @@ from harness.robot.find_file import find_file
 from harness.robot.moveit_files import position_only_groups, with_joint_limits
 from harness.robot.srdf.srdf import parse_srdf, write_srdf
 from harness.robot.urdf.write import write_urdf
-from harness.robot.wrench_sensors import refuse_suction, with_wrench_sensors
+from harness.robot.wrench_sensors import with_wrench_sensors
 
 
 def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescription:
@@ -55,7 +55,6 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
         description = replace(description, joint_controller=spec.joint_controller)
     if spec.wrench_sensors:
         description = with_wrench_sensors(description, spec.wrench_sensors)
-    refuse_suction(description)
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description

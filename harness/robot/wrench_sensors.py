@@ -27,22 +27,6 @@ def with_wrench_sensors(
     return replace(description, wrench_sensors={**description.wrench_sensors, **sensors})
 
 
-def refuse_suction(description: RobotDescription) -> None:
-    """Refuse sensors that carry suction cups: their readings would leave out the vacuum's force.
-
-    Raises:
-        RobotOptionError: There is such a sensor.
-    """
-    cups = {cup.link for gripper in description.grippers for cup in gripper.cups}
-    for name, sensor in description.wrench_sensors.items():
-        if cups & _carried(sensor.link, description.joints):
-            raise RobotOptionError(
-                f"wrench_sensors.{name}",
-                "it carries suction cups, and the force of a vacuum is not among what a sensor"
-                " reads; use fingers, or leave the sensor out",
-            )
-
-
 def _carried(link: str, joints: Collection[Joint]) -> set[str]:
     """A link, and all links that it carries; parents stand before children in `joints`."""
     carried = {link}

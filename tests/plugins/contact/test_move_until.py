@@ -85,3 +85,53 @@ def test_bad_input_is_a_located_error(tmp_path, words, said):
     assert result.case.outcome == "invalid"
     assert said in str(result)
     assert "touch.scenario.yaml:12:" in str(result)
+
+
+VALVE = """
+scenario: valve
+robot: {mjcf: gantry.xml, tcp_link: tip, wrench_sensors: {wrist: {link: quill, xyz: [0, 0, %s]}}}
+world: empty
+objects:
+  - name: valve
+    static: true
+    cylinder: {radius: 2 cm, length: 10 cm}
+    pose: {xyz: [0.2, -0.1, 0.05]}
+    joints:
+      - name: lever
+        hinge: {axis: [0, 0, 1], range: [-90 deg, 90 deg], friction: %s}
+        shapes:
+          - {sphere: {radius: 1 cm}, pose: {xyz: [0, 0.1, 0.13]}, friction: 0.001}
+steps:
+  - move_to: {joints: {x: 0.17, y: 0, z: 0}}
+  - allow_collisions:
+      pairs: [[quill, valve/lever]]
+      during:
+        - move_until: {direction: {xyz: [1, 0, 0]}, torque: %s, max_distance: 13 mm, speed: 3 mm/s}
+          id: turn
+"""
+LEVER, KNOB, QUILL = 0.1, 0.18, 0.3  # of the valve; heights of its knob and of the sensor's link
+
+
+@pytest.mark.parametrize(("friction", "offset"), [(0.5, 0.0), (0.2, 0.05)])
+@pytest.mark.parametrize("share", [0.99, 1.02])
+def test_a_valve_turns_with_the_torque_that_its_friction_needs(tmp_path, friction, offset, share):
+    """Its friction resists with a force of torque / lever, which has a lever about the sensor."""
+    expected = friction / LEVER * (QUILL + offset - KNOB)
+    (tmp_path / "gantry.xml").write_text(GANTRY, encoding="utf-8")
+    file = tmp_path / "valve.scenario.yaml"
+    file.write_text(VALVE % (offset, friction, share * expected), encoding="utf-8")
+    result = harness.run(file)
+    signals = result.run.signals
+    turned = signals.object_poses["valve/lever"][-1]
+    angle = 2 * np.arctan2(-turned[6], turned[3])
+    if share < 1:
+        assert result, str(result)
+        found = result.step("turn").result.find(GuardedMove)
+        assert share * expected <= found.noticed_force < 1.01 * expected
+        assert abs(angle) < 0.02, "it stops before the valve turns"
+        return
+    assert f"no torque reached {share * expected:g} N m" in str(result)
+    assert 0.06 < angle < 0.1, "the lever is shorter by less than half a percent at the end"
+    end = result.step("turn").end_index
+    moving = signals.wrenches["wrist"][end - 1200 : end - 400, 3:]
+    assert np.linalg.norm(moving, axis=1).mean() == pytest.approx(expected, rel=0.01)

@@ -12,6 +12,7 @@ from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from harness.simulation.mujoco_simulator import MujocoSimulator
 from harness.simulation.wrench_sensors import WrenchSensors
+from tests.plugins.suction.test_seals import RIM, cup
 from tests.simulation.physics_scenes import a_box
 from tests.simulation.test_pushing import GANTRY
 
@@ -201,13 +202,30 @@ def test_bad_input_is_a_located_error(tmp_path, robot, rest, said):
         assert words in str(result)
 
 
-def test_a_sensor_does_not_carry_suction_cups_whose_vacuum_it_would_not_read(tmp_path):
-    file = tmp_path / "still.scenario.yaml"
-    text = STILL % (", wrench_sensors: {wrist: tool0}", "")
-    file.write_text(text.replace("rh_p12_rn_a", "suction_cup"), encoding="utf-8")
-    result = harness.run(file)
-    assert result.case.outcome == "invalid"
-    assert "it carries suction cups" in str(result)
+@pytest.mark.parametrize(
+    ("mass", "lever", "tilt"), [(4.0, 0.0, 0.0), (1.5, 0.012, 0.0), (2.0, 0.004, 0.3)]
+)
+def test_a_sensor_that_carries_a_cup_reads_what_the_vacuum_holds(mass, lever, tilt):
+    """The vacuum's force on the cup and that of the rim differ by the load's weight."""
+    robot = cup(rpy=(np.pi + tilt, 0, 0))
+    robot = replace(robot, wrench_sensors={"wrist": WrenchSensor("wrist", "suction_pad")})
+    turn = SE3.from_xyz_rpy((0, 0, 0), (tilt, 0, 0))
+    rim = SE3.from_xyz_rpy((0, 0, RIM + 0.07), (np.pi + tilt, 0, 0)) @ SE3.from_xyz_rpy(
+        (0, 0, 0.07)
+    )
+    place = SE3(np.eye(3), rim.translation) @ turn @ SE3.from_xyz_rpy((lever, 0, -0.0205))
+    plate = replace(a_box("plate", (0.1, 0.1, 0.04), (0, 0, 0), mass=mass), pose=place)
+    simulator = MujocoSimulator(robot, (plate,), ("plate",), gravity=(0, 0, 0))
+    simulator.command_gripper(0.005, 5.0, timeout=2)
+    free = simulator.wrench("wrist", 0.05)
+    assert free == pytest.approx(np.zeros(6), abs=0.02), "75 N of vacuum are in balance"
+    simulator.physics.model.opt.gravity[:] = G
+    simulator.hold(0.5)
+    down = (SE3.from_xyz_rpy((0, 0, 0), (np.pi + tilt, 0, 0)).inverse().rotation @ G) * mass
+    pad = robot.link_poses(robot.start_positions())["suction_pad"]
+    com = pad.inverse().apply(simulator.object_pose("plate").translation)
+    expected = np.concatenate([down, np.cross(com, down)])
+    assert simulator.wrench("wrist", 0.05) == pytest.approx(expected, rel=0.01, abs=0.01)
 
 
 JUDGED = """

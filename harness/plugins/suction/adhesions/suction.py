@@ -85,6 +85,7 @@ class Suction(Adhesion):
 
     def apply(self, row: int, *, anew: bool = False) -> None:
         self._data.qfrc_applied[:] = 0.0
+        self._data.xfrc_applied[self._bodies] = 0.0
         before = takewhile(lambda entry: entry.row == row - 1, reversed(self._log))
         known = (
             {} if anew or row % SEAL_EVERY == 0 else {each.seal.cup: each.seal for each in before}
@@ -147,12 +148,16 @@ class Suction(Adhesion):
         return _Seal(number, body, quarters, is_sealed)
 
     def _press(self, seal: _Seal, size: float) -> FloatArray:
-        """Press a body against a cup; returns the force on the body, shape (3,) [N]."""
+        """Press a body against a cup; returns the force on the body, shape (3,) [N].
+
+        The cup is pressed by `xfrc_applied`, which sensors of force read; nothing else pushes it.
+        """
         model, data, own = self._physics.model, self._data, self._bodies[seal.cup]
         force = -size * data.xmat[own].reshape(3, 3)[:, 2]
         point, still, target = data.xpos[own].copy(), np.zeros(3), data.qfrc_applied
         mujoco.mj_applyFT(model, data, force, still, point, seal.body, target)
-        mujoco.mj_applyFT(model, data, -force, still, point, own, target)
+        data.xfrc_applied[own, :3] -= force
+        data.xfrc_applied[own, 3:] -= np.cross(point - data.xipos[own], force)
         return force
 
 
