@@ -52,6 +52,7 @@ BUILT_IN = {
     "robot": "",
     "robot_format": "",
     "world_format": "",
+    "decomposer": "",
     "reporter": "harness.reporting.reporters",
     "observer": "",
     "suite_section": "",

@@ -30,7 +30,7 @@ from harness.core.solids import solid_of
 from harness.core.types import FloatArray, IntArray
 from harness.language.base import LARGEST_NUMBER, SMALLEST_SIZE
 from harness.robot.collada import HEADER, metres_of_unit, refuse_unreadable
-from harness.robot.decomposition.convex_parts import Decomposition, stored_decomposition
+from harness.robot.convex_parts import Decomposition, stored_decomposition
 
 SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".glb")
 KINDS = "STL, OBJ, DAE, PLY or GLB"

@@ -11,6 +11,7 @@ import pytest
 from harness.core.registry import registry
 
 ROOT = Path(__file__).parents[2]
+OBJ = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
 ABSENT = ("studio", "bridge", "grade", "ik-test", "search", "import", "results")
 
 
@@ -98,6 +99,15 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     done = core("check", file)
     assert done.returncode == 2
     assert "formula.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
+    (tmp_path / "box.obj").write_text(OBJ)
+    file.write_text(
+        "scenario: t\nrobot: ur3e\nsteps: [{wait: 1}]\n"
+        "objects: [{name: box, mesh: {file: box.obj}, mass: 1, pose: {xyz: [1, 0, 1]}}]\n"
+    )
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:4:11" in done.stdout + done.stderr
+    assert "convex parts cannot be computed: no plug-in computes them" in done.stdout + done.stderr
     part = core("run", "lessons/04_gripper_alone", "--shard", "1/2", "--no-report")
     assert part.returncode == 2
     assert "--shard" in part.stderr

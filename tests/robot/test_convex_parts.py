@@ -17,10 +17,10 @@ from harness.core.geometry import Mesh, Shape, undivided
 from harness.core.user_cache import cache_folder
 from harness.language.scenario import RobotSpec
 from harness.plugins.authoring.robot_check import check_robot
+from harness.plugins.meshes.decomposition import MOST_PARTS, decompose
+from harness.plugins.meshes.solid_grid import surface_points
 from harness.robot.collision_shapes import collision_shapes
-from harness.robot.decomposition.convex_parts import stored_decomposition
-from harness.robot.decomposition.decomposition import MOST_PARTS, decompose
-from harness.robot.decomposition.solid_grid import surface_points
+from harness.robot.convex_parts import stored_decomposition
 from harness.robot.load import load_robot
 from harness.robot.mesh_file import (
     decomposition_of,

@@ -14,7 +14,7 @@ from harness.cli.main import main
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.memory import limited_memory
-from harness.robot.decomposition.solid_grid import MOST_POINTS, solid_grid, surface_points
+from harness.plugins.meshes.solid_grid import MOST_POINTS, solid_grid, surface_points
 from harness.robot.mesh_file import convex_hull, read_triangles
 from tests.robot.arm_files import SHAPE, URDF, write_arm
 

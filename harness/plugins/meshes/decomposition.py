@@ -19,8 +19,8 @@ from scipy.spatial import ConvexHull, QhullError
 from trimesh.intersections import slice_faces_plane
 
 from harness.core.types import BoolArray, FloatArray
-from harness.robot.decomposition.convex_parts import Decomposition
-from harness.robot.decomposition.solid_grid import SolidGrid, solid_grid
+from harness.plugins.meshes.solid_grid import SolidGrid, solid_grid
+from harness.robot.convex_parts import Decomposition
 
 HULL_TOLERANCE = 0.01  # The excess up to which the convex hull of the whole mesh is good enough [m]
 TOLERANCE = 0.005  # The excess up to which a part is good enough, where the hull is not [m]

@@ -5,19 +5,20 @@ from __future__ import annotations
 import hashlib
 import io
 import platform
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from typing import ClassVar
 
 import numpy as np
 
 from harness.core.errors import MissingPackage
 from harness.core.extras import missing_extra
+from harness.core.registry import Plugin, absent_plugins, registry
 from harness.core.types import FloatArray
 from harness.core.user_cache import cached, store
-
-METHOD = 5  # Version of the decomposition; parts of another version are computed again
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,31 @@ class Decomposition:
     hull_excess: float
 
 
+class Decomposer(Plugin, ABC):
+    """How a mesh becomes convex parts; the first one that is registered is used.
+
+    Attributes:
+        version: Changes with the parts that it computes; stored parts of another version are not
+            used.
+    """
+
+    plugin_kind: ClassVar[str] = "decomposer"
+    version: ClassVar[int] = 1
+
+    @abstractmethod
+    def decompose(self, triangles: FloatArray, *, is_hull: bool) -> Decomposition:
+        """Compute the parts of a mesh.
+
+        Args:
+            triangles: Corners [m], shape (M, 3, 3); they need not be connected or closed.
+            is_hull: Whether the hull is the only part in any case.
+
+        Raises:
+            ModuleNotFoundError: A package is not installed.
+            ValueError: The mesh has no convex hull.
+        """
+
+
 def stored_decomposition(
     content: bytes, factors: FloatArray, triangles: Callable[[], FloatArray], *, is_hull: bool
 ) -> Decomposition:
@@ -50,22 +76,28 @@ def stored_decomposition(
         factors: The factors from its coordinates to metres, shape (3,).
         triangles: Reads the corners [m], shape (M, 3, 3).
         is_hull: Whether the hull is the only part in any case.
+
+    Raises:
+        MissingPackage: A package, or every decomposer, is not installed.
     """
+    decomposer = next(iter(registry(Decomposer.plugin_kind).values()), None)
+    if decomposer is None:
+        why = "; ".join(["no plug-in computes them", *absent_plugins()])
+        raise MissingPackage(f"convex parts cannot be computed: {why}")
     try:
         versions = _versions()
     except PackageNotFoundError as error:
         raise MissingPackage(f"convex parts cannot be computed: {missing_extra(error)}") from error
     key = hashlib.sha256(content)
-    key.update(repr((factors.tolist(), METHOD, *versions)).encode())
+    key.update(repr((factors.tolist(), decomposer.version, *versions)).encode())
     name = f"convex_{'hulls' if is_hull else 'parts'}/{key.hexdigest()}.npz"
     stored = cached(name)
     if stored is not None:
         return _read(stored)
     try:
-        from harness.robot.decomposition.decomposition import decompose  # here: imports SciPy
+        found = decomposer().decompose(triangles(), is_hull=is_hull)
     except ModuleNotFoundError as error:
         raise MissingPackage(f"convex parts cannot be computed: {missing_extra(error)}") from error
-    found = decompose(triangles(), is_hull=is_hull)
     store(name, _content(found))
     return found
 

@@ -1,0 +1,1 @@
+"""Convex parts of meshes, with which planner and physics collide."""

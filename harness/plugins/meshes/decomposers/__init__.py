@@ -1,0 +1,1 @@
+"""How meshes become convex parts."""
