@@ -87,7 +87,7 @@ def mistake(exercise: Exercise, file: Path) -> str:
 def regions(exercise: Exercise) -> Iterator[tuple[str, str]]:
     """The name and the text of each part of a page that is generated."""
     model = exercise.assignment.model
-    yield "facts", f"{model.description} About {model.minutes} minutes."
+    yield "facts", f"{model.description} Estimated at {model.minutes} minutes."
     yield "start", shown(checked(exercise, exercise.start))
     yield "mistakes", "\n".join(mistake(exercise, file) for file in mistakes(exercise))
 
@@ -106,7 +106,7 @@ def with_regions(exercise: Exercise) -> str:
 
 def index() -> str:
     """The first page of the course with its table of exercises."""
-    rows = ["| exercise | minutes | what it teaches |", "| --- | --- | --- |"]
+    rows = ["| exercise | minutes, estimated | what it teaches |", "| --- | --- | --- |"]
     for number, exercise in exercises().items():
         model = exercise.assignment.model
         link = f"[{number}. {model.assignment}]({page_of(exercise).name})"

@@ -41,18 +41,24 @@ def blocks(page):
 
 
 def harness_commands(page):
-    """The words of every `harness` command of a page, without pipes and redirections."""
+    """The words of every `harness` command of a page."""
+    for words in every_command(page):
+        names = [number for number, word in enumerate(words) if word.endswith("harness")]
+        if names and "pip" not in words:
+            yield words[names[0] + 1 :]
+
+
+def every_command(page):
+    """The words of every command of a page, without pipes and redirections."""
     for block in blocks(page):
         shows = block["text"].startswith("$ ")
-        if block["language"] != "sh" and not shows:
+        if block["language"] not in ("sh", "console") and not shows:
             continue
         for line in shown(block["text"]) if shows else commands(block["text"]):
             for part in re.split(r"\s(?:&&|\|)\s|;\s", line):
                 known = re.sub(r"\s>.*", "", re.sub(r"\$\w+", "2", part))  # variables of a shell
-                words = shlex.split(known, comments=True)
-                names = [number for number, word in enumerate(words) if word.endswith("harness")]
-                if names and "pip" not in words:
-                    yield words[names[0] + 1 :]
+                if words := shlex.split(known, comments=True):
+                    yield words
 
 
 def page_id(page):

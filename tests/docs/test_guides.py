@@ -7,6 +7,7 @@ the course, the README, [another arm](../packages) and the words of plug-ins.
 import os
 import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -17,7 +18,14 @@ from docs.generate import GENERATED
 from docs.generators.examples import comparable
 from harness.recording.read_run import read_run
 from tests.commands import harness
-from tests.docs.test_examples import EVERY_PAGE, PAGES, blocks, harness_commands, page_id
+from tests.docs.test_examples import (
+    EVERY_PAGE,
+    PAGES,
+    blocks,
+    every_command,
+    harness_commands,
+    page_id,
+)
 from tests.plugins.grading.recordings import SCENARIO, students_recording
 
 PICK = """\
@@ -32,6 +40,16 @@ expect: [{duration: {at_most: 0.15 s}, name: quick}]
 """
 SAMPLED = PICK + "randomize: {friction: {uniform: [0.2, 1.2]}, wait: {uniform: [0.05 s, 0.2 s]}}\n"
 WAITS = "scenario: Wait\nrobot: {model: open_manipulator_x}\nsteps: [{wait: 0.1 s}]\n"
+NEAR = """\
+scenario: A wall is near
+robot: {model: open_manipulator_x}
+params: {wall: 124.3 mm}
+objects:
+  - {name: wall, static: true, box: {size: [1, 0.02, 1]}, pose: {xyz: [0, "${wall}", 0.5]}}
+steps: [{wait: 0.1 s}]
+expect:
+  - clearance: {between: [robot, wall], at_least: 10 mm}
+"""
 EXPECT = "expect: [{always: within_limits}]\n"
 ENVIRONMENT = {
     "CI_NODE_INDEX": "2",
@@ -60,6 +78,9 @@ CANNOT_RUN = {
 }
 """Words of commands that are not carried out, and why."""
 
+BY_THE_SHELL = ("mkdir", "cp", "pytest")
+"""Other programs of guides that are started too, and `python -m pytest` in the reader's folder."""
+
 IN_PLACE = {"1000": "20", "100": "40", "student_bag": "student_bag.mcap"}
 """Numbers of samples and runs, which a test reduces, and a bag of one file."""
 
@@ -73,6 +94,8 @@ def files_of(page, folder, recorded_run):
     (folder / "pick.scenario.yaml").write_text(SAMPLED)
     (folder / "typo.scenario.yaml").write_text(WAITS.replace("wait:", "weit:"))
     shutil.copy(ROOT / "tests/plugins/ros/lift_the_box.py", folder / "student.py")
+    if page.name == "pipelines.md":
+        (folder / "scenarios/near.scenario.yaml").write_text(NEAR)
     if page.name == "grading.md":
         recording = students_recording(read_run(recorded_run(SCENARIO) / "run").run)
         recording.write(folder / "student_bag.mcap")
@@ -107,7 +130,11 @@ def outputs(page):
 def test_the_commands_of_a_guide_run(page, tmp_path, recorded_run):
     files_of(page, tmp_path, recorded_run)
     shown = dict(outputs(page))
-    for words in harness_commands(page):
+    for words in every_command(page):
+        if words[0] != "harness":
+            carried_out_by_the_shell(words, tmp_path)
+            continue
+        words = words[1:]
         if any(set(each) <= set(words) for each in CANNOT_RUN):
             continue
         parts = shown.get(tuple(words), "").split("...\n")
@@ -117,7 +144,19 @@ def test_the_commands_of_a_guide_run(page, tmp_path, recorded_run):
         assert done.returncode in expected, f"{shlex.join(words)}\n{done.stdout}\n{done.stderr}"
         assert "Traceback" not in done.stdout + done.stderr, words
         for part in parts:
-            assert comparable(part) in comparable(done.stdout), words
+            assert comparable(part) in comparable(f"{done.stdout}{done.stderr}"), words
+
+
+def carried_out_by_the_shell(words, folder):
+    """Run a command of another program; not one of the clone, or of a program of others."""
+    is_pytest = words[1:3] == ["-m", "pytest"] and "tests/" not in " ".join(words)
+    if not is_pytest and words[0] not in BY_THE_SHELL:
+        return
+    command, environment = " ".join(words), {**os.environ, **ENVIRONMENT}
+    done = subprocess.run(
+        ["bash", "-c", command], cwd=folder, env=environment, capture_output=True, check=False
+    )
+    assert done.returncode in ((0, 1) if is_pytest else (0,)), (command, done.stdout, done.stderr)
 
 
 def test_every_reason_not_to_run_a_command_is_still_needed():

@@ -150,7 +150,7 @@ class Assignment(SpecModel):
     )
     description: str = Field(default="", description="A description for students.")
     minutes: Annotated[Count, Field(ge=1)] | None = Field(
-        default=None, description="The time that a student is expected to need [min]."
+        default=None, description="The time that the author expects a student to need [min]."
     )
     scenario: str | None = Field(
         default=None,

@@ -69,7 +69,7 @@ def _list(arguments: argparse.Namespace) -> int:
         model = exercise.assignment.model
         minutes = f"{model.minutes:3} min" if model.minutes else ""
         say(f"{number:3}  {minutes}  {model.assignment}", f"{'':14}{model.description}")
-    say("", "begin with one: harness course start 1")
+    say("", "the minutes are estimates; begin with one: harness course start 1")
     return 0
 
 
