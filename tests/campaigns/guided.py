@@ -44,6 +44,7 @@ def search(begin: Callable[[], Execution], folder: Path, seed: int, seconds: flo
         size = max(4096, 2 * max(map(len, execution.corpus)))
         options = [f"-max_total_time={max(1, round(seconds))}", f"-seed={seed % 2**31 or 1}"]
         options += [f"-max_len={size}", "-rss_limit_mb=0", "-timeout=86400", "-reload=0"]
+        options.append(f"-artifact_prefix={folder}/")
         atheris.Setup([sys.argv[0], *options, str(found)], execution.execute, custom_mutator=mutate)
         atheris.Fuzz()
     raise SystemExit

@@ -127,6 +127,8 @@ class ExternalCell:
         if command.kind == "trajectory":
             jump = motion.at(np.array([self.time]))[0, 0] - start[0, 0]
             self._steps.add(self.time, controller.columns, jump)
+            self._last = self._last.copy()
+            self._last[0, -1, controller.columns] += jump  # where a command of this tick starts
         if gripper is not None:
             self._servos.limit_gripper(motion.effort or gripper.grip_effort, gripper.joint)
 
