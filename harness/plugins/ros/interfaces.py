@@ -94,6 +94,22 @@ LATER_THAN_HUMBLE = {
 }  # fmt: skip
 """The fields that messages of ROS 2 Humble do not have yet."""
 
+INTRODUCTIONS = {"rmw_dds_common": 16, "rmw_dds_common_of_humble": 24}
+"""Packages of the messages that introduce nodes, and the bytes of an identifier in each."""
+
+
+def _introductions_of_humble() -> Iterator[tuple[str, str]]:
+    package = "rmw_dds_common_of_humble/msg"
+    yield f"{package}/Gid", f"uint8[{INTRODUCTIONS['rmw_dds_common_of_humble']}] data"
+    names, gids = "string node_namespace\nstring node_name", f"{package}/Gid[]"
+    endpoints = f"{gids} reader_gid_seq\n{gids} writer_gid_seq"
+    yield f"{package}/NodeEntitiesInfo", f"{names}\n{endpoints}"
+    nodes = f"{package}/NodeEntitiesInfo[] node_entities_info_seq"
+    yield f"{package}/ParticipantEntitiesInfo", f"{package}/Gid gid\n{nodes}"
+
+
+_register(_introductions_of_humble())
+
 
 @cache
 def _humble() -> Typestore:

@@ -3,7 +3,11 @@
 import time
 from contextlib import closing
 
+import pytest
+
 from harness.plugins.ros.bag.messages import message
+from harness.plugins.ros.domain import free_domain
+from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.interfaces import (
     LATER_THAN_HUMBLE,
     decoded,
@@ -12,10 +16,11 @@ from harness.plugins.ros.interfaces import (
 )
 from harness.plugins.ros.moveit.values import NUMBERS
 from harness.plugins.ros.rtps import wire
-from harness.plugins.ros.rtps.graph import FAST_DDS, SERVICE_QOS, dds_type
+from harness.plugins.ros.rtps.graph import DISCOVERY, FAST_DDS, INFO, SERVICE_QOS, Graph, dds_type
 from harness.plugins.ros.rtps.participant import Participant
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import GROUP, UR, moveit, pose, stamped
+from tests.waiting import wait_for
 
 IK, PATH = "moveit_msgs/srv/GetPositionIK", "moveit_msgs/srv/GetCartesianPath"
 
@@ -89,3 +94,35 @@ def test_a_client_of_humble_is_answered_in_its_own_messages(tmp_path, monkeypatc
             found, _ = client.call(node, "compute_cartesian_path", PATH, path)
             assert found.error_code.val == 1
             assert found.solution.joint_trajectory is not None
+
+
+@pytest.mark.parametrize("is_humble", [True, False])
+def test_nodes_are_introduced_by_identifiers_of_the_length_that_a_distribution_reads(
+    is_humble, monkeypatch
+):
+    """With 16 bytes for 24, Humble reads lengths of lists from identifiers."""
+    introductions, size = [], 24 if is_humble else 16
+    kind = f"rmw_dds_common{'_of_humble' * is_humble}/msg/ParticipantEntitiesInfo"
+    with free_domain() as domain, closing(Graph(domain, node="bridge")) as graph:
+        graph.advertise("/numbers", "std_msgs/msg/String")
+        with monkeypatch.context() as patch:
+            if is_humble:
+                patch.setattr(wire, "VENDOR", FAST_DDS)
+            other = Participant(domain, name="other")
+        with closing(other):
+            qos = Qos(is_latched=True, depth=1)
+            other.reader(DISCOVERY, dds_type(INFO), qos, introductions.append)
+
+            def is_introduced():
+                graph.spin(time.monotonic() + 0.002)
+                other.spin(time.monotonic() + 0.002)
+                return introductions
+
+            wait_for(is_introduced)
+    assert len({each.writer for each in introductions}) == 1
+    read = decoded(introductions[-1].payload, kind)
+    [node] = read.node_entities_info_seq
+    assert node.node_name == "bridge"
+    assert bytes(read.gid.data) == graph.participant.guid.ljust(size, b"\0")
+    assert len(node.writer_gid_seq) == 1
+    assert encoded(read, kind) == introductions[-1].payload

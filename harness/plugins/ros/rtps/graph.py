@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from harness.plugins.ros.endpoints import (
     Reply,
     Use,
 )
-from harness.plugins.ros.interfaces import decoded, encoded, prepare
+from harness.plugins.ros.interfaces import INTRODUCTIONS, decoded, encoded, prepare
 from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.participant import Participant
@@ -31,7 +31,7 @@ from harness.plugins.ros.rtps.writer import Writer
 Convert = Callable[[Any], Any]
 SERVICE_QOS = Qos(depth=100)
 DISCOVERY = "ros_discovery_info"
-INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"  # the type, whatever its identifiers
 Take = Callable[[Any, bytes, bool], object]
 """Takes a message, the identity of its request, and whether it is of ROS 2 Humble."""
 
@@ -40,7 +40,6 @@ CYCLONE = b"\x01\x10"
 """Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
 content, between the encapsulation header and the message of requests and responses."""
 CYCLONE_IDENTITY = 16
-GID = 16  # bytes of a GUID in rmw_dds_common/msg/Gid since Jazzy
 
 
 def dds_type(kind: str) -> str:
@@ -74,12 +73,15 @@ class Graph:
         self.outward: Convert = lambda content: content
         self.inward: Convert = lambda content: content
         self._node = node
-        self._discovery = self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED)
+        self._introductions = [
+            self.participant.writer(DISCOVERY, dds_type(INFO), LATCHED, serves)
+            for serves in (_is_later_than_humble, _is_of_humble)
+        ]
         self._introduce()
 
-    def spin(self, until: float) -> None:
-        """Receive until a moment of `time.monotonic`, and answer."""
-        self.participant.spin(until)
+    def spin(self, until: float, is_enough: Callable[[], bool] = lambda: False) -> None:
+        """Receive until a moment of `time.monotonic`, or until it is enough, and answer."""
+        self.participant.spin(until, is_enough)
 
     def spin_until(self, holds: Callable[[], bool], timeout: float) -> bool:
         """Spin until something holds; whether it did within the wall time [s]."""
@@ -148,7 +150,8 @@ class Graph:
     def _reader(self, topic: str, kind: str, take: Take, qos: Qos = SERVICE_QOS) -> Reader:
         def deliver(sample: Sample) -> None:
             payload, identity = _unframed(sample, topic)
-            is_humble = self._is_of_humble(sample.writer)
+            writer = self.participant.known_endpoint(sample.writer)
+            is_humble = writer is not None and _is_of_humble(writer)
             content = decoded(payload, kind, of_humble=is_humble)
             if content is not None:
                 take(self.inward(content), identity, is_humble)
@@ -158,30 +161,37 @@ class Graph:
         self._introduce()
         return made
 
-    def _is_of_humble(self, guid: bytes) -> bool:
-        """Whether a writer is of ROS 2 Humble: one of Fast DDS that has no type hash."""
-        if not guid.startswith(FAST_DDS):
-            return False
-        endpoint = self.participant.known_endpoint(guid)
-        return endpoint is not None and not endpoint.has_type_hash
-
     def _introduce(self) -> None:
         """Say which endpoints belong to the node: `ros2 node info` reads it."""
+        own = [each for each in self.participant.own_endpoints() if each.topic != DISCOVERY]
+        for writer, package in zip(self._introductions, INTRODUCTIONS, strict=True):
+            info = self._introduction(own, f"{package}/msg", INTRODUCTIONS[package])
+            writer.write(encoded(info, f"{package}/msg/ParticipantEntitiesInfo"))
+
+    def _introduction(self, own: Sequence[Endpoint], package: str, size: int) -> Any:
+        """The node and its endpoints, by identifiers of a number of bytes."""
 
         def gid(guid: bytes) -> Any:
-            padded = np.frombuffer(guid.ljust(GID, b"\0"), np.uint8)
-            return message("rmw_dds_common/msg/Gid", data=padded)
+            return message(f"{package}/Gid", data=np.frombuffer(guid.ljust(size, b"\0"), np.uint8))
 
-        own = [each for each in self.participant.own_endpoints() if each.topic != DISCOVERY]
         node = message(
-            "rmw_dds_common/msg/NodeEntitiesInfo",
+            f"{package}/NodeEntitiesInfo",
             node_namespace="/",
             node_name=self._node,
             reader_gid_seq=[gid(each.guid) for each in own if not each.is_writer],
             writer_gid_seq=[gid(each.guid) for each in own if each.is_writer],
         )
-        info = message(INFO, gid=gid(self.participant.guid), node_entities_info_seq=[node])
-        self._discovery.write(encoded(info, INFO))
+        kind = f"{package}/ParticipantEntitiesInfo"
+        return message(kind, gid=gid(self.participant.guid), node_entities_info_seq=[node])
+
+
+def _is_of_humble(endpoint: Endpoint) -> bool:
+    """Whether an endpoint is of ROS 2 Humble: one of Fast DDS that has no type hash."""
+    return endpoint.guid.startswith(FAST_DDS) and not endpoint.has_type_hash
+
+
+def _is_later_than_humble(endpoint: Endpoint) -> bool:
+    return not _is_of_humble(endpoint)
 
 
 def _uses(endpoints: Iterable[Endpoint]) -> Iterator[Use]:

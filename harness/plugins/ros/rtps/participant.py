@@ -16,7 +16,7 @@ from harness.plugins.ros.rtps.discovery import Endpoint, Peer, announcement, far
 from harness.plugins.ros.rtps.reader import Reader
 from harness.plugins.ros.rtps.sockets import Sockets
 from harness.plugins.ros.rtps.wire import Address, Sample
-from harness.plugins.ros.rtps.writer import Writer
+from harness.plugins.ros.rtps.writer import Serves, Writer, serves_all
 
 ANNOUNCE_EVERY = 1.0
 REMIND_EVERY = 0.1
@@ -52,9 +52,9 @@ class Participant:
             self._writers[writer] = Writer(written, self._send)
             self._readers[reader] = Reader(read, self._send, self._take_endpoint)
 
-    def writer(self, topic: str, type_name: str, qos: Qos) -> Writer:
-        """A writer of a topic, known to the peers from now on."""
-        made = Writer(self._endpoint(0x03, topic, type_name, qos), self._send)
+    def writer(self, topic: str, type_name: str, qos: Qos, serves: Serves = serves_all) -> Writer:
+        """A writer of a topic for some of its readers, known to the peers from now on."""
+        made = Writer(self._endpoint(0x03, topic, type_name, qos), self._send, serves)
         self._writers[made.endpoint.guid[12:]] = made
         self._publish(wire.PUBLICATIONS_WRITER, made)
         return made
@@ -82,8 +82,13 @@ class Participant:
         peer = self._peers.get(guid[:12])
         return peer.endpoints.get(guid) if peer is not None else None
 
-    def spin(self, until: float) -> None:
-        """Receive, answer and announce until a moment of `time.monotonic`; at least once."""
+    def spin(self, until: float, is_enough: Callable[[], bool] = lambda: False) -> None:
+        """Receive, answer and announce; at least once.
+
+        Args:
+            until: The moment of `time.monotonic` at which it ends.
+            is_enough: Whether to end earlier, after what was received.
+        """
         while True:
             self._tend()
             left = until - time.monotonic()
@@ -91,6 +96,8 @@ class Participant:
             datagrams = list(self._sockets.receive(max(0.0, min(left, due))))
             for datagram in datagrams:
                 self._receive(datagram)
+            if is_enough():
+                return
             if left <= 0 and (not datagrams or left < -0.05):  # the latter under a flood of them
                 return
 

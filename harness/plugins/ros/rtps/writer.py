@@ -11,6 +11,7 @@ from harness.plugins.ros.rtps import wire
 from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.wire import Address
 
+Serves = Callable[[Endpoint], bool]  # whether a reader gets samples
 Send = Callable[[bytes, bytes, Address], None]  # to a prefix, the submessages, at an address
 
 
@@ -33,6 +34,11 @@ class _Kept:
     inline: bytes
 
 
+def serves_all(_: Endpoint) -> bool:
+    """Whether a reader gets samples: every one does."""
+    return True
+
+
 class Writer:
     """A reliable writer of one topic.
 
@@ -41,9 +47,10 @@ class Writer:
         last: The sequence number of the last sample.
     """
 
-    def __init__(self, endpoint: Endpoint, send: Send) -> None:
+    def __init__(self, endpoint: Endpoint, send: Send, serves: Serves = serves_all) -> None:
         self.endpoint, self._entity, self._send = endpoint, endpoint.guid[12:], send
         self.matched: dict[bytes, _Reader] = {}
+        self._serves = serves
         self.last = self._count = 0
         self._history: deque[_Kept] = deque(maxlen=endpoint.qos.depth)
 
@@ -57,6 +64,8 @@ class Writer:
 
     def match(self, other: Endpoint, address: Address) -> None:
         """Serve a reader from now on, with the kept samples where it requests them."""
+        if not self._serves(other):
+            return
         guid, qos = other.guid, other.qos
         if guid in self.matched:
             self.matched[guid].address = address
