@@ -146,8 +146,12 @@ class LiveControl(HandOver):
         """Receive until the next tick is due."""
         if self.scene is not None and not self._move_group.is_open:
             self._move_group.begin(self.scene)
-        self._graph.spin(self._pace.next())
-        self._answer()
+        self._pace.next()
+        while True:
+            self._graph.spin(self._pace.due, lambda: self._move_group.has_requests)
+            self._answer()
+            if self._pace.is_due:
+                break
         self._pace.tick()
         if self._pace.ticks % LOOK_EVERY == 0:
             self._look_at_names()

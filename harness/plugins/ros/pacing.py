@@ -21,6 +21,7 @@ class Pace:
         late_commands: Commands that arrived while a tick was late.
         worst: The largest lag of a tick [s].
         lost: Wall time that was given up [s].
+        due: The moment of `time.monotonic` at which the next tick begins.
     """
 
     factor: float = 1.0
@@ -29,36 +30,40 @@ class Pace:
     late_commands: int = 0
     worst: float = 0.0
     lost: float = 0.0
-    _due: float = 0.0
+    due: float = 0.0
     _begin: float = 0.0
 
     def start(self) -> None:
         """Begin a session now."""
-        self._due = self._begin = time.monotonic()
+        self.due = self._begin = time.monotonic()
 
-    def next(self) -> float:
-        """The moment of `time.monotonic` at which the next tick begins."""
-        self._due += TICK / self.factor
-        return self._due
+    def next(self) -> None:
+        """Let the next tick begin when its wall time has come."""
+        self.due += TICK / self.factor
+
+    @property
+    def is_due(self) -> bool:
+        """Whether the next tick is to begin."""
+        return time.monotonic() >= self.due
 
     def tick(self) -> None:
         """A tick begins; note how late."""
-        lag = time.monotonic() - self._due
+        lag = time.monotonic() - self.due
         self.ticks += 1
         self.worst = max(self.worst, lag)
         self.late += lag > LATE
         if lag > GIVE_UP:
             self.lost += lag
-            self._due += lag
+            self.due += lag
 
     def pause(self, seconds: float) -> None:
         """Leave out wall time in which simulated time stood still on purpose."""
-        self._due += seconds
+        self.due += seconds
         self._begin += seconds
 
     def command(self) -> None:
         """A command arrived."""
-        self.late_commands += time.monotonic() - self._due > LATE
+        self.late_commands += time.monotonic() - self.due > LATE
 
     @property
     def is_slow(self) -> bool:

@@ -19,6 +19,7 @@ from harness.cli.shared_options import (
 )
 from harness.cli.suite_output import show_case
 from harness.plugins.ros.options import add_served_robot
+from harness.suite.environment import prepare_process
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ class BridgeCommand(Command):
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Serve a scenario's cell until its steps have ended."""
+        prepare_process()
         from harness.plugins.ros.bridge import run_bridge
         from harness.plugins.ros.domain import domain_of_user
 

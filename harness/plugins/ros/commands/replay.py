@@ -11,6 +11,7 @@ from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json, add_plugin
 from harness.suite.discovery import UsageError
+from harness.suite.environment import prepare_process
 from harness.suite.outcome import EXIT_CODES
 
 
@@ -36,6 +37,7 @@ class ReplayCommand(Command):
             UsageError: No command is recorded.
         """
         folder = run_folder(arguments.run)
+        prepare_process()
         from harness.plugins.ros.handover import replay
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import RESOLVED

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -98,6 +99,17 @@ def sequence_response(cell: Cell, planned: Planned | None, code: Any, seconds: f
         planned_trajectories=[fields["planned_trajectory"]] if planned else [],
         planning_time=seconds,
     )
+
+
+def warm_up(cell: Cell) -> None:
+    """Plan to where the arm is: load what a process that is forked to plan would load each time."""
+    start, group = cell.planning_start(), cell.description.default_group
+    index = cell.description.joint_index
+    here = start[[index[name] for name in cell.description.groups[group].joint_names]]
+    with suppress(StepFailed):
+        cell.sync_scene()
+        motion = FreeMotion(JointGoal(here))
+        cell.planner.plan(MotionRequest(group, start, motion, cell.current.options))
 
 
 def plan_motion(cell: Cell, request: Any) -> Planned:

@@ -1,4 +1,4 @@
-"""What MoveIt's clients request, kept until it is answered between two ticks."""
+"""What MoveIt's clients request, kept until it is answered while simulated time stands still."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from harness.plugins.ros.moveit.planning import (
     display_trajectory,
     plan_motion,
     unknown_planner,
+    warm_up,
 )
 from harness.plugins.ros.moveit.scene_changes import Change
 from harness.plugins.ros.moveit.sequence import plan_sequence
@@ -77,6 +78,7 @@ class Requests:
         self._waiting: deque[Callable[[], object]] = deque()
         self._turns: deque[Callable[[], object]] = deque()
         self._work: _Work | None = None
+        self._is_warm = False
 
     @property
     def here(self) -> ClientScene:
@@ -88,6 +90,11 @@ class Requests:
         if self.scene is None:
             raise StepFailed("FAILURE", "the arm is not handed over")
         return self.scene
+
+    @property
+    def has_waiting(self) -> bool:
+        """Whether a request waits for `work`."""
+        return bool(self._waiting)
 
     def put(self, work: Callable[[], object]) -> None:
         """Keep something that is done in `work`."""
@@ -114,11 +121,18 @@ class Requests:
     ) -> None:
         """Let another process compute something; of what begins in its turn.
 
+        A command's process has one thread (`prepare_process`), so that a fork inherits no lock that
+        another thread holds; where a program of one's own has threads, a canceled goal ends a fork
+        that waits for such a lock, too.
+
         Args:
             work: Returns what can be pickled; raises StepFailed. It changes nothing here.
             done: Takes the value or the failure.
             is_awaited: Whether somebody still waits for it; the process is ended otherwise.
         """
+        if not self._is_warm:
+            warm_up(self.here.cell)
+            self._is_warm = True
         self._work = _Work(Background(lambda _: work(), despite_threads=True), done, is_awaited)
 
     def topic(self, read: Read) -> Callable[[Any], None]:
@@ -151,9 +165,8 @@ class Requests:
                 result = failure
             except HarnessError as failure:
                 result = StepFailed("CRASH", str(failure))
+            work.done(result)  # the client needs not wait for the process to end
         work.value.close()
-        if work.is_awaited():
-            work.done(result)
         return True
 
     def forget(self) -> None:

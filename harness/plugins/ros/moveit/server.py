@@ -29,7 +29,7 @@ DISPLAY = "moveit_msgs/msg/DisplayTrajectory"
 class MoveGroup:
     """Answers MoveIt's clients while a step hands the arm over.
 
-    Requests wait until `work`, between two ticks; simulated time stands still until it is over.
+    Requests wait until `work`; simulated time stands still until it is over.
     """
 
     def __init__(
@@ -65,6 +65,11 @@ class MoveGroup:
     def is_open(self) -> bool:
         """Whether requests are answered."""
         return self._requests.scene is not None
+
+    @property
+    def has_requests(self) -> bool:
+        """Whether something waits for `work`."""
+        return self.is_open and self._requests.has_waiting
 
     def work(self) -> bool:
         """Answer what waits; whether a plan is still made."""
