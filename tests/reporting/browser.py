@@ -12,6 +12,14 @@ from tests.waiting import HANG
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+WITHOUT_GRAPHICS_CARD = (
+    "--disable-gpu-rasterization",
+    "--disable-gpu-compositing",
+    "--webgl-antialiasing-mode=none",
+    "--webgl-msaa-sample-count=0",
+    "--disable-features=WebUIOmniboxPopup,WebUIOmniboxAimPopup,PaintHolding,HttpsUpgrades",
+)
+"""What a graphics card does at no cost, and windows of the browser itself: half of its time."""
 
 
 def installed():
@@ -20,12 +28,13 @@ def installed():
 
 
 @contextmanager
-def launched():
+def launched(*options):
     """The installed browser, drawing in software."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=installed(), args=list(SOFTWARE_GL))
+        options = [*SOFTWARE_GL, *options]
+        browser = playwright.chromium.launch(executable_path=installed(), args=options)
         yield browser
         browser.close()
 
@@ -37,7 +46,7 @@ def browser():
         if os.environ.get("CI") == "true":
             pytest.fail("no chromium is installed, and CI must open the pages in one")
         pytest.skip("no chromium is installed: apt-get install chromium")
-    with launched() as browser:
+    with launched(*WITHOUT_GRAPHICS_CARD) as browser:
         yield browser
 
 

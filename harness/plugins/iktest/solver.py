@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import socket
@@ -15,7 +16,10 @@ from harness.plugins.iktest.calls import CallOutcome, call
 from harness.plugins.iktest.contract import UnusableSolver, Value, parameter_words
 from harness.plugins.iktest.worker import serve
 from harness.robot.robot_source import RobotSource
+from harness.suite.leftovers import remove_abandoned
 from harness.suite.warm import Ended, WarmServer
+
+PREFIX = "harness-ik-"  # how the names of folders begin; the number of the process follows
 
 IMPORT_SECONDS = 60.0  # wall time that importing the function may take
 
@@ -81,7 +85,8 @@ class Isolated:
         self._job = 0
         self._arguments = (name, robot, tip, dof)
         self._patience = patience
-        self._folder = tempfile.TemporaryDirectory(prefix="harness-ik-")
+        remove_abandoned(PREFIX)
+        self._folder = tempfile.TemporaryDirectory(prefix=f"{PREFIX}{os.getpid()}-")
         address = Path(self._folder.name) / "socket"
         self._socket = socket.socket(socket.AF_UNIX)
         self._socket.bind(str(address))

@@ -3,6 +3,7 @@
 import contextlib
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -114,17 +115,25 @@ def test_a_file_that_ends_its_process_while_imported_is_refused(tmp_path):
         run_ik_test(IkTest(f"{tmp_path / 'mine.py'}:ik", OM))
 
 
-def test_no_process_outlives_a_test_that_is_killed(tmp_path):
+def test_nothing_outlives_a_test_that_is_killed(tmp_path, monkeypatch):
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
     (tmp_path / "mine.py").write_text("import time\ndef ik(x, y, z): time.sleep(1000)\n")
     arguments = ["ik-test", "mine.py:ik", "--robot", OM, "--call-limit", "500", "--no-report"]
     command = f"from harness.cli.main import main; main({arguments})"
     child = subprocess.Popen(
-        [sys.executable, "-c", command], cwd=tmp_path, env={"PYTHONPATH": str(ROOT)}
+        [sys.executable, "-c", command],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(ROOT), "TMPDIR": str(temporary)},
     )
     wait_for(lambda: len(processes_in(tmp_path)) >= 3)  # command, fork server, the function's
     child.kill()
     child.wait()
     wait_for(lambda: not processes_in(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    with pytest.raises(UnusableSolver):  # the next test removes the folder of the killed one
+        run_ik_test(IkTest("no_such_module:ik", OM))
+    assert not [*temporary.iterdir()]
 
 
 def processes_in(folder):
