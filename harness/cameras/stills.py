@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -103,7 +102,7 @@ class StepRenderer:
             if not looks_alike(poses, shown):
                 self._picture.pose(poses)
                 picture, shown = self._renderer.render(view), poses
-            files[f"{number:02d}-{step_slug(step.id)}.jpg"] = captioned_jpeg(
+            files[f"{number:02d}-{step.slug}.jpg"] = captioned_jpeg(
                 picture,
                 f"{number}/{len(steps)}  {step.summary or step.verb}",
                 ink=DARK,
@@ -158,8 +157,3 @@ def overview(
                 points.append(pose.translation)
                 radii.append(size)
     return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
-
-
-def step_slug(text: str) -> str:
-    """A step's id as part of a file name."""
-    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:48] or "step"

@@ -14,13 +14,9 @@ from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
 from harness.recording.film import SUFFIX, encoded_film, film_size
-from harness.recording.run import Finding, Run
+from harness.recording.run import Run
 from harness.recording.signals import VideoRecord
 from harness.robot.description import RobotDescription
-
-MOST_FRAMES = 1500
-"""Most frames of one video, up to HD: a minute at 25 Hz; fewer of larger pictures. Longer runs get
-a lower rate and a finding."""
 
 
 def record_videos(
@@ -31,32 +27,23 @@ def record_videos(
     *,
     backend: str = "auto",
     activity: Activity = unobserved,
-) -> tuple[tuple[VideoRecord, ...], dict[str, bytes], tuple[Finding, ...]]:
-    """A video of each camera, the files by path, and findings on the videos.
+) -> tuple[tuple[VideoRecord, ...], dict[str, bytes]]:
+    """A video of each camera, and the files by path.
 
     Args:
         rates: Frames per second of simulated time, by camera.
         backend: `auto`, `egl`, `osmesa` or `rays`.
     """
     if not rates:
-        return (), {}, ()
+        return (), {}
     scene = CameraScene(description, objects, run.cameras)
     cameras = {camera.name: camera for camera in run.cameras}
     folders = camera_folders(run.cameras)
     videos: list[VideoRecord] = []
     files: dict[str, bytes] = {}
-    notes: list[Finding] = []
     for name, requested in rates.items():
         camera = cameras[name]
-        duration = float(run.signals.times[-1])
-        most = int(MOST_FRAMES / camera.pictures_counted)
-        rate = min(requested, most / duration) if duration > 0 else requested
-        if rate < requested:
-            message = (
-                f"{name} is recorded at {rate:.3g} Hz instead of {requested:g} Hz: "
-                f"a video of this size has at most {most} frames"
-            )
-            notes.append(Finding("video_rate", message))
+        rate = min(requested, camera.most_frames / max(run.duration, 1e-9))
         renderer = make_renderer(scene.picture, camera.width, camera.height, backend)
         try:
             video, content = _record(scene, camera, run, rate, renderer, folders[name], activity)
@@ -65,7 +52,7 @@ def record_videos(
         if video is not None:
             videos.append(video)
             files |= content
-    return tuple(videos), files, tuple(notes)
+    return tuple(videos), files
 
 
 def _record(

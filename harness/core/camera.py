@@ -14,6 +14,7 @@ OPTICAL = SE3(np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), n
 """T_camera_optical: from x forward, z up to z forward, x right, y down (ROS REP 103)."""
 
 
+MOST_FRAMES = 1500  # of one video up to HD: a minute at 25 Hz; fewer of larger pictures
 HD = 1280 * 720  # pixels up to which limits on the number of pictures hold as they are
 
 
@@ -57,6 +58,11 @@ class Camera:
     def pictures_counted(self) -> float:
         """What one picture counts towards limits on the number of pictures: 1, more beyond HD."""
         return max(1.0, self.width * self.height / HD)
+
+    @property
+    def most_frames(self) -> int:
+        """The most frames of one video; a longer run gets a lower rate."""
+        return int(MOST_FRAMES / self.pictures_counted)
 
     @property
     def focal_length(self) -> float:

@@ -8,14 +8,15 @@ from itertools import chain
 
 import numpy as np
 
+from harness.core.camera import Camera
 from harness.core.geometry import Mesh
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.recording.arrays import BY_NAME, BY_PAIR
-from harness.recording.mesh_record import MeshRecord
+from harness.recording.drawings import MeshRecord
 from harness.recording.npz_file import ArrayHeader
 from harness.recording.run import ObjectRecord, Run
-from harness.recording.signals import Signals
+from harness.recording.signals import Signals, VideoRecord
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
@@ -175,8 +176,15 @@ def _camera_flaws(run: Run) -> Iterator[Inconsistency]:
         yield from _length(f"{key}.pose", capture.pose, 7, may_be_empty=True)
         if not 0 <= capture.sample < samples:
             yield f"{key}.sample", f"expected an index below {samples}, found {capture.sample}"
-    for index, video in enumerate(run.videos):
-        yield from _unknown(f"videos[{index}].camera", [video.camera], cameras, "camera")
+
+
+def video_flaws(
+    videos: Iterable[VideoRecord], cameras: Iterable[Camera]
+) -> Iterator[Inconsistency]:
+    """Videos of cameras that are not there."""
+    known = {camera.name for camera in cameras}
+    for index, video in enumerate(videos):
+        yield from _unknown(f"videos[{index}].camera", [video.camera], known, "camera")
 
 
 def mesh_header_flaws(headers: Mapping[str, ArrayHeader], count: int) -> Iterator[Inconsistency]:

@@ -25,13 +25,16 @@ from harness.recording.consistency import (
     mesh_header_flaws,
     run_flaws,
     signal_flaws,
+    video_flaws,
 )
+from harness.recording.drawings import Drawings, MeshRecord
 from harness.recording.files import FolderFiles, checked
 from harness.recording.npz_file import NpzError, NpzFile
 from harness.recording.older_runs import FORMAT, KNOWN_FORMATS, in_present_form
 from harness.recording.plain import PlainError, from_plain
 from harness.recording.run import Outcome, Run
-from harness.recording.signals import Signals
+from harness.recording.signals import VideoRecord
+from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import (
     CHECKSUM,
@@ -52,9 +55,6 @@ NEEDED = tuple(
     if entry.default is MISSING and entry.default_factory is MISSING and entry.name != "signals"
 )
 """Keys without which run.json holds no run."""
-_NOTHING = np.zeros(0)
-NO_SIGNALS = Signals(_NOTHING, _NOTHING, _NOTHING, _NOTHING, _NOTHING, _NOTHING, tcp_pose=_NOTHING)
-"""Until the arrays are read."""
 MOST_FLAWS = 20  # Problems of a damaged run that are listed
 
 
@@ -68,20 +68,19 @@ def read_run(folder: Path) -> StoredRun:
     if not (folder / RUN).is_file():
         raise HarnessError(f"{folder} is no run: it has no {RUN}")
     document = _read_document(folder / RUN)
-    run, trajectories = _run(folder / RUN, document)
-    run = replace(run, resolved=_read_text(folder / RESOLVED))
-    run = _with_arrays(folder / SIGNALS, run, document, trajectories)
+    resolved = _read_text(folder / RESOLVED)
+    expected = checksum(document, resolved)
+    run = _run(folder, document)
     _refuse(folder / RUN, run_flaws(run))
-    if run.meshes:
-        run = _with_meshes(folder / VISUALS, run)
-    expected = checksum(document, run.resolved)
     with _damaged(folder / RUN):
         return StoredRun(
-            run=replace(run, files=_files(folder, run)),
+            run=run,
             verdicts=_field(document, "verdicts", tuple[Verdict, ...]),
             outcome=_field(document, "outcome", Outcome),
             digest=_field(document, "digest", str),
             wall_times=_field(document, "wall_times", Mapping[str, float]),
+            resolved=resolved,
+            drawings=_drawings(folder, document, run),
             is_edited=document.get(CHECKSUM, expected) != expected,
         )
 
@@ -111,10 +110,10 @@ def _read_document(path: Path) -> dict[str, Any]:
     return content
 
 
-def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
-    """The run without its arrays, and the trajectories of its steps as run.json has them."""
+def _run(folder: Path, document: dict[str, Any]) -> Run:
+    """The run with its arrays; what fits together in it is not yet checked."""
     hints = get_type_hints(Run)
-    with _damaged(path):
+    with _damaged(folder / RUN):
         document = in_present_form(document)
         steps = _mappings(document, "steps")
         empty = {"parts": ()}
@@ -124,25 +123,39 @@ def _run(path: Path, document: dict[str, Any]) -> tuple[Run, list[Any]]:
         known = {
             name: from_plain(plain[name], hint, name)
             for name, hint in hints.items()
-            if name in plain and name != "signals"
+            if name in plain and name not in ("signals", "files")
         }
         for name in NEEDED:
             _needed(known, name)
+        cutoff = _field(document, "clearance_cutoff", float)
+        names = (name for each in known.get("captures", ()) for name in each.files.values())
+        known["files"] = _files(folder, names)
+    path = folder / SIGNALS
+    with _damaged(path), NpzFile(path) as file:
+        _refuse(path, signal_flaws(file.headers, known["robot"]))
+        signals = signals_from(
+            {name: file.read(name) for name in file.headers if is_signal(name)}, cutoff
+        )
         known["steps"] = tuple(
-            replace(
-                record,
-                planner=SavedDetails(saved=_details(step, "planner", index)),
-                explanation=SavedDetails(saved=_details(step, "explanation", index)),
-                result=SavedResult(verb=record.verb, saved=_details(step, "result", index)),
-            )
+            _step(record, step, f"steps[{index}]", file)
             for index, (record, step) in enumerate(zip(known["steps"], steps, strict=True))
         )
-        run = Run(**known, signals=NO_SIGNALS)
-    return run, [step.get("trajectory") for step in steps]
+    return Run(**known, signals=signals)
 
 
-def _details(step: Mapping[str, Any], name: str, index: int) -> Mapping[str, Any]:
-    return from_plain(step.get(name, {}), Mapping[str, Any], f"steps[{index}].{name}")
+def _step(record: StepRecord, step: Mapping[str, Any], key: str, file: NpzFile) -> StepRecord:
+    """A step with its details, which stay as they were saved, and its trajectory."""
+    planner, explanation, result = (
+        from_plain(step.get(name, {}), Mapping[str, Any], f"{key}.{name}")
+        for name in ("planner", "explanation", "result")
+    )
+    return replace(
+        record,
+        planner=SavedDetails(saved=planner),
+        explanation=SavedDetails(saved=explanation),
+        result=SavedResult(verb=record.verb, saved=result),
+        trajectory=_trajectory(step.get("trajectory"), f"{key}.trajectory", file),
+    )
 
 
 def _mappings(document: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
@@ -163,24 +176,6 @@ def _field(document: Mapping[str, Any], name: str, kind: Any, within: str = "") 
     return from_plain(_needed(document, name, within), kind, f"{within}{name}")
 
 
-def _with_arrays(
-    path: Path, run: Run, document: Mapping[str, Any], trajectories: Sequence[Any]
-) -> Run:
-    """The run with its signals and trajectories."""
-    with _damaged(path.with_name(RUN)):
-        cutoff = _field(document, "clearance_cutoff", float)
-    with _damaged(path), NpzFile(path) as file:
-        _refuse(path, signal_flaws(file.headers, run.robot))
-        signals = signals_from(
-            {name: file.read(name) for name in file.headers if is_signal(name)}, cutoff
-        )
-        steps = tuple(
-            replace(step, trajectory=_trajectory(plain, f"steps[{index}].trajectory", file))
-            for index, (step, plain) in enumerate(zip(run.steps, trajectories, strict=True))
-        )
-    return replace(run, signals=signals, steps=steps)
-
-
 def _trajectory(plain: Any, key: str, file: NpzFile) -> JointTrajectory | None:
     if plain is None:
         return None
@@ -199,20 +194,29 @@ def _array(file: NpzFile, content: Mapping[str, Any], key: str, within: str) -> 
     return file.read(name)
 
 
-def _with_meshes(path: Path, run: Run) -> Run:
-    """The run with the triangles of its meshes."""
+def _drawings(folder: Path, document: Mapping[str, Any], run: Run) -> Drawings:
+    """The videos, and the triangles of meshes; pictures of steps are files alone."""
+    videos = from_plain(document.get("videos", ()), tuple[VideoRecord, ...], "videos")
+    _refuse(folder / RUN, video_flaws(videos, run.cameras))
+    meshes = from_plain(document.get("meshes", ()), tuple[MeshRecord, ...], "meshes")
+    if meshes:
+        meshes = _with_triangles(folder / VISUALS, meshes)
+    return Drawings(meshes, videos, _files(folder, (video.file for video in videos)))
+
+
+def _with_triangles(path: Path, meshes: Sequence[MeshRecord]) -> tuple[MeshRecord, ...]:
     with _damaged(path), NpzFile(path) as file:
-        _refuse(path, mesh_header_flaws(file.headers, len(run.meshes)))
-        meshes = tuple(
+        _refuse(path, mesh_header_flaws(file.headers, len(meshes)))
+        whole = tuple(
             replace(
                 mesh,
                 vertices=file.read(f"meshes/{index}/vertices").astype(np.float64),
                 faces=file.read(f"meshes/{index}/faces").astype(np.int64),
             )
-            for index, mesh in enumerate(run.meshes)
+            for index, mesh in enumerate(meshes)
         )
-        _refuse(path, mesh_flaws(meshes))
-    return replace(run, meshes=meshes)
+        _refuse(path, mesh_flaws(whole))
+    return whole
 
 
 @contextmanager
@@ -242,9 +246,7 @@ def _refuse(path: Path, flaws: Iterable[Inconsistency]) -> None:
         raise SpecError(problems[:MOST_FLAWS])
 
 
-def _files(folder: Path, run: Run) -> FolderFiles:
-    names = [name for capture in run.captures for name in capture.files.values()]
-    names += [video.file for video in run.videos]
+def _files(folder: Path, names: Iterable[str]) -> FolderFiles:
     try:
         return FolderFiles(folder, [checked(name) for name in names])
     except ValueError as error:

@@ -15,8 +15,7 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import ObjectJoint, WorldObject
 from harness.recording.commands import CommandRecord
-from harness.recording.mesh_record import MeshRecord
-from harness.recording.signals import CaptureRecord, ContactRecord, Signals, VideoRecord
+from harness.recording.signals import CaptureRecord, ContactRecord, Signals
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
 
@@ -142,19 +141,16 @@ class Run:
         findings: The notes, and where plan and physics disagree.
         contacts: Every pair that touched, the first to touch first.
         source: Text of the scenario file.
-        resolved: Text of the resolved scenario; runs again to the same digest.
         versions: The version of every library that could change a number.
         ended_early: Why the run stopped before its last step; empty when it did not.
         unrecorded: Names of `Signals`' fields that were not recorded, as a bag has no contacts, and
             `attachments`, `steps` and `step_results`; an expectation that needs one is not
             observable.
-        meshes: The triangles of mesh files, for pictures where the files are not.
         cameras: Every camera of robot, world and scenario.
         captures: Pictures taken, in order of time.
-        videos: The videos of the cameras that were recorded all along.
         commands: What external programs commanded, in the order of arrival.
-        files: Content of the pictures and videos by path in the run's folder; a saved run reads
-            each on first use.
+        files: Content of `captures` by path in the run's folder; a saved run reads each on first
+            use.
     """
 
     scenario: str
@@ -172,14 +168,11 @@ class Run:
     findings: tuple[Finding, ...] = ()
     contacts: tuple[ContactRecord, ...] = ()
     source: str = ""
-    resolved: str = ""
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
     ended_early: str = ""
     unrecorded: tuple[str, ...] = ()
-    meshes: tuple[MeshRecord, ...] = ()
     cameras: tuple[Camera, ...] = ()
     captures: tuple[CaptureRecord, ...] = ()
-    videos: tuple[VideoRecord, ...] = ()
     commands: tuple[CommandRecord, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict[str, bytes], repr=False)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -53,6 +54,11 @@ class StepRecord:
     explanation: Details = field(default_factory=Details)
     result: Details = field(default_factory=Details)
     arm: str = ""
+
+    @property
+    def slug(self) -> str:
+        """The id as part of a file name."""
+        return re.sub(r"[^a-z0-9]+", "-", self.id.lower()).strip("-")[:48] or "step"
 
 
 def is_nested(inner: str, outer: str) -> bool:

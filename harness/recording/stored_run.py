@@ -13,6 +13,7 @@ from typing import Any
 
 from harness.core.errors import HarnessError, Problem, SpecError
 from harness.recording.digest import digest as digest_of
+from harness.recording.drawings import NO_DRAWINGS, Drawings
 from harness.recording.run import Outcome, Run
 from harness.recording.verdict import Verdict
 
@@ -28,6 +29,7 @@ class StoredRun:
     Attributes:
         digest: The digest as run.json states it.
         wall_times: Seconds of each part; never judged.
+        resolved: Text of the resolved scenario; runs again to the same digest.
         is_edited: Whether run.json or the resolved scenario was changed after it was written.
     """
 
@@ -36,6 +38,8 @@ class StoredRun:
     outcome: Outcome
     digest: str
     wall_times: Mapping[str, float]
+    resolved: str = ""
+    drawings: Drawings = NO_DRAWINGS
     is_edited: bool = False
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import fields, replace
@@ -18,6 +18,7 @@ from harness.core.errors import HarnessError
 from harness.core.printable import json_printable
 from harness.recording.arrays import arrays_of, write_npz
 from harness.recording.consistency import TABLES
+from harness.recording.drawings import MeshRecord
 from harness.recording.files import disk_advice, write_files
 from harness.recording.older_runs import FORMAT
 from harness.recording.plain import to_plain
@@ -33,7 +34,7 @@ from harness.recording.stored_run import (
     checksum,
 )
 
-APART = ("seed", "steps", "findings", "versions", "signals", "resolved", "meshes", "files")
+APART = ("seed", "steps", "findings", "versions", "signals", "files")
 """Fields of a run that have a place of their own in its folder."""
 
 
@@ -83,13 +84,14 @@ def run_folder(folder: Path, run: Run) -> Generator[Path]:
 
 def write_document(folder: Path, stored: StoredRun) -> None:
     """Write everything of a run but its signals into its folder."""
-    run, document = stored.run, _document(stored)
-    document[CHECKSUM] = checksum(document, run.resolved)
+    document, drawings = _document(stored), stored.drawings
+    document[CHECKSUM] = checksum(document, stored.resolved)
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
     (folder / RUN).write_text(json_printable(text) + "\n", encoding="utf-8")
-    (folder / RESOLVED).write_text(run.resolved, encoding="utf-8", newline="")
-    write_npz(folder / VISUALS, _mesh_arrays(run))
-    write_files(folder, run.files)
+    (folder / RESOLVED).write_text(stored.resolved, encoding="utf-8", newline="")
+    write_npz(folder / VISUALS, _mesh_arrays(drawings.meshes))
+    for files in (stored.run.files, drawings.files):
+        write_files(folder, files)
 
 
 def _document(stored: StoredRun) -> dict[str, Any]:
@@ -110,16 +112,17 @@ def _document(stored: StoredRun) -> dict[str, Any]:
         "wall_times": to_plain(stored.wall_times),
         "clearance_cutoff": run.signals.clearance_cutoff,
         **{name: to_plain(getattr(run, name)) for name in rest},
+        "videos": to_plain(stored.drawings.videos),
         "meshes": [
             {name: to_plain(getattr(mesh, name)) for name in ("path", "scale", "rgba")}
-            for mesh in run.meshes
+            for mesh in stored.drawings.meshes
         ],
     }
 
 
-def _mesh_arrays(run: Run) -> dict[str, np.ndarray[Any, Any]]:
+def _mesh_arrays(meshes: Sequence[MeshRecord]) -> dict[str, np.ndarray[Any, Any]]:
     arrays: dict[str, np.ndarray[Any, Any]] = {}
-    for index, mesh in enumerate(run.meshes):
+    for index, mesh in enumerate(meshes):
         arrays[f"meshes/{index}/vertices"] = mesh.vertices.astype(np.float32)
         arrays[f"meshes/{index}/faces"] = mesh.faces.astype(np.int32)
     return arrays

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from harness.recording.run import Run
+from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 
 
@@ -79,7 +81,8 @@ class Judged(ProgressEvent):
 
 
 @dataclass(frozen=True)
-class Written(ProgressEvent):
-    """The run was written into a folder."""
+class Drawing(ProgressEvent):
+    """The pictures of the report are being drawn; the event stays in the process of the case."""
 
-    folder: str
+    run: Run
+    verdicts: tuple[Verdict, ...]

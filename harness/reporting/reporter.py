@@ -13,6 +13,7 @@ from harness.core.activity import Activity, unobserved
 from harness.core.errors import HarnessError
 from harness.core.registry import Plugin, described, raised, registry
 from harness.recording.stored_run import StoredRun
+from harness.reporting.progress_events import ProgressEvent
 
 __all__ = ["Reporter", "StoredRun"]  # what a package needs to add a reporter of its own
 
@@ -44,13 +45,8 @@ class Reporter(Plugin, ABC):
             HarnessError: The argument is missing, or is not one of this reporter.
         """
 
-    def begin(self, stored: StoredRun) -> None:
-        """Prepare what does not depend on pictures; by default nothing.
-
-        Args:
-            stored: The run, its verdicts and its outcome, while its pictures are being drawn: its
-                meshes, videos, files, and findings about these are not known yet.
-        """
+    def hear(self, event: ProgressEvent) -> None:
+        """Take note of an event of the running case; by default of none."""
 
     @abstractmethod
     def write(self, folder: Path, stored: StoredRun) -> None:
@@ -58,7 +54,7 @@ class Reporter(Plugin, ABC):
 
         Args:
             folder: The folder, under the temporary name that it has until it is complete.
-            stored: The run with all its pictures.
+            stored: The run with all its drawings.
         """
 
 
@@ -73,15 +69,15 @@ class Reports:
         """
         self._reporters = [find_reporter(text) for text in names]
 
-    def begin(self, stored: StoredRun) -> None:
-        """Prepare all reports.
+    def hear(self, event: ProgressEvent) -> None:
+        """Pass an event of the running case on.
 
         Raises:
             HarnessError: A reporter fails; names it and its package.
         """
         for reporter in self._reporters:
             with _blames(reporter.name):
-                reporter.begin(stored)
+                reporter.hear(event)
 
     def write(self, folder: Path, stored: StoredRun, activity: Activity = unobserved) -> None:
         """Let all reporters write into a folder.

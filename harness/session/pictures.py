@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -14,11 +14,11 @@ from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
 from harness.judging.pictures import looks_of_expectations
+from harness.recording.drawings import Drawings
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
-from harness.recording.mesh_record import MeshRecord
-from harness.recording.run import Finding, Run
-from harness.recording.signals import CaptureRecord, Signals, VideoRecord
+from harness.recording.run import Run
+from harness.recording.signals import CaptureRecord, Signals
 from harness.recording.step_record import StepRecord
 from harness.session.background import Background, Later
 from harness.session.prepare import Prepared
@@ -26,26 +26,8 @@ from harness.session.run_request import RunRequest
 
 FOLDER = "images"
 MOST_EXPLAINED = 100  # most failed steps of which the state that explains them is drawn, 0.2 s each
-Files = Mapping[str, bytes]  # content of files by path in the run's folder
-Captures = tuple[tuple[CaptureRecord, ...], Files]  # of the scenario's cameras
-
-
-@dataclass(frozen=True)
-class Drawings:
-    """What only people look at.
-
-    Attributes:
-        meshes: The triangles that the page shows.
-        images: Pictures of the steps, and of the states that explain failures.
-        note: A line on limitations of the pictures; empty without limitations.
-    """
-
-    videos: tuple[VideoRecord, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    files: Files = field(default_factory=dict[str, bytes])
-    meshes: tuple[MeshRecord, ...] = ()
-    images: Files = field(default_factory=dict[str, bytes])
-    note: str = ""
+Captures = tuple[tuple[CaptureRecord, ...], Mapping[str, bytes]]
+"""The pictures of the scenario's cameras, and the files by path in the run's folder."""
 
 
 class Pictures:
@@ -67,7 +49,7 @@ class Pictures:
     def executed(self, run: Run) -> None:
         """Begin to draw what the verdicts read, and what is certain to be kept."""
         self._run = run
-        self._captures = self._begin_captures(is_kept=self._is_kept)
+        self._captures = self._begin_captures()
         if self._drawings is not None:
             self._later.set(_shown(run))
         elif self._is_kept:
@@ -81,13 +63,11 @@ class Pictures:
                 background.close()
 
     def captured(self, activity: Activity) -> Captures:
-        """The pictures that verdicts read; after `begin`, all pictures of the cameras."""
+        """The pictures of the cameras."""
         return ((), {}) if self._captures is None else self._captures.result(activity)
 
     def begin(self) -> None:
         """Begin to draw what is kept, before this process has threads: then it is not forked."""
-        if self._request.only_failed:
-            self._captures = self._begin_captures(is_kept=True)
         if self._drawings is None:
             run = self._run
             self._drawings = self._begin_drawings(lambda: _shown(run), run)
@@ -97,13 +77,14 @@ class Pictures:
         assert self._drawings is not None, "begin() begins it"
         return self._drawings.result(activity)
 
-    def _begin_captures(self, *, is_kept: bool) -> Background[Captures] | None:
-        """The pictures that verdicts read; where the run is kept, those of steps too."""
+    def _begin_captures(self) -> Background[Captures] | None:
+        """The pictures that verdicts read; where the run may be kept, those of steps too."""
         run = self._run
         looked = looks_of_expectations(run, self._prepared.expectations)
         seen = {(look.camera, look.sample) for look in looked}
         taken = looks_of_steps(run.steps)
-        taken = [look for look in taken if is_kept or (look.camera, look.sample) in seen]
+        if self._request.report_dir is None:
+            taken = [look for look in taken if (look.camera, look.sample) in seen]
         looks = merged_looks([*taken, *looked])
         return Background(partial(_captures, self._prepared, run, looks)) if looks else None
 
@@ -163,26 +144,24 @@ def _drawings(
             free_memory()  # of what a picture is made of
             shown = get_shown()
             stills = renderer.draw(shown, activity)
-        images = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
-        images |= _failures(prepared, shown, activity)
-        drawings = Drawings(meshes=mesh_records(shown), images=images, note=stills.note)
+        files = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
+        files |= _failures(prepared, shown, activity)
+        meshes, note = mesh_records(shown), stills.note
     else:
-        drawings = Drawings(meshes=mesh_records(get_shown()))
+        files, meshes, note = {}, mesh_records(get_shown()), ""
     if run is None or not program.videos:
-        return drawings
+        return Drawings(meshes, (), files, note)
     from harness.cameras.videos import record_videos  # loads a video library
 
-    videos, files, findings = record_videos(
-        description, objects, run, program.videos, activity=activity
-    )
-    return replace(drawings, videos=videos, files=files, findings=findings)
+    videos, films = record_videos(description, objects, run, program.videos, activity=activity)
+    return Drawings(meshes, videos, files | films, note)
 
 
 def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, bytes]:
-    """The pictures that `with_picture_names` names."""
+    """The pictures that `with_picture_names` has named."""
     steps = [
         (step, picture)
-        for step in with_picture_names(run.steps)
+        for step in run.steps
         if (picture := recorded_explanation(step.explanation).picture) is not None
     ]
     if not steps:
@@ -207,12 +186,7 @@ def with_picture_names(steps: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     for number, step in enumerate(steps, start=1):
         has_picture = left > 0 and recorded_explanation(step.explanation).nearest is not None
         left -= has_picture
-        named.append(_with_picture_name(step, number) if has_picture else step)
+        name = Explanation(picture=f"{FOLDER}/{number:02d}-{step.slug}-why.jpg")
+        explanation = step.explanation + Details.of(name if has_picture else None)
+        named.append(replace(step, explanation=explanation))
     return tuple(named)
-
-
-def _with_picture_name(step: StepRecord, number: int) -> StepRecord:
-    from harness.cameras.stills import step_slug
-
-    name = f"{FOLDER}/{number:02d}-{step_slug(step.id)}-why.jpg"
-    return replace(step, explanation=step.explanation + Details.of(Explanation(picture=name)))

@@ -8,16 +8,19 @@ from dataclasses import dataclass
 
 from harness.cell.program import Program, ProgramStep
 from harness.ports.simulation import Simulator
+from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
+from harness.recording.verdict import Verdict
 from harness.reporting.progress_events import (
     Compiled,
+    Drawing,
     Judged,
     ProgressEvent,
     StepFinished,
     StepStarted,
     Working,
-    Written,
 )
+from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult
 
 Notify = Callable[[ProgressEvent], None]
@@ -25,10 +28,20 @@ Notify = Callable[[ProgressEvent], None]
 
 @dataclass(frozen=True)
 class Progress:
-    """Reports how far a case is."""
+    """The events of a case: its reporters hear all of them, others those that are small.
 
-    notify: Notify
+    Attributes:
+        outside: Hears them in other processes too.
+    """
+
+    outside: Notify
+    reports: Reports
     program: Program
+
+    def notify(self, event: ProgressEvent) -> None:
+        """Send an event to everything that hears."""
+        self.reports.hear(event)
+        self.outside(event)
 
     def compiled(self) -> None:
         """Report that the first step is about to begin."""
@@ -52,6 +65,6 @@ class Progress:
         """Report the outcome, before the report is written."""
         self.notify(Judged(result))
 
-    def written(self, folder: str) -> None:
-        """Report where the run was written."""
-        self.notify(Written(folder))
+    def drawing(self, run: Run, verdicts: tuple[Verdict, ...]) -> None:
+        """Report, in this process, that the pictures of the report are being drawn."""
+        self.reports.hear(Drawing(run, verdicts))

@@ -17,18 +17,17 @@ from harness.session.observation.contacts import contact_records
 from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.session.observation.observe import observed_signals, report_findings
 from harness.session.observation.observer import observed
-from harness.session.pictures import Captures, Drawings, with_picture_names
+from harness.session.pictures import Captures, with_picture_names
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 
 class RunBuilder:
-    """Gathers what becomes known of a case, and makes its `Run`.
+    """Gathers what becomes known of a case, and makes its `Run` once.
 
     Attributes:
         record: What was executed and recorded; observers and cameras read it.
-        captures: The pictures that the scenario's cameras took.
-        drawings: What is drawn for a report alone, after the verdicts.
+        resolved: Text of the resolved scenario; empty where no report is requested.
     """
 
     def __init__(
@@ -42,42 +41,32 @@ class RunBuilder:
         """Take over what was executed and recorded."""
         self._request, self._prepared = request, prepared
         self.record = _recorded(request, prepared, execution, simulator, commands)
-        self.captures: Captures = ((), {})
-        self.drawings: Drawings | None = None
+        self.resolved = ""
         self._signals: Signals = self.record.signals
         self._findings: tuple[Finding, ...] = ()
         self._contacts: tuple[ContactRecord, ...] = ()
-        self._resolved = ""
 
     def observe(self) -> None:
-        """Measure distances, as verdicts and the digest need them."""
-        self._signals = observed_signals(self._prepared, self.record)
-
-    def explain(self) -> None:
-        """Find what only a report shows besides pictures."""
+        """Measure distances; for a report, find what only it shows besides pictures."""
         prepared, program = self._prepared, self._prepared.program
+        self._signals = observed_signals(prepared, self.record)
+        folder = self._request.report_dir
+        if folder is None:
+            return
         self._findings = report_findings(prepared, self.record, self._signals)
         self._contacts = contact_records(self.record)
         seeds = {program.step_locs[step.path]: step.options.seed for step in program.all_steps()}
-        folder = self._request.report_dir
-        self._resolved = resolved_text(prepared.loaded, seeds, folder=folder)
+        self.resolved = resolved_text(prepared.loaded, seeds, folder=folder)
 
-    def build(self) -> Run:
-        """The run of what is known; only drawings may follow."""
-        record, (captures, files) = self.record, self.captures
-        drawn = self.drawings or Drawings()
-        names_pictures = self.drawings is not None and self._request.stills
+    def build(self, captures: Captures) -> Run:
+        """The whole run, with the pictures that its cameras took."""
         return replace(
-            record,
+            self.record,
             signals=self._signals,
-            steps=with_picture_names(record.steps) if names_pictures else record.steps,
-            findings=(*record.findings, *self._findings, *drawn.findings),
+            findings=(*self.record.findings, *self._findings),
             contacts=self._contacts,
-            resolved=self._resolved,
-            captures=captures,
-            meshes=drawn.meshes,
-            videos=drawn.videos,
-            files={**files, **drawn.files},
+            captures=captures[0],
+            files=captures[1],
         )
 
 
@@ -93,6 +82,8 @@ def _recorded(
     signals = replace(recorded, object_poses={**recorded.object_poses, **believed})
     robot = program.description
     steps, seen = observed(execution.steps, signals, robot, execution.objects)
+    if request.stills and request.report_dir is not None:
+        steps = with_picture_names(steps)
     return Run(
         scenario=program.title,
         file=request.shown_file,

@@ -15,8 +15,8 @@ from harness.judging.joints import stood_still
 from harness.judging.judge import judge
 from harness.ports.scene import Touch
 from harness.ports.simulation import RecordingSimulator
-from harness.recording.digest import digest
-from harness.recording.files import write_files
+from harness.recording.digest import digest as digest_of
+from harness.recording.run import Run
 from harness.recording.stored_run import PAGE, StoredRun
 from harness.recording.write_run import run_folder, write_document
 from harness.reporting.reporter import Reports
@@ -50,7 +50,7 @@ def run_case(
     except SpecError as error:
         return _invalid(request, error)
     prepared = begun.prepared
-    progress = Progress(notify, prepared.program)
+    progress = Progress(notify, _reports(request), prepared.program)
     progress.compiled()
     try:
         with closing(Pictures(request, prepared)) as pictures:
@@ -60,13 +60,12 @@ def run_case(
             del begun  # the simulator is the largest object; the builder holds its recording
             free_memory()
             with remembered_facts():
-                case.observe(builder)
-                judged = case.judge(builder, refusal)
-                result = case.result(judged, overlaps, draw, refusal)
+                run = case.observe(builder)
+                result = case.judge(run, overlaps, draw, refusal)
             progress.judged(result)
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
-            return case.report(request.report_dir, builder, judged, result)
+            return case.report(request.report_dir, run, builder.resolved, result)
     except HarnessError as error:
         return _broken(request, prepared, clock, error)
 
@@ -96,84 +95,76 @@ class _Case:
         self.pictures.executed(builder.record)
         return builder, session.refusal()
 
-    def observe(self, builder: RunBuilder) -> None:
-        """Measure what was recorded, and take the pictures that verdicts read."""
+    def observe(self, builder: RunBuilder) -> Run:
+        """The run, with what is measured on it and the pictures that verdicts read."""
         self.progress.activity("measuring distances")
         with self.clock.part("judge"):
             builder.observe()
-            if self.request.report_dir is not None:
-                builder.explain()
         with self.clock.part("render"):
-            builder.captures = self.pictures.captured(self.progress.activity)
+            return builder.build(self.pictures.captured(self.progress.activity))
 
-    def judge(self, builder: RunBuilder, refusal: str) -> StoredRun:
-        """The run with its verdicts; a strict request fails with a warning."""
+    def judge(self, run: Run, overlaps: Sequence[Touch], draw: int, refusal: str) -> CaseResult:
+        """The outcome, before a report is written; a strict request fails with a warning."""
         self.progress.activity("judging")
+        request, program = self.request, self.prepared.program
         with self.clock.part("judge"):
-            run = builder.build()
             verdicts = judge(run, self.prepared.expectations)
+            warned = verdict_warnings(request.shown_file, verdicts)
             is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)
-            if self.request.strict and verdict_warnings(self.request.shown_file, verdicts):
-                is_good = False
+            is_good = is_good and not (request.strict and warned)
             outcome = "passed" if is_good else "error" if refusal else "failed"
-            return StoredRun(run, verdicts, outcome, digest(run, verdicts), self.clock.seconds)
-
-    def result(
-        self, judged: StoredRun, overlaps: Sequence[Touch], draw: int, refusal: str
-    ) -> CaseResult:
-        """The outcome of a judged case of which no report is written yet."""
-        request, program, run = self.request, self.prepared.program, judged.run
-        warned = verdict_warnings(request.shown_file, judged.verdicts)
+            digest = digest_of(run, verdicts)
         message = "\n".join(warned) if request.strict else ""
         return CaseResult(
             file=request.shown_file,
             case=request.case,
             title=program.title,
-            outcome=judged.outcome,
-            digest=judged.digest,
+            outcome=outcome,
+            digest=digest,
             seed=program.seed,
             sim_time=run.duration,
             steps=tuple(StepLine.of(step) for step in run.steps),
-            verdicts=judged.verdicts,
-            message=refusal if judged.outcome == "error" else message,
+            verdicts=verdicts,
+            message=refusal if outcome == "error" else message,
             notes=(*warned, *_notes(self.prepared, overlaps), *never_held(run)),
             is_idle=stood_still(run),
             overlap=-overlaps[0].distance if overlaps else 0.0,
             redraws=draw,
             values=request.redraw.redrawn(draw).values if request.redraw and draw else {},
-            wall_times=dict(judged.wall_times),
+            wall_times=dict(self.clock.seconds),
         )
 
-    def report(
-        self, folder: Path, builder: RunBuilder, judged: StoredRun, result: CaseResult
-    ) -> CaseResult:
+    def report(self, folder: Path, run: Run, resolved: str, result: CaseResult) -> CaseResult:
         """The result of a case with its report, which is written here.
 
         Raises:
             HarnessError: The folder cannot be written, or a reporter fails.
         """
-        request, clock, activity = self.request, self.clock, self.progress.activity
+        clock, activity, verdicts = self.clock, self.progress.activity, result.verdicts
         activity("writing the report")
         self.pictures.begin()
-        reports = Reports((*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters))
-        with clock.part("write"), run_folder(folder, judged.run) as target:
-            reports.begin(judged)
+        with clock.part("write"), run_folder(folder, run) as target:
+            self.progress.drawing(run, verdicts)
             with clock.part("render"):
-                if request.only_failed:
-                    builder.captures = self.pictures.captured(activity)
-                builder.drawings = drawings = self.pictures.drawn(activity)
-            stored = replace(judged, run=builder.build())
+                drawings = self.pictures.drawn(activity)
+            stored = StoredRun(
+                run, verdicts, result.outcome, result.digest, clock.seconds, resolved, drawings
+            )
             write_document(target, stored)
-            write_files(target, drawings.images)
-            reports.write(target, stored, activity)
-        self.progress.written(str(folder))
+            self.progress.reports.write(target, stored, activity)
         return replace(
             result,
             report_dir=str(folder),
-            page=str(folder / PAGE) if request.page else "",
+            page=str(folder / PAGE) if self.request.page else "",
             notes=(*result.notes, drawings.note) if drawings.note else result.notes,
             wall_times=clock.seconds,
         )
+
+
+def _reports(request: RunRequest) -> Reports:
+    if request.report_dir is None:
+        return Reports(())
+    return Reports((*["html"] * request.page, *["rosbag"] * request.bag, *request.reporters))
 
 
 def _notes(prepared: Prepared, overlaps: Sequence[Touch]) -> tuple[str, ...]:

@@ -11,8 +11,10 @@ import pytest
 from harness.cameras.camera_scene import CameraScene
 from harness.cameras.renderer import make_renderer
 from harness.cameras.sensor import as_delivered
-from harness.cameras.videos import MOST_FRAMES, record_videos
+from harness.cameras.videos import record_videos
+from harness.core.camera import MOST_FRAMES
 from harness.recording.film import decoded_film
+from harness.session.observation.findings import slowed_videos
 from tests.cameras.camera_runs import ball, eye, robot, run_with
 from tests.cameras.test_captures import centre_of, predicted
 
@@ -28,8 +30,8 @@ def crossing(n=101):
 
 
 def recorded(run, objects, rate=10.0, backend="rays"):
-    (video,), files, notes = record_videos(robot(), objects, run, {"eye": rate}, backend=backend)
-    return video, files, notes
+    (video,), files = record_videos(robot(), objects, run, {"eye": rate}, backend=backend)
+    return video, files
 
 
 def film_of(content, folder):
@@ -52,10 +54,10 @@ def red_in(picture):
 def test_every_frame_shows_the_moment_that_the_clock_table_says(tmp_path, backend):
     run, objects = crossing()
     try:
-        video, files, notes = recorded(run, objects, backend=backend)
+        video, files = recorded(run, objects, backend=backend)
     except RuntimeError as error:
         pytest.skip(str(error))
-    assert (video.backend, video.rate, notes) == (backend, 10.0, ())
+    assert (video.backend, video.rate) == (backend, 10.0)
     np.testing.assert_allclose(video.times, np.arange(11) / 10)
     film = film_of(files[video.file], tmp_path)
     assert len(film) == len(video.times)
@@ -72,7 +74,7 @@ def test_every_frame_shows_the_moment_that_the_clock_table_says(tmp_path, backen
 def test_a_video_has_the_camera_s_size_in_even_numbers(width, height, tmp_path):
     run, objects = crossing(2)
     run = replace(run, cameras=(replace(CAMERA, width=width, height=height),))
-    video, files, _ = recorded(run, objects)
+    video, files = recorded(run, objects)
     (frame,) = film_of(files[video.file], tmp_path)
     assert frame.shape[1::-1] == (video.width, video.height)
     assert abs(video.width - width) <= 1
@@ -85,7 +87,7 @@ def test_a_video_shows_what_the_camera_delivered(noise):
     run, objects = crossing(2)
     camera = replace(CAMERA, width=320, height=240, noise_stddev=noise)
     run = replace(run, cameras=(camera,))
-    video, files, _ = recorded(run, objects)
+    video, files = recorded(run, objects)
     shown = next(decoded_film(files[video.file]))
     scene = CameraScene(robot(), objects, run.cameras)
     renderer = make_renderer(scene.picture, camera.width, camera.height, "rays")
@@ -100,7 +102,9 @@ def test_a_long_run_is_recorded_more_slowly_and_says_so():
     times = np.array([0.0, 2 * MOST_FRAMES / 10.0])
     run = replace(run, signals=replace(run.signals, times=times))
     tiny = replace(CAMERA, width=16, height=16)
-    video, _, (note,) = recorded(replace(run, cameras=(tiny,)), objects)
+    run = replace(run, cameras=(tiny,))
+    video, _ = recorded(run, objects)
+    (note,) = slowed_videos(run, {"eye": 10.0})
     assert len(video.times) <= MOST_FRAMES + 1
     assert note.message == (
         "eye is recorded at 5 Hz instead of 10 Hz: a video of this size has at most 1500 frames"

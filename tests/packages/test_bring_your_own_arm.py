@@ -106,7 +106,7 @@ def test_the_run_really_lifted_the_box_between_the_fingers(walked):
     assert height[-1] - height[0] > 0.09
     for finger in ("panda_leftfinger", "panda_rightfinger"):
         assert signals.contact_forces[finger, "box"][-500:].min() > 0
-    looks = {mesh.path.suffix for mesh in run.meshes}
+    looks = {mesh.path.suffix for mesh in stored.drawings.meshes}
     assert looks == {".dae"}
 
 

@@ -35,7 +35,6 @@ def test_words_lines_paths_versions_and_seeds_do_not_enter():
         scenario="another title",
         file="elsewhere.yaml",
         source="",
-        resolved="",
         versions={},
         steps=tuple(replace(step, line=99, summary="x", id="renamed") for step in RUN.steps),
     )

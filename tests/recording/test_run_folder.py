@@ -23,8 +23,8 @@ from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.recording.arrays import arrays_of
 from harness.recording.digest import digest
+from harness.recording.drawings import Drawings, MeshRecord
 from harness.recording.explanation import recorded_explanation
-from harness.recording.mesh_record import MeshRecord
 from harness.recording.older_runs import FORMAT
 from harness.recording.plain import to_plain
 from harness.recording.read_run import read_run
@@ -97,13 +97,8 @@ def full_run():
         allowed_contacts=(("palm", "arm_link"),),
         findings=(Finding("note", "ran without a renderer", values={"tried": ["egl"]}),),
         source="scenario: by hand\n",
-        resolved="scenario: by hand\r\nseed: 0 # ü\n",
         versions={"mujoco": "4.0.0"},
         ended_early="because",
-        meshes=(
-            MeshRecord(Path("a/b.stl"), (1.0, 1.0, 1.0), TRIANGLE, np.array([[0, 1, 2]])),
-            MeshRecord(Path("a/c.obj"), (2.0, 1.0, 1.0), TRIANGLE, np.array([[2, 1, 0]]), RED),
-        ),
         cameras=(Camera("eye", "palm", pose, width=4, height=2),),
         captures=(
             CaptureRecord(
@@ -117,28 +112,27 @@ def full_run():
                 outlines={"box": 7},
             ),
         ),
-        videos=(
-            VideoRecord(
-                "eye",
-                "cameras/eye/all.webm",
-                (0.0, 0.1),
-                10.0,
-                4,
-                2,
-                "rays",
-            ),
-        ),
-        files={
-            "cameras/eye/1.png": PICTURE,
-            "cameras/eye/all.webm": b"film",
-        },
+        files={"cameras/eye/1.png": PICTURE},
     )
+
+
+RESOLVED = "scenario: by hand\r\nseed: 0 # ü\n"
+DRAWINGS = Drawings(
+    meshes=(
+        MeshRecord(Path("a/b.stl"), (1.0, 1.0, 1.0), TRIANGLE, np.array([[0, 1, 2]])),
+        MeshRecord(Path("a/c.obj"), (2.0, 1.0, 1.0), TRIANGLE, np.array([[2, 1, 0]]), RED),
+    ),
+    videos=(VideoRecord("eye", "cameras/eye/all.webm", (0.0, 0.1), 10.0, 4, 2, "rays"),),
+    files={"cameras/eye/all.webm": b"film"},
+)
 
 
 def written(folder, run=None):
     run = run or full_run()
     verdicts = judge(run, EXPECTED)
-    stored = StoredRun(run, verdicts, "failed", digest(run, verdicts), {"plan": 0.25})
+    stored = StoredRun(
+        run, verdicts, "failed", digest(run, verdicts), {"plan": 0.25}, RESOLVED, DRAWINGS
+    )
     write_run(folder, stored)
     return run, verdicts
 
@@ -152,9 +146,7 @@ def names_in(folder):
 
 
 def assert_equal_runs(a, b):
-    left, right = (
-        to_plain(replace(run, signals=None, steps=(), meshes=(), files={})) for run in (a, b)
-    )
+    left, right = (to_plain(replace(run, signals=None, steps=(), files={})) for run in (a, b))
     assert left == right
     assert dict(a.files) == dict(b.files)
     for one, other in zip(a.steps, b.steps, strict=True):
@@ -165,11 +157,6 @@ def assert_equal_runs(a, b):
             for key in ("times", "positions", "velocities", "accelerations"):
                 there, back = getattr(one.trajectory, key), getattr(other.trajectory, key)
                 np.testing.assert_array_equal(back, there)
-    assert len(a.meshes) == len(b.meshes)
-    for one, other in zip(a.meshes, b.meshes, strict=True):
-        assert (one.path, one.scale, one.rgba) == (other.path, other.scale, other.rgba)
-        np.testing.assert_array_equal(one.vertices, other.vertices)
-        np.testing.assert_array_equal(one.faces, other.faces)
     arrays, others = arrays_of(a.signals), arrays_of(b.signals)
     assert arrays.keys() == others.keys()
     for name, array in arrays.items():
@@ -178,10 +165,19 @@ def assert_equal_runs(a, b):
     assert a.signals.clearance_cutoff == b.signals.clearance_cutoff
 
 
+def assert_equal_drawings(a, b):
+    assert (a.videos, dict(a.files)) == (b.videos, dict(b.files))
+    for one, other in zip(a.meshes, b.meshes, strict=True):
+        assert (one.path, one.scale, one.rgba) == (other.path, other.scale, other.rgba)
+        np.testing.assert_array_equal(one.vertices, other.vertices)
+        np.testing.assert_array_equal(one.faces, other.faces)
+
+
 def test_a_run_read_back_is_equal_and_judged_equally(tmp_path):
     run, verdicts = written(tmp_path / "run")
     stored = read_run(tmp_path / "run")
     assert_equal_runs(run, stored.run)
+    assert_equal_drawings(DRAWINGS, stored.drawings)
     assert type(stored.run.objects[2].shapes[4].geometry) is Mesh
     assert stored.run.objects[2].shapes[0].pose.rotation.dtype == float
     assert to_plain(stored.verdicts) == to_plain(verdicts)
@@ -202,7 +198,7 @@ def test_run_json_has_the_keys_that_tools_read(tmp_path):
     assert document["verdicts"][4]["margin"] == "NaN"
     assert document["steps"][0]["planner"]["length"] == "Infinity"
     resolved = (tmp_path / "run" / "scenario.resolved.yaml").read_bytes()
-    assert resolved.decode() == full_run().resolved
+    assert resolved.decode() == RESOLVED
 
 
 def test_the_signals_are_the_same_bytes_every_time_and_plain_numpy(tmp_path):
@@ -333,8 +329,10 @@ def test_a_run_saved_before_there_were_cameras_is_read(tmp_path):
     for key in ("cameras", "captures", "videos"):
         del document[key]
     (tmp_path / "run" / "run.json").write_text(json.dumps(document))
-    run = read_run(tmp_path / "run").run
-    assert (run.cameras, run.captures, run.videos, dict(run.files)) == ((), (), (), {})
+    stored = read_run(tmp_path / "run")
+    run, drawings = stored.run, stored.drawings
+    assert (run.cameras, run.captures, dict(run.files)) == ((), (), {})
+    assert (drawings.videos, dict(drawings.files)) == ((), {})
 
 
 def test_a_run_of_the_first_format_is_read_in_the_present_words(tmp_path):

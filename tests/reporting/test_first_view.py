@@ -22,7 +22,7 @@ def views(recorded_run):
     def view(xyz):
         run = read_run(recorded_run(TEXT.format(xyz=xyz), outcome="failed") / "run").run
         explained = explained_points([pack_plan(run, run.steps[0], 0, Packer())])
-        views = [pack_scene(run, Packer(), (), points)["focus"] for points in ((), explained)]
+        views = [pack_scene(run, (), Packer(), (), points)["focus"] for points in ((), explained)]
         return np.array(explained), *(np.array(focus["points"]) for focus in views), views[0]["arm"]
 
     return view

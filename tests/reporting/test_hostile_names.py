@@ -56,7 +56,7 @@ def page_of(name, folder):
     verdict = Verdict(name, "failed", -1.0, name, 0.5, 1, name, name, (measure,))
     stored = StoredRun(hostile_run(name), (verdict,), "failed", "0" * 64, {name: 1.0})
     file = folder / "report.html"
-    text = Page(stored).html(stored, [SummaryPicture(name, b"")])
+    text = Page(stored.run, stored.verdicts).html(stored, [SummaryPicture(name, b"")])
     file.write_text(text, encoding="utf-8", newline="")
     return file
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from harness.core.geometry import Box, Mesh
-from harness.recording.mesh_record import MeshRecord
+from harness.recording.drawings import MeshRecord
 from harness.recording.run import Finding
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
@@ -31,7 +31,7 @@ SIGNALS = arrays(float, array_shapes(min_dims=2, max_dims=2, max_side=60), eleme
 
 
 def page_html(stored):
-    return Page(stored).html(stored)
+    return Page(stored.run, stored.verdicts).html(stored)
 
 
 def stored(run=None, verdicts=(), outcome="passed"):

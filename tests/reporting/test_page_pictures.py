@@ -8,6 +8,7 @@ import pytest
 
 from harness.core.camera import Camera
 from harness.core.geometry import Box, Shape
+from harness.recording.drawings import NO_DRAWINGS, Drawings
 from harness.recording.film import encoded_film
 from harness.recording.signals import CaptureRecord, ContactRecord, VideoRecord
 from harness.recording.stored_run import StoredRun
@@ -55,10 +56,10 @@ def video(frames=20, rate=10.0):
     return encoded_film(pictures, rate, (64, 48))
 
 
-def write(folder, run):
+def write(folder, run, drawings=NO_DRAWINGS):
     file = folder / "report.html"
-    stored = StoredRun(run, (), "passed", "0" * 64, {})
-    file.write_text(Page(stored).html(stored), encoding="utf-8")
+    stored = StoredRun(run, (), "passed", "0" * 64, {}, drawings=drawings)
+    file.write_text(Page(run, ()).html(stored), encoding="utf-8")
     return file
 
 
@@ -72,10 +73,11 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
         lift_run(),
         cameras=(Camera("wrist", "palm"), Camera("room", "world")),
         captures=captures,
-        videos=(VideoRecord("room", "c.mp4", times, 10.0, 64, 48, "rays"),),
-        files={"a.png": flat(RED), "b.png": flat(GREEN), "c.mp4": video()},
+        files={"a.png": flat(RED), "b.png": flat(GREEN)},
     )
-    page = visit(write(tmp_path, run)).page
+    videos = (VideoRecord("room", "c.mp4", times, 10.0, 64, 48, "rays"),)
+    drawings = Drawings(videos=videos, files={"c.mp4": video()})
+    page = visit(write(tmp_path, run, drawings)).page
     captions = page.locator(".camera figcaption")
     assert captions.count() == 2
     for moment, colour, label in ((0.7, 0, "wrist · look"), (1.7, 1, "wrist · look again")):

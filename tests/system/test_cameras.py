@@ -102,11 +102,12 @@ def test_pictures_change_no_sample_of_the_physics(tmp_path):
 
 @pytest.mark.nightly(but=["markers"])
 def test_a_video_has_a_time_for_every_frame_within_the_run(case):
-    _, _, run = case
-    for film in run.videos:
+    _, folder, run = case
+    drawings = read_run(folder).drawings
+    for film in drawings.videos:
         assert film.times[0] == 0.0
         assert film.times[-1] <= run.signals.times[-1] + 1e-9
-        frames = list(decoded_film(run.files[film.file]))
+        frames = list(decoded_film(drawings.files[film.file]))
         assert len(frames) == len(film.times)
         camera = next(camera for camera in run.cameras if camera.name == film.camera)
         assert frames[0].shape == (camera.height, camera.width, 3)

@@ -74,7 +74,7 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
     names = names_of(pairs)
     changes = [
         *_words("outcome", "", first.outcome, second.outcome),
-        *(Change("scenario", "", before, after) for before, after in line_changes(one, two)),
+        *(Change("scenario", "", before, after) for before, after in line_changes(first, second)),
         *_words("robot", "", one.robot.name, two.robot.name),
         *_words("seed", "", str(one.seed), str(two.seed)),
         *_versions(one.versions, two.versions),
@@ -214,7 +214,7 @@ NONE = "-"  # Stands for what one of two runs does not have
 MOST = 20  # Changes that are listed one by one
 
 
-def line_changes(one: Run, two: Run) -> list[tuple[str, str]]:
+def line_changes(one: StoredRun, two: StoredRun) -> list[tuple[str, str]]:
     """Each line before and after; the last says how many more there are."""
     ours, theirs = (_lines(run.resolved) for run in (one, two))
     found: list[tuple[str, str]] = []

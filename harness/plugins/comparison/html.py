@@ -52,8 +52,8 @@ def comparison_page(
         parting=text,
         groups=groups,
         facts=Packer().text(facts),
-        first=Page(first).data(first),
-        second=Page(second).data(second),
+        first=Page(first.run, first.verdicts).data(first),
+        second=Page(second.run, second.verdicts).data(second),
     )
     return page.encode(errors="replace").decode()  # names of files may have half characters
 

@@ -20,6 +20,7 @@ from harness.plugins.grading.bag.recorded_run import DOUBT, Recorded, run_of_bag
 from harness.plugins.grading.credit import credit_of_run
 from harness.plugins.grading.points import Grade, Graded, graded
 from harness.recording.digest import digest
+from harness.recording.drawings import Drawings
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict, VerdictWarning
@@ -93,12 +94,11 @@ def grade_bag(
     ]
     grade = Grade(run, tuple(rows), tuple(notes))
     if report_dir is not None:
-        resolved = resolved_text(prepared.loaded, folder=report_dir)
-        _write_page(replace(run, resolved=resolved), grade, report_dir)
+        _write_page(run, grade, report_dir, resolved_text(prepared.loaded, folder=report_dir))
     return grade
 
 
-def _write_page(run: Run, grade: Grade, folder: Path) -> None:
+def _write_page(run: Run, grade: Grade, folder: Path, resolved: str) -> None:
     """Write the recording as the folder of a run, and its page.
 
     Raises:
@@ -106,10 +106,10 @@ def _write_page(run: Run, grade: Grade, folder: Path) -> None:
     """
     from harness.session.observation.visuals import mesh_records
 
-    run = replace(run, meshes=mesh_records(run))
+    drawings = Drawings(mesh_records(run))
     verdicts = tuple(_credited(row) for row in grade.rows)
     outcome = "passed" if grade.is_full else "failed"
-    stored = StoredRun(run, verdicts, outcome, digest(run, verdicts), {})
+    stored = StoredRun(run, verdicts, outcome, digest(run, verdicts), {}, resolved, drawings)
     with run_folder(folder, run) as target:
         write_document(target, stored)
         Reports(["html"]).write(target, stored)

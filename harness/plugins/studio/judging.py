@@ -58,8 +58,7 @@ def judged(cell: LiveCell, document: Document | None = None) -> Judged:
     with closing(Pictures(request, prepared)) as pictures:
         pictures.executed(builder.record)
         builder.observe()
-        builder.captures = pictures.captured(unobserved)
-    run = builder.build()
+        run = builder.build(pictures.captured(unobserved))
     verdicts = judge(run, prepared.expectations)
     is_over = cell.steps_done >= cell.document.step_count or bool(execution.ended_early)
     is_good = not run.ended_early and all(each.status == "passed" for each in verdicts)

@@ -8,7 +8,9 @@ from typing import Any
 import cv2
 import numpy as np
 
+from harness.recording.drawings import Drawings
 from harness.recording.run import Run
+from harness.recording.stored_run import StoredRun
 from harness.reporting.html.packing import Packer
 
 KINDS = {"color": "", "depth_preview": "depth", "segmentation_preview": "segmentation"}
@@ -20,19 +22,19 @@ WIDEST = 480  # [pixels]
 QUALITY = 75
 
 
-def pack_cameras(run: Run, packer: Packer) -> list[dict[str, Any]]:
+def pack_cameras(stored: StoredRun, packer: Packer) -> list[dict[str, Any]]:
     """Put videos and pictures in; a view for each camera and kind of picture."""
-    return [*_videos(run, packer), *_images(run, packer)]
+    return [*_videos(stored.drawings, packer), *_images(stored.run, packer)]
 
 
-def _videos(run: Run, packer: Packer) -> list[dict[str, Any]]:
-    if not run.videos:
+def _videos(drawings: Drawings, packer: Packer) -> list[dict[str, Any]]:
+    if not drawings.videos:
         return []
     from harness.recording import film  # loads a video library
 
     views: list[dict[str, Any]] = []
-    for number, video in enumerate(run.videos):
-        data = run.files.get(video.file, b"")
+    for number, video in enumerate(drawings.videos):
+        data = drawings.files.get(video.file, b"")
         if not data or not video.times:
             continue
         if video.width > WIDEST_VIDEO or not video.file.endswith(film.SUFFIX):

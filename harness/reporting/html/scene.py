@@ -19,8 +19,8 @@ from harness.core.geometry import (
     Sphere,
 )
 from harness.core.types import FloatArray, IntArray
+from harness.recording.drawings import MeshRecord
 from harness.recording.link_poses import replayed_link_poses
-from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import Run
 from harness.reporting.html.first_view import FARTHEST, first_view, rounded
 from harness.reporting.html.packing import Packer, differences, zigzag
@@ -45,6 +45,7 @@ def frame_samples(times: FloatArray) -> tuple[float, IntArray]:
 
 def pack_scene(
     run: Run,
+    meshes: Sequence[MeshRecord],
     packer: Packer,
     named: Collection[str] = (),
     explained: Sequence[Sequence[float]] = (),
@@ -53,18 +54,19 @@ def pack_scene(
 
     Args:
         run: The run that is shown.
+        meshes: The triangles of its mesh files.
         packer: Takes poses and meshes.
         named: Objects that the first view holds even if the robot did not touch them.
         explained: Points that it holds because they explain a failure.
     """
     step, samples = frame_samples(run.signals.times)
     poses = replayed_link_poses(run.robot, run.signals.joint_positions[samples])
-    meshes = _mesh_parts(run)
+    parts = _mesh_parts(meshes)
     bodies: list[dict[str, Any]] = []
     columns: list[FloatArray] = []
 
     def add(name: str, shapes: Sequence[Shape], rows: FloatArray, **more: Any) -> None:
-        body = {"name": name, "shapes": [plain_shape(shape, meshes) for shape in shapes], **more}
+        body = {"name": name, "shapes": [plain_shape(shape, parts) for shape in shapes], **more}
         moves = len(rows) > 1 and bool(np.ptp(rows, axis=0).max() > STILL)
         body["fixed"] = None if moves else rounded(rows[0])
         if moves:
@@ -77,7 +79,7 @@ def pack_scene(
     for name in dict.fromkeys([*run.robot.link_visuals, run.robot.tcp_link]):
         if name in poses:
             looks, link = run.robot.link_visuals.get(name, ()), links[name]
-            hidden = [plain_shape(shape, meshes) for shape in link.collisions]
+            hidden = [plain_shape(shape, parts) for shape in link.collisions]
             mass = None if link.inertial is None else link.inertial.mass
             add(
                 name,
@@ -98,7 +100,7 @@ def pack_scene(
             continue
         shown = always if recorded is None else _shown(run.signals.times, recorded)
         ghost = not obj.in_simulation
-        hidden = [plain_shape(shape, meshes) for shape in obj.shapes if obj.visuals]
+        hidden = [plain_shape(shape, parts) for shape in obj.shapes if obj.visuals]
         add(
             obj.name,
             obj.looks,
@@ -119,7 +121,7 @@ def pack_scene(
     focus, bounds = first_view(run, poses, named, explained)
     return {
         "bodies": bodies,
-        "meshes": [pack_mesh(mesh, number, packer) for number, mesh in enumerate(run.meshes)],
+        "meshes": [pack_mesh(mesh, number, packer) for number, mesh in enumerate(meshes)],
         "frames": {"count": len(samples), "step": step, "unit": unit},
         "toolBody": run.robot.tcp_link,
         "focus": focus,
@@ -127,10 +129,10 @@ def pack_scene(
     }
 
 
-def _mesh_parts(run: Run) -> dict[MeshKey, list[list[Any]]]:
+def _mesh_parts(meshes: Sequence[MeshRecord]) -> dict[MeshKey, list[list[Any]]]:
     """For each mesh file: the numbers of its parts, with their colours."""
     parts: dict[MeshKey, list[list[Any]]] = {}
-    for number, mesh in enumerate(run.meshes):
+    for number, mesh in enumerate(meshes):
         colour = None if mesh.rgba is None else rounded(mesh.rgba, 3)
         parts.setdefault((mesh.path, mesh.scale), []).append([number, colour])
     return parts

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from harness.recording.explanation import recorded_explanation
 from harness.recording.read_run import read_run
+from harness.recording.run import Run
 from harness.recording.stored_run import PAGE, StoredRun, blames_changes
+from harness.recording.verdict import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.bundle import rendered
 from harness.reporting.html.groups import pack_groups
@@ -40,8 +42,7 @@ class Page:
     What does not depend on the run's pictures is packed at once, while they are being drawn.
     """
 
-    def __init__(self, stored: StoredRun) -> None:
-        run = stored.run
+    def __init__(self, run: Run, verdicts: Sequence[Verdict]) -> None:
         self._packer = Packer()
         pack_tcp_path(run, self._packer)
         self._plans = [
@@ -49,7 +50,7 @@ class Page:
             for index, step in enumerate(ordered_steps(run))
         ]
         self._facts = {
-            "groups": pack_groups(run, stored.verdicts, self._packer),
+            "groups": pack_groups(run, verdicts, self._packer),
             "presses": pack_presses(run, self._packer),
         }
         bundle.templates(bundle.TEMPLATE.parent)
@@ -97,8 +98,10 @@ class Page:
                 "environment": environment(stored),
                 "source": run.source,
                 **self._facts,
-                "cameras": pack_cameras(run, packer),
-                **pack_scene(run, packer, blamed, explained_points(self._plans)),
+                "cameras": pack_cameras(stored, packer),
+                **pack_scene(
+                    run, stored.drawings.meshes, packer, blamed, explained_points(self._plans)
+                ),
             }
         )
 
@@ -127,7 +130,7 @@ def write_page(folder: Path, stored: StoredRun | None = None, begun: Page | None
     stored = stored or read_run(folder)
     page = folder / PAGE
     with blames_changes(folder, stored):
-        text = (begun or Page(stored)).html(stored, _pictures(folder, stored))
+        text = (begun or Page(stored.run, stored.verdicts)).html(stored, _pictures(folder, stored))
     page.write_text(text, encoding="utf-8", newline="")
     return page
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.recording.stored_run import StoredRun
+from harness.reporting.progress_events import Drawing, ProgressEvent
 from harness.reporting.reporter import Reporter
 
 if TYPE_CHECKING:
@@ -20,11 +21,12 @@ class HtmlReporter(Reporter):
 
     _page: Page | None = None
 
-    def begin(self, stored: StoredRun) -> None:
-        """Pack what the page shows of the motion."""
-        from harness.reporting.html.write import Page
+    def hear(self, event: ProgressEvent) -> None:
+        """Pack what the page shows of the motion, while pictures are being drawn."""
+        if isinstance(event, Drawing):
+            from harness.reporting.html.write import Page
 
-        self._page = Page(stored)
+            self._page = Page(event.run, event.verdicts)
 
     def write(self, folder: Path, stored: StoredRun) -> None:
         """Write the page."""

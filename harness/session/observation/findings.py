@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from harness.core.solids import volume_of
 from harness.core.world import WorldObject
 from harness.ports.scene import Touch
 from harness.recording.explanation import LoweredMargins
-from harness.recording.run import Finding
+from harness.recording.run import Finding, Run
 from harness.recording.step_record import StepRecord
 
 LARGE = 5.0  # size from which a movable object is probably given in millimetres [m]
@@ -89,6 +89,24 @@ def noted(problem: Problem) -> str:
 def notes_of_files(notes: Sequence[str]) -> tuple[Finding, ...]:
     """What was left out of the robot's and the world's files, or assumed."""
     return tuple(Finding(kind="note", message=note) for note in notes)
+
+
+def slowed_videos(run: Run, rates: Mapping[str, float]) -> tuple[Finding, ...]:
+    """The cameras whose video has a lower rate than requested, since the run is long.
+
+    Args:
+        rates: Requested frames per second of simulated time, by camera.
+    """
+    most = {camera.name: camera.most_frames for camera in run.cameras}
+    return tuple(
+        Finding(
+            "video_rate",
+            f"{name} is recorded at {most[name] / run.duration:.3g} Hz instead of {rate:g} Hz:"
+            f" a video of this size has at most {most[name]} frames",
+        )
+        for name, rate in rates.items()
+        if run.duration * rate > most[name]
+    )
 
 
 def overlap_text(touch: Touch) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.cameras.meshes import mesh_parts
 from harness.core.geometry import Mesh, Shape
-from harness.recording.mesh_record import MeshRecord
+from harness.recording.drawings import MeshRecord
 from harness.recording.run import Run
 
 

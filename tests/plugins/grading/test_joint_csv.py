@@ -101,7 +101,7 @@ def test_a_class_that_hands_in_tables_gets_points_and_pages_with_the_arm(exercis
     }
     assert rows[-1]["remark"].startswith("no_joints.csv: the first line names no joint")
     kept = read_run(tmp_path / "grades/students/good/run")
-    assert kept.run.meshes
+    assert kept.drawings.meshes
     assert (tmp_path / "grades/students/good/run/report.html").is_file()
 
 

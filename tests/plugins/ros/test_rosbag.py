@@ -245,7 +245,7 @@ def test_the_tcp_path_grows_as_the_trajectory_server_of_the_course_makes_it(mess
 
 
 def test_pictures_are_the_recorded_ones_with_the_camera_s_calibration(messages, stored):
-    video = stored.run.videos[0]
+    video = stored.drawings.videos[0]
     shown = messages["/over_view/image/compressed"]
     assert [time for time, _ in shown] == pytest.approx(video.times)
     for (_, message), (_, info) in zip(shown, messages["/over_view/camera_info"], strict=True):

@@ -19,6 +19,7 @@ from harness.recording.film import decoded_film
 from harness.recording.npz_file import NpzFile
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, VideoRecord
+from harness.recording.stored_run import StoredRun
 
 MAGIC = {b"\xff\xd8": "jpeg", b"\x89P": "png"}
 
@@ -40,16 +41,19 @@ def captures(run: Run) -> Iterator[Message]:
             yield Message(capture.time, topics.depth, _depth(run, capture, head))
 
 
-def video_frames(run: Run, video: VideoRecord, *, is_raw: bool = False) -> Iterator[Message]:
+def video_frames(
+    stored: StoredRun, video: VideoRecord, *, is_raw: bool = False
+) -> Iterator[Message]:
     """Every frame of the video of a camera that was recorded all along, as its JPEG pictures.
 
     Args:
         is_raw: Publish the frames uncompressed too.
     """
+    run = stored.run
     camera = next(camera for camera in run.cameras if camera.name == video.camera)
     topics = camera_topics(camera.name)
     frame = optical_frames(run.cameras, run.signals.object_poses)[camera.name]
-    pictures = decoded_film(run.files[video.file])
+    pictures = decoded_film(stored.drawings.files[video.file])
     for time, picture in zip(video.times, pictures, strict=False):  # one that is cut off has less
         content, head = _jpeg(picture, camera), header(time, frame)
         yield Message(time, topics.info, camera_info(camera, head))

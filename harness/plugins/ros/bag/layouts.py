@@ -21,19 +21,21 @@ from harness.plugins.ros.bag.topics import (
     camera_topics,
 )
 from harness.recording.run import Run
+from harness.recording.stored_run import StoredRun
 
 SCENE, LOG, EVENT_LIST = "3D!scene", "RosOut!log", "RawMessages!events"
 PLOTS = ("position", "velocity", "effort")
 
 
-def foxglove_layout(run: Run) -> str:
+def foxglove_layout(stored: StoredRun) -> str:
     """The layout as the JSON file that Foxglove imports.
 
     The layer of the robot description is off there by default, so it is switched on by name.
     """
+    run = stored.run
     panels: dict[str, Any] = {SCENE: _scene(run)}
     panels |= {f"Plot!{field}": _plot(run, field) for field in PLOTS}
-    cameras = {f"Image!{video.camera}": _image(video.camera) for video in run.videos}
+    cameras = {f"Image!{video.camera}": _image(video.camera) for video in stored.drawings.videos}
     panels |= cameras
     panels[LOG] = {"searchTerms": [], "minLogLevel": 1, "topicToRender": ROSOUT.name}
     panels[EVENT_LIST] = {"topicPath": EVENTS.name, "diffEnabled": False, "expansion": "all"}
@@ -115,8 +117,9 @@ def _image(camera: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def rviz_configuration(run: Run) -> str:
+def rviz_configuration(stored: StoredRun) -> str:
     """The .rviz file: robot, frames, scene, path, MoveIt's planned path, cameras."""
+    run = stored.run
     displays = [
         _display("Grid", "Grid", {"Cell Size": 0.5, "Plane Cell Count": 10}),
         _display(
@@ -142,7 +145,7 @@ def rviz_configuration(run: Run) -> str:
                 "Image", f"Camera {video.camera}",
                 {"Topic": _topic(camera_topics(video.camera).compressed)},
             )
-            for video in run.videos
+            for video in stored.drawings.videos
         ),
     ]  # fmt: skip
     base = run.robot.static_link_poses.get(run.robot.base_link, IDENTITY)

@@ -14,10 +14,11 @@ from harness.plugins.ros.bag.frames import WORLD, moving_objects
 from harness.plugins.ros.bag.messages import TYPES, header, message, point, pose_message, vector
 from harness.plugins.ros.bag.samples import Message
 from harness.plugins.ros.bag.topics import SCENE_MARKERS
+from harness.recording.drawings import Drawings, MeshRecord
 from harness.recording.link_poses import planned_tcp_poses
-from harness.recording.mesh_record import MeshRecord
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.step_record import StepRecord
+from harness.recording.stored_run import StoredRun
 
 MARKER = "visualization_msgs/msg/Marker"
 Marker: Any = TYPES[MARKER]
@@ -30,24 +31,25 @@ Solid = tuple[int, tuple[float, float, float], SE3]
 """A marker's type, its scale, and T_shape_marker."""
 
 
-def scene_markers(run: Run) -> Iterator[Message]:
+def scene_markers(stored: StoredRun) -> Iterator[Message]:
     """Every object and planned path there is, anew each time that this changes."""
+    run = stored.run
     first, last = float(run.signals.times[0]), float(run.signals.times[-1])
     planned = ((step.start_time, _planned(run, step)) for step in run.steps)
     lines = [(time, line) for time, line in planned if line is not None]
     changes = {first, *(time for time, _ in lines)}
     changes |= {time for obj in run.objects for span in obj.present for time in span}
     for time in sorted(time for time in changes if first <= time < last or time == first):
-        yield Message(time, SCENE_MARKERS, _array(run, time, lines))
+        yield Message(time, SCENE_MARKERS, _array(stored, time, lines))
 
 
-def _array(run: Run, time: float, lines: Sequence[tuple[float, FloatArray]]) -> Any:
+def _array(stored: StoredRun, time: float, lines: Sequence[tuple[float, FloatArray]]) -> Any:
     """All that is there at a time; what was there before is taken away first."""
     markers = [_marker(time, WORLD, "", 0, action=Marker.DELETEALL)]
-    moving = set(moving_objects(run))
-    for obj in run.objects:
+    moving = set(moving_objects(stored.run))
+    for obj in stored.run.objects:
         if any(begin <= time < end for begin, end in obj.present):
-            markers += _of_object(run, obj, time, is_moving=obj.name in moving)
+            markers += _of_object(stored, obj, time, is_moving=obj.name in moving)
     for number, (begin, points) in enumerate(lines):
         if begin <= time:
             line = _marker(time, WORLD, PLANNED, number, kind=Marker.LINE_STRIP)
@@ -58,8 +60,8 @@ def _array(run: Run, time: float, lines: Sequence[tuple[float, FloatArray]]) -> 
     return message(SCENE_MARKERS.msgtype, markers=markers)
 
 
-def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> list[Any]:
-    known = run.signals.object_poses.get(obj.name)
+def _of_object(stored: StoredRun, obj: ObjectRecord, time: float, *, is_moving: bool) -> list[Any]:
+    known = stored.run.signals.object_poses.get(obj.name)
     pose = np.array(obj.pose) if known is None else known[0]
     if not is_moving and not pose.size:
         return []
@@ -72,7 +74,7 @@ def _of_object(run: Run, obj: ObjectRecord, time: float, *, is_moving: bool) -> 
             marker.scale = vector(scale)
             marker.color = _colour(shape.rgba)
             markers.append(marker)
-        for mesh in _meshes(run, shape):
+        for mesh in _meshes(stored.drawings, shape):
             marker = _marker(time, frame, obj.name, len(markers), kind=Marker.TRIANGLE_LIST)
             marker.pose = pose_message((base @ shape.pose).as_vector().tolist())
             marker.scale = vector((1.0, 1.0, 1.0))
@@ -106,9 +108,9 @@ def _ball(radius: float, pose: SE3) -> Solid:
     return Marker.SPHERE, (2 * radius, 2 * radius, 2 * radius), pose
 
 
-def _meshes(run: Run, shape: Shape) -> Iterator[MeshRecord]:
+def _meshes(drawings: Drawings, shape: Shape) -> Iterator[MeshRecord]:
     geometry = shape.geometry
-    for record in run.meshes:
+    for record in drawings.meshes:
         if isinstance(geometry, Mesh) and (record.path, record.scale) == (
             geometry.path,
             geometry.scale,

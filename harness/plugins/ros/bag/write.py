@@ -82,8 +82,8 @@ def write_bag(folder: Path, stored: StoredRun, options: BagOptions | None = None
         _write_messages(folder, stored, options)
         run = stored.run
         _text(folder / ROBOT, urdf_of(run, options.meshes))
-        _text(folder / LAYOUT, foxglove_layout(run))
-        _text(folder / RVIZ, rviz_configuration(run))
+        _text(folder / LAYOUT, foxglove_layout(stored))
+        _text(folder / RVIZ, rviz_configuration(stored))
     except OSError as error:
         raise HarnessError(
             f"the bag cannot be written to {folder}: {error.strerror or error};"
@@ -134,9 +134,12 @@ def _messages(stored: StoredRun, options: BagOptions) -> Iterator[Message]:
         *(wrenches(run, each, indices) for each in run.robot.wrench_sensors.values()),
         moving_tf(run, indices),
         _in_order(planned(run)),
-        scene_markers(run),
+        scene_markers(stored),
         cameras.captures(run),
-        *(cameras.video_frames(run, video, is_raw=options.has_raw_images) for video in run.videos),
+        *(
+            cameras.video_frames(stored, video, is_raw=options.has_raw_images)
+            for video in stored.drawings.videos
+        ),
         *tcp_paths(run),
         event_messages(stored),
     ]
