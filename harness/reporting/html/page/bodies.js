@@ -10,8 +10,8 @@ const FLOOR_SIZE = 12; // half its side [m]
 /**
  * @param {import("./viewer.js").Viewer} viewer @param {ShapeHead} shape
  * @param {{positions: Float32Array, normals: Float32Array, indices: Uint32Array}[]} meshes
- * @param {boolean} isGhost drawn translucent @param {Partial<import("./viewer.js").Surface>} [more]
- * @returns {{local: Float32Array, surface: import("./viewer.js").Surface}[]} each with T_body_shape
+ * @param {boolean} isGhost drawn translucent @param {Partial<import("./surfaces.js").Surface>} [more]
+ * @returns {{local: Float32Array, surface: import("./surfaces.js").Surface}[]} each with T_body_shape
  */
 export function surfacesOf(viewer, shape, meshes, isGhost, more = {}) {
   const local = poseMatrix(shape.pose);

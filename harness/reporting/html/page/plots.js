@@ -2,8 +2,9 @@
 
 import { byId, element } from "./dom.js";
 import { decodeGroup } from "./payload.js";
-import { Plot, readings } from "./plot.js";
+import { Plot } from "./plot.js";
 import { savePng, saveSvg } from "./plot_file.js";
+import { readings } from "./plot_pointer.js";
 import { short } from "./units.js";
 
 const PREFERRED = ["position", "velocity", "effort", "tracking"];

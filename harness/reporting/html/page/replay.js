@@ -116,7 +116,7 @@ export class Replay {
     );
   }
 
-  /** The body that a surface belongs to; null for none. @param {import("./viewer.js").Surface | null} surface */
+  /** The body that a surface belongs to; null for none. @param {import("./surfaces.js").Surface | null} surface */
   bodyOf(surface) {
     return this.bodies.find(({ pieces }) => pieces.some((piece) => piece.surface === surface)) ?? null;
   }

@@ -3,6 +3,8 @@
 /** @typedef {[number, number, number]} Vector */
 /** @typedef {Float32Array} Matrix */
 
+export const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+
 /** @param {ArrayLike<number>} a @param {ArrayLike<number>} b @returns {Vector} */
 export function subtract(a, b) {
   return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
