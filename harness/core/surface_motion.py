@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.pose_arrays import rotations_about
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
@@ -50,8 +51,8 @@ class SurfaceMotion:
 
     def __str__(self) -> str:
         speed = float(np.linalg.norm(self.velocity))
-        parts = [f"{speed:g} m/s"] if speed or not self.rotation else []
-        return ", ".join([*parts, *([f"{self.rotation:g} rad/s"] if self.rotation else [])])
+        parts = [amount(speed, "m/s")] if speed or not self.rotation else []
+        return ", ".join([*parts, *([amount(self.rotation, "rad/s")] if self.rotation else [])])
 
 
 def _cosine_share(angle: float) -> float:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from typing import Annotated, Any, ClassVar, cast
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ClassVar, Self, cast
 
 import numpy as np
 from pydantic import BaseModel, Field
@@ -12,6 +12,7 @@ from pydantic import BaseModel, Field
 from harness.cell.scope import At
 from harness.core.amounts import amount
 from harness.core.errors import HarnessError
+from harness.core.world import ObjectJoint, WorldObject
 from harness.judging.hands import of_arm
 from harness.judging.margins import Margin, MarginSignal, Part, all_of
 from harness.judging.observations import ExpectationError, Observations, merged, restricted
@@ -29,11 +30,30 @@ from harness.language.expectation import (
     TemporalFields,
 )
 from harness.language.plugin_field import PluginField
-from harness.recording.run import Run
+from harness.recording.run import ObjectRecord, Run
 from harness.recording.verdict import Measure, Verdict, VerdictWarning
+from harness.robot.description import RobotDescription
 
 SPECIAL_BODIES = ("robot", "gripper", "any")  # stand for several bodies where two are named
 BOUNDS = {"at_least": ">=", "at_most": "<="}  # bound the one quantity of a predicate
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanisms:
+    """What has joints: the robot, and the parts of fixtures by their names."""
+
+    robot: RobotDescription
+    parts: Mapping[str, ObjectJoint]
+
+    @classmethod
+    def of(cls, robot: RobotDescription, objects: Iterable[ObjectRecord | WorldObject]) -> Self:
+        """The mechanisms of a run or of a program."""
+        return cls(robot, {each.name: each.joint for each in objects if each.joint is not None})
+
+    def units_of(self, joints: Iterable[str]) -> frozenset[str]:
+        """The units of joints of the robot: `rad`, `m` or both."""
+        units = self.robot.joint_units.by_joint
+        return frozenset(units[name] for name in joints if name in units)
 
 
 BASE_FIELDS = {*TemporalFields.model_fields, *PredicateFields.model_fields}  # none names an object
@@ -54,6 +74,10 @@ class Expectation(ExpectationFields):
     def stated_arm(self) -> str | None:
         """The arm that it names, of a robot with several; None where it names none."""
         return None
+
+    def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
+        """Units of the joints that its numbers of rad or m are about; by default all joints'."""
+        return mechanisms.units_of(mechanisms.robot.joint_units.by_joint)
 
     def looks_back(self) -> float | None:
         """How far before its window it reads the record [s]; None where it may read all of it."""

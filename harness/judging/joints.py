@@ -18,7 +18,7 @@ from harness.judging.window import NotObservable, Window
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
-from harness.robot.description import Joint
+from harness.robot.description import Joint, RobotDescription
 
 SLIDING_TOLERANCE = 0.002  # [m]
 STANDING = 0.01  # [rad or m] within which encoders' noise and the sag of a held arm stay
@@ -61,7 +61,11 @@ def joint_column(run: Run, name: str) -> tuple[int, Joint]:
 
 def gripper_joints(run: Run) -> frozenset[str]:
     """Joints of the grippers' groups, and those that follow them."""
-    robot = run.robot
+    return hand_joints(run.robot)
+
+
+def hand_joints(robot: RobotDescription) -> frozenset[str]:
+    """Joints of the grippers' groups, and those that follow them."""
     if not robot.grippers:
         return frozenset()
     mimics = {joint.name for joint in robot.movable_joints if joint.is_mimic}

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.judging.expectation import Expectation
+from harness.judging.expectation import Expectation, Mechanisms
 from harness.judging.facts import remembered_facts
 from harness.judging.placed import PlacedExpectation, describe
 from harness.judging.recorded import guard_unrecorded
@@ -19,12 +19,13 @@ from harness.recording.verdict import Verdict
 def judge(run: Run, expectations: Sequence[PlacedExpectation]) -> tuple[Verdict, ...]:
     """A verdict for each expectation, in their order."""
     readable = guard_unrecorded(run)
+    mechanisms = Mechanisms.of(run.robot, run.objects)
     with remembered_facts():
-        return tuple(_judge(readable, expectation) for expectation in expectations)
+        return tuple(_judge(readable, each, mechanisms) for each in expectations)
 
 
-def _judge(run: Run, placed: PlacedExpectation) -> Verdict:
-    text = describe(placed.spec)
+def _judge(run: Run, placed: PlacedExpectation, mechanisms: Mechanisms) -> Verdict:
+    text = describe(placed.spec, mechanisms)
     try:
         refuse_changed_later(run, placed.step, placed.spec.names())
         with np.errstate(invalid="ignore"):

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from harness.core.amounts import JointUnits
 from harness.language.base import (
     Angle,
     AngularVelocity,
@@ -78,17 +79,14 @@ class GoalFields(SpecModel):
         default=None, description="How close to a pose or position goal the motion must end."
     )
 
-    def summary(self) -> str:
-        """The goal in a few words."""
+    def summary_in(self, units: JointUnits) -> str:
+        """The goal in a few words, its joint positions in the units of the robot."""
         if self.named_target is not None:
             return self.named_target
         if self.joints is not None:
-            return "joints " + ", ".join(f"{value:.4g}" for value in self.joints.values())
+            return f"joints {units.text(self.joints)}"
         place = self.pose or self.position
-        if place is None:
-            return ""
-        x, y, z = place.xyz
-        return f"({x:.4g}, {y:.4g}, {z:.4g}) in {place.frame}"
+        return "" if place is None else place.place()
 
     @model_validator(mode="after")
     def _one_goal(self) -> GoalFields:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, field_validator, model_validator
 
+from harness.core.amounts import point_text
 from harness.language.base import (
     AngleBetween,
     Name,
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
     from harness.core.spatial import SE3
 
 QUATERNION_NORM_TOLERANCE = 1e-2
-
-
-def _millimetres(xyz: tuple[float, float, float]) -> str:
-    return f"({', '.join(f'{round(1e3 * part, 3) + 0.0:g}' for part in xyz)}) mm"
 
 
 def _in_frame(text: str, frame: str) -> str:
@@ -77,6 +74,10 @@ class Pose(SpecModel):
         """Whether the file gives one."""
         return any(part is not None for part in (self.rpy, self.quat_xyzw, self.quat_wxyz))
 
+    def place(self) -> str:
+        """Its position alone: `(320, -170, 80) mm in base_link`."""
+        return _in_frame(point_text(self.xyz), self.frame)
+
     def text(self) -> str:
         """The pose in mm and degrees: `(320, -170, 80) mm, rpy (180, 0, -45) deg, in base_link`."""
         turn = ""
@@ -85,7 +86,7 @@ class Pose(SpecModel):
 
             angles = self.rpy or rpy_from_rotation(self.se3().rotation).tolist()
             turn = f", rpy ({', '.join(f'{math.degrees(each):.1f}' for each in angles)}) deg"
-        return _in_frame(_millimetres(self.xyz) + turn, self.frame)
+        return _in_frame(point_text(self.xyz) + turn, self.frame)
 
     def se3(self) -> SE3:
         """The pose in its frame: T_frame_this, quaternion normalised."""
@@ -110,9 +111,11 @@ class Position(SpecModel):
         default="world", description="The frame: `world`, a robot link, or an object's name."
     )
 
-    def text(self) -> str:
+    def place(self) -> str:
         """The position in mm: `(320, -170, 80) mm in base_link`."""
-        return _in_frame(_millimetres(self.xyz), self.frame)
+        return _in_frame(point_text(self.xyz), self.frame)
+
+    text = place
 
 
 class Direction(SpecModel):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field
 
+from harness.core.amounts import JointUnits
 from harness.core.details import Detail
 from harness.core.errors import ErrorCode
 from harness.core.registry import HAS_DOCSTRINGS, Registry, registry
@@ -123,14 +124,17 @@ class Step(SpecModel):
         """The verb that this class is registered under; empty for what several steps share."""
         return cls.__dict__.get("verb", "")
 
-    @property
-    def title(self) -> str:
+    def title(self, units: JointUnits) -> str:
         """One line for a person: `move_to mogi_home`."""
-        return f"{self.verb} {self.name or self.summary()}".rstrip()
+        return f"{self.verb} {self.name or self.summary_in(units)}".rstrip()
 
     def summary(self) -> str:
         """The step's content in a few words."""
         return ""
+
+    def summary_in(self, units: JointUnits) -> str:  # noqa: ARG002 - subclasses read it
+        """The step's content in a few words, where joint positions have units of the robot."""
+        return self.summary()
 
     def check(self, at: At) -> None:
         """Report what is wrong with the step, then change the scope as the step will.

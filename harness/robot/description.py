@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 
+from harness.core.amounts import JointUnits
 from harness.core.camera import Camera
 from harness.core.geometry import Shape
 from harness.core.kinematics import LinkJoint, LinkPoses
@@ -353,6 +354,12 @@ class RobotDescription:
     def link_names(self) -> tuple[str, ...]:
         """Names of `links`, `world` included."""
         return tuple(link.name for link in self.links)
+
+    @property
+    def joint_units(self) -> JointUnits:
+        """The units of its joint positions; of the gripper of the selected arm."""
+        units: dict[str, str] = {joint.name: joint.position_unit for joint in self.movable_joints}
+        return JointUnits(units, units.get(self.gripper.joint, "") if self.gripper else "")
 
     @cached_property
     def joint_by_name(self) -> Mapping[str, Joint]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
+from harness.judging.expectation import Mechanisms
 from harness.judging.placed import describe
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
@@ -132,4 +134,5 @@ def explain_file(
     prepared = prepare(path, overrides, seed)
     program = prepared.program
     records, poses = predict(program, prepared.ports)
-    return explain(program, records, poses, describe)
+    mechanisms = Mechanisms.of(program.description, program.world.objects)
+    return explain(program, records, poses, partial(describe, mechanisms=mechanisms))

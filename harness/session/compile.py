@@ -332,8 +332,8 @@ class _Compiler:
         with self._gaps_allowed(), self.scope.with_arm(arm):
             spec.check(At(self.scope, loc))
         title, options = spec.verb, self._options(None, loc, path)
-        with self._gaps_allowed():
-            title = with_arm(arm, spec.title)
+        with self._gaps_allowed(), self.scope.with_arm(arm):
+            title = with_arm(arm, spec.title(self.scope.description.joint_units))
         with self._gaps_allowed():
             options = self._options(spec.planning, loc, path)
         line, _ = sources.loaded.lines.line_of(loc)

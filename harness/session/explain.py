@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from harness.cell.program import Program
+from harness.core.amounts import point_text
 from harness.core.printable import printable
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
@@ -44,18 +45,20 @@ def _robot(robot: RobotDescription) -> list[str]:
     for name, group in robot.groups.items():
         states = ", ".join(robot.states_of(name)) or "none"
         lines.append(f"  group {name}: {', '.join(group.joint_names)}; named states: {states}")
-    start = ", ".join(f"{name} {value:.4g}" for name, value in robot.start_state.items())
+    start = ", ".join(
+        f"{name} {robot.joint_units.text({name: value})}"
+        for name, value in robot.start_state.items()
+    )
     return [*lines, f"  starts at {start}" if start else "  starts at zero", ""]
 
 
 def _world(world: World) -> list[str]:
     lines = [f"world {world.name}, physics step {world.timestep * 1e3:g} ms"]
     for obj in world.objects:
-        x, y, z = obj.pose.translation
         kind = "static" if obj.is_static else f"{obj.mass:g} kg"
         parts = ["planning"] * obj.in_planning + ["simulation"] * obj.in_simulation
         lines.append(
-            f"  {obj.name}: {kind}, at ({x:.4g}, {y:.4g}, {z:.4g}),"
+            f"  {obj.name}: {kind}, at {point_text(obj.pose.translation)},"
             f" friction {obj.friction.sliding:g}, in {' and '.join(parts)}"
         )
     return [*lines, ""]

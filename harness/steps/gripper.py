@@ -9,6 +9,7 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.grasping import GAP_SLACK, position_for_width
 from harness.cell.scope import At
+from harness.core.amounts import JointUnits, amounts, joint_position
 from harness.core.errors import StepFailed
 from harness.core.state_words import stated_name
 from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
@@ -45,12 +46,12 @@ class Gripper(Step):
         description="The effort limit of the gripper's joint; the default is the robot's.",
     )
 
-    def summary(self) -> str:
+    def summary_in(self, units: JointUnits) -> str:
         if self.named_target is not None:
             return self.named_target
         if self.position is not None:
-            return f"to {self.position:g}"
-        return f"width {(self.width or 0.0) * 1e3:g} mm"
+            return f"to {joint_position(self.position, units.gripper)}"
+        return f"width {joint_position(self.width or 0.0, 'm')}"
 
     def check(self, at: At) -> None:
         if not at.scope.check_gripper(at.loc, "`gripper`"):
@@ -73,10 +74,11 @@ class Gripper(Step):
         result = cell.simulator.command_gripper(target, effort, timeout=timeout, joint=hand.joint)
         note_result(cell, target, result)
         if not (result.reached_goal or result.stalled):
+            unit = cell.description.joint_units.gripper
+            is_at, goal = amounts(result.position, target, unit)
             raise StepFailed(
                 "TIMED_OUT",
-                f"'{hand.joint}' is at {result.position:.4g} and still moves towards {target:.4g}"
-                f" after {timeout:g} s",
+                f"'{hand.joint}' is at {is_at} and still moves towards {goal} after {timeout:g} s",
             )
 
     def command(self, cell: Cell) -> tuple[float, float]:
@@ -99,9 +101,13 @@ def check_gripper_position(position: float | None, at: At) -> None:
     joint = at.scope.description.joint_by_name[hand.joint]
     at.scope.check_joint_unit(hand.joint, at.key("position"))
     if not joint.lower <= position <= joint.upper:
+        *limits, stated = (
+            joint_position(each, joint.position_unit)
+            for each in (joint.lower, joint.upper, position)
+        )
         at.scope.problems.add(
             at.key("position"),
-            f"'{joint.name}' goes from {joint.lower:g} to {joint.upper:g}, not to {position:g}",
+            f"'{joint.name}' goes from {' to '.join(limits)}, not to {stated}",
         )
 
 

@@ -12,6 +12,7 @@ from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, path_constraints, pose_goal, resolve_goal
 from harness.cell.scope import At
+from harness.core.amounts import JointUnits
 from harness.language.base import Name
 from harness.language.goals import GOAL_KEYS, GoalFields
 from harness.language.planning import PathConstraintsSpec
@@ -49,15 +50,12 @@ class MoveTo(GoalFields, Step):
         default=None, description="Constraints that hold at every sample of the motion."
     )
 
-    def summary(self) -> str:
+    def summary_in(self, units: JointUnits) -> str:
         if self.any_of is not None:
-            return "any of " + ", ".join(goal.summary() for goal in self.any_of)
+            return "any of " + ", ".join(goal.summary_in(units) for goal in self.any_of)
         if self.poses is not None:
-            return ", ".join(
-                f"{arm} to ({', '.join(f'{value:.4g}' for value in pose.xyz)})"
-                for arm, pose in self.poses.items()
-            )
-        return super().summary()
+            return ", ".join(f"{arm} to {pose.place()}" for arm, pose in self.poses.items())
+        return super().summary_in(units)
 
     def check(self, at: At) -> None:
         if self.poses is not None:

@@ -176,7 +176,7 @@ def test_a_step_without_an_id_is_named_by_what_it_does(folders):
     first, second = (read_run(folder) for folder in folders)
     steps = [change for change in compare(first, second).changes if change.what == "step"]
     assert [(each.name, each.before, each.after) for each in steps] == [
-        ("turn", "ptp joints 0.6", "ptp joints 1.2"),
+        ("turn", "ptp joints 34.38 deg", "ptp joints 68.75 deg"),
         ("gripper closed", "-", "passed"),
     ]
 

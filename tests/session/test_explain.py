@@ -32,13 +32,13 @@ what explain says
 robot open_manipulator_x, TCP end_effector_link, inverse kinematics: open_manipulator_x
   group arm: joint1, joint2, joint3, joint4; named states: init, home
   group gripper: gripper_left_joint; named states: open, close
-  starts at joint1 0, joint2 0, joint3 0, joint4 0
+  starts at joint1 0 deg, joint2 0 deg, joint3 0 deg, joint4 0 deg
 
 world empty, physics step 1 ms
-  ground_plane: static, at (0, 0, 0), friction 1, in planning and simulation
-  red_box: 0.05 kg, at (0.25, 0, 0.041), friction 1, in planning and simulation
-  ghost: static, at (1.235, 0.3, 1), friction 0.7, in planning
-  real: 1 kg, at (-1, 0.3, 1), friction 1, in simulation
+  ground_plane: static, at (0, 0, 0) mm, friction 1, in planning and simulation
+  red_box: 0.05 kg, at (250, 0, 41) mm, friction 1, in planning and simulation
+  ghost: static, at (1234.56, 300, 1000) mm, friction 0.7, in planning
+  real: 1 kg, at (-1000, 300, 1000) mm, friction 1, in simulation
 
 steps
     10  wait 1 s  [seed {0}]
@@ -50,10 +50,10 @@ steps
             {TCP}
       12  gripper open  [seed {3}]
             {TCP}
-    13  move_to (2, 0, 0.1) in world  [seed {4}]
+    13  move_to (2000, 0, 100) mm  [seed {4}]
           {TCP}
           fails (as expected): NO_IK_SOLUTION: {why}
-    15  move_to (2, 0, 0.1) in world  [seed {5}]
+    15  move_to (2000, 0, 100) mm  [seed {5}]
           {TCP}
           fails (NOT EXPECTED): NO_IK_SOLUTION: {why}
 

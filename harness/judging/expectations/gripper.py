@@ -11,7 +11,7 @@ from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.state_words import stated_name
 from harness.judging.contacts import finger_gap
-from harness.judging.expectation import ArmPredicate
+from harness.judging.expectation import ArmPredicate, Mechanisms
 from harness.judging.hands import gripper_of
 from harness.judging.joints import POSITION_ERROR, SLIDING_TOLERANCE, check_tolerance, near
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -69,6 +69,10 @@ class GripperState(ArmPredicate):
             check_tolerance(at, {hand.joint: self.position}, self.tolerance, is_given)
         if self.named_target is not None and hand is not None:
             at.scope.check_state(hand.group, self.named_target, at.key("named_target"))
+
+    def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
+        hand = mechanisms.robot.gripper
+        return mechanisms.units_of([] if hand is None else [hand.joint])
 
     def names(self) -> frozenset[str]:
         return frozenset()

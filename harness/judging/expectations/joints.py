@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from harness.cell.scope import At
-from harness.judging.expectation import Predicate
+from harness.judging.expectation import Mechanisms, Predicate
 from harness.judging.joints import POSITION_ERROR, check_tolerance, near
 from harness.judging.margins import MarginSignal
 from harness.judging.window import Window
@@ -33,6 +33,9 @@ class Joints(Predicate):
             at.scope.check_joint(name, at.key("positions", name))
         is_given = "tolerance" in self.model_fields_set
         check_tolerance(at, self.positions, self.tolerance, is_given)
+
+    def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
+        return mechanisms.units_of(self.positions)
 
     def looks_back(self) -> float:
         return 0.0

@@ -8,11 +8,12 @@ from pydantic import Field
 
 from harness.cell.scope import At
 from harness.core.state_words import stated_name
-from harness.judging.expectation import Predicate
+from harness.judging.expectation import Mechanisms, Predicate
 from harness.judging.joints import POSITION_ERROR, check_tolerance, near
 from harness.judging.margins import MarginSignal
 from harness.judging.window import NotObservable, Window
 from harness.language.base import JointValue, Name
+from harness.robot.description import NamedState, RobotDescription
 
 
 class NamedTarget(Predicate):
@@ -46,18 +47,32 @@ class NamedTarget(Predicate):
     def names(self) -> frozenset[str]:
         return frozenset()
 
+    def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
+        try:
+            return mechanisms.units_of(self._state(mechanisms.robot).positions)
+        except NotObservable:  # which the verdict says
+            return frozenset()
+
     def looks_back(self) -> float:
         return 0.0
 
     def signal(self, window: Window) -> MarginSignal:
         """The worst joint's distance from the named state [rad or m]."""
-        robot = window.run.robot
+        is_given = "tolerance" in self.model_fields_set
+        positions = self._state(window.run.robot).positions
+        return near(window, positions, self.tolerance, is_given)
+
+    def _state(self, robot: RobotDescription) -> NamedState:
+        """The named state of the robot.
+
+        Raises:
+            NotObservable: No group, or not the one it names, has such a state.
+        """
         hand = "" if robot.gripper is None else robot.gripper.group
         every = [robot.arm_group, hand, *sorted(robot.groups)]
         for group in every if self.group is None else [self.group]:
             states = robot.states_of(group)
             state = states.get(stated_name(self.state, states))
             if state is not None:
-                is_given = "tolerance" in self.model_fields_set
-                return near(window, state.positions, self.tolerance, is_given)
+                return state
         raise NotObservable(f"there is no named state '{self.state}' in this run")

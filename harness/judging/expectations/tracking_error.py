@@ -10,8 +10,8 @@ from pydantic import Field
 from harness.cell.scope import At
 from harness.core.amounts import amount
 from harness.core.types import BoolArray, FloatArray
-from harness.judging.expectation import Predicate
-from harness.judging.joints import gripper_joints
+from harness.judging.expectation import Mechanisms, Predicate
+from harness.judging.joints import gripper_joints, hand_joints
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, Window
 from harness.language.base import JointValue
@@ -45,6 +45,10 @@ class TrackingError(Predicate):
                 "no joint of the arm can be that far from its command",
                 "angles without a unit are in radians, lengths in metres",
             )
+
+    def joint_units(self, mechanisms: Mechanisms) -> frozenset[str]:
+        robot = mechanisms.robot
+        return mechanisms.units_of(robot.joint_units.by_joint.keys() - hand_joints(robot))
 
     def signal(self, window: Window) -> MarginSignal:
         """Largest distance of a joint from its command [rad or m].

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -148,7 +149,7 @@ def _check_ways(
         if shift > POSITION_DEVIATION or turn > ORIENTATION_DEVIATION:
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
-                f"{path.link} would leave {run.legs[owner].name} by {1000 * shift:.3f} mm and "
-                f"{turn:.5f} rad",
+                f"{path.link} would leave {run.legs[owner].name} by {amount(shift, 'm')} "
+                f"and {amount(turn, 'rad')}",
                 DeviationFailure(shift, turn),
             )

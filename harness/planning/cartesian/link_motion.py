@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
@@ -116,8 +117,8 @@ class LinkMotions:
             shift, angle = target.pose.distance_to(end)
             raise PlanningFailed(
                 "NO_IK_SOLUTION",
-                f"at the end of the {path.name} {target.link} is {1000 * shift:.1f} mm and "
-                f"{angle:.4f} rad from the goal",
+                f"at the end of the {path.name} {target.link} is {amount(shift, 'm')} and "
+                f"{amount(angle, 'rad')} from the goal",
                 IkFailure(shift, angle),
             )
         return traced
@@ -176,8 +177,8 @@ class LinkMotions:
         if shift > POSITION_DEVIATION or turn > ORIENTATION_DEVIATION:
             raise PlanningFailed(
                 "INVALID_MOTION_PLAN",
-                f"{path.link} would leave its {path.name} by {1000 * shift:.3f} mm and "
-                f"{turn:.5f} rad",
+                f"{path.link} would leave its {path.name} by {amount(shift, 'm')} and "
+                f"{amount(turn, 'rad')}",
                 DeviationFailure(shift, turn),
             )
         return WayStatistics(shift, turn)

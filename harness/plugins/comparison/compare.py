@@ -46,7 +46,7 @@ class Change:
         if np.isnan(self.amount):
             return ""
         if self.what == "trajectory":
-            return f"{self.amount:.3g} {self.unit}"
+            return f"{amount(self.amount, self.unit)} apart"
         return f"{'-' if self.amount < 0 else '+'}{amount(abs(self.amount), self.unit)}"
 
 
@@ -78,7 +78,7 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
         *_words("robot", "", one.robot.name, two.robot.name),
         *_words("seed", "", str(one.seed), str(two.seed)),
         *_versions(one.versions, two.versions),
-        *_steps(pairs, names),
+        *_steps(pairs, names, one.robot.joint_units.by_joint),
         *_verdicts(*map(_by_name, (first.verdicts, second.verdicts), names)),
         *_findings(one, two),
     ]
@@ -104,7 +104,9 @@ def _versions(one: Mapping[str, str], two: Mapping[str, str]) -> list[Change]:
 
 
 def _steps(
-    pairs: Sequence[StepPair], names: tuple[Mapping[str, str], Mapping[str, str]]
+    pairs: Sequence[StepPair],
+    names: tuple[Mapping[str, str], Mapping[str, str]],
+    units: Mapping[str, str],
 ) -> list[Change]:
     changes: list[Change] = []
     for a, b in pairs:
@@ -114,7 +116,7 @@ def _steps(
             continue
         changes += _words("step", name, a.summary, b.summary)
         changes += _words("step", name, _status(a), _status(b))
-        changes += _trajectory(name, a, b)
+        changes += _trajectory(name, a, b, units)
         lasted = a.end_time - a.start_time, b.end_time - b.start_time
         if abs(lasted[1] - lasted[0]) > 1e-9:
             changes.append(_number("duration", name, *lasted, "s"))
@@ -127,8 +129,10 @@ def _status(step: StepRecord | None) -> str:
     return f"{step.status} {step.error_code}".rstrip()
 
 
-def _trajectory(name: str, one: StepRecord, two: StepRecord) -> list[Change]:
-    """How far the commanded paths lie apart, compared at equal parts of their durations."""
+def _trajectory(
+    name: str, one: StepRecord, two: StepRecord, units: Mapping[str, str]
+) -> list[Change]:
+    """The joint that is farthest apart, compared at equal parts of the durations."""
     ours, theirs = one.trajectory, two.trajectory
     if ours is None or theirs is None:
         words = ["planned" if step.trajectory else NONE for step in (one, two)]
@@ -137,11 +141,14 @@ def _trajectory(name: str, one: StepRecord, two: StepRecord) -> list[Change]:
     if joints[0] != joints[1]:
         return [Change("trajectory", name, joints[0], joints[1])]
     before, after = _resampled(ours), _resampled(theirs)
-    apart = float(np.abs(after - before).max())
-    if apart == 0.0:
+    apart = np.abs(after - before).max(axis=0)
+    if not apart.any():
         return []
-    words = [f"path of {path_length(path):.4g}" for path in (before, after)]
-    return [Change("trajectory", name, words[0], words[1], apart, "rad or m apart")]
+    known = [units.get(joint, "") for joint in ours.joint_names]
+    shared = known[0] if len(set(known)) == 1 else ""
+    words = [f"path of {amount(path_length(path), shared)}".rstrip() for path in (before, after)]
+    worst = int(np.argmax(apart))
+    return [Change("trajectory", name, words[0], words[1], float(apart[worst]), known[worst])]
 
 
 def _resampled(trajectory: JointTrajectory) -> FloatArray:

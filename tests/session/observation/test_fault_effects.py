@@ -74,7 +74,7 @@ def test_a_push_lands_where_the_object_gains_more_than_a_millimetre_a_second(spe
     assert outside.receipt == "no_effect", "what moves after the push's step was not pushed"
     before = receipt(PUSH, object_poses={"box": going(0.5, 0, 90)})
     assert before.receipt == "no_effect", "it moved as fast before"
-    assert "0.25 m/s" in receipt(PUSH, object_poses={"box": going(0.25)}).evidence
+    assert "250 mm/s" in receipt(PUSH, object_poses={"box": going(0.25)}).evidence
 
 
 @pytest.mark.parametrize("direction", [(1, 0, 0), (0.3, -2, 0)])
@@ -160,13 +160,15 @@ def test_noise_and_latency_say_by_how_much_and_zero_sets_them_back():
     positions[50, 0] = -0.04
     positions[19, 0] = 0.5
     said = evidence(True, NOISE, joint_positions=positions)
-    assert said == "joints were up to 0.04 rad off their set points"
+    assert said == "joints were up to 2.3 deg off their set points"
     for fault in (NOISE, LATENCY):
         back = InjectedFault(fault.fault, "", 0.1, 0.0)
         assert evidence(True, back) == "set back"
     assert evidence(False, LATENCY) == "no joint was commanded to move afterwards"
     moves = {"joint_commands": ramp(0, 0.3), "joint_positions": ramp(0, 0.0)}
-    assert evidence(True, LATENCY, **moves) == "joints lagged up to 0.3 rad behind their set points"
+    assert (
+        evidence(True, LATENCY, **moves) == "joints lagged up to 17.2 deg behind their set points"
+    )
     for by, is_landed in ((0.00011, True), (COMMANDED, False), (0.00009, False)):
         assert evidence(is_landed, LATENCY, joint_commands=ramp(0, by))
 

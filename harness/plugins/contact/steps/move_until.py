@@ -11,6 +11,7 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.core.trajectory import JointTrajectory
@@ -88,7 +89,7 @@ class MoveUntil(Step):
     )
 
     def summary(self) -> str:
-        return f"{self._limit:g} {self._unit} within {self.max_distance:g} m"
+        return f"{self._limit:g} {self._unit} within {amount(self.max_distance, 'm')}"
 
     @property
     def _limit(self) -> float:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.types import BoolArray, FloatArray
 from harness.judging.body_motion import balls_of
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults, faults_of
@@ -173,7 +174,7 @@ class _Record:
         before, fastest = float(speed[0]) if rows.start else 0.0, float(speed.max())
         if fastest - before <= MOVING:
             return Effect(False, "it did not move: friction or a hand held it")
-        return Effect(True, f"it reached {fastest:.3g} m/s")
+        return Effect(True, f"it reached {amount(fastest, 'm/s')}")
 
     def _sensor_noise(self, fault: InjectedFault, rows: slice) -> Effect:
         if fault.after == 0.0:
@@ -182,7 +183,8 @@ class _Record:
         if not len(errors):
             return Effect(False, "no time passed", is_over_time=True)
         return Effect(
-            True, f"joints were up to {float(np.nanmax(errors)):.3g} rad off their set points"
+            True,
+            f"joints were up to {amount(float(np.nanmax(errors)), 'rad')} off their set points",
         )
 
     def _command_latency(self, fault: InjectedFault, rows: slice) -> Effect:
@@ -194,7 +196,7 @@ class _Record:
             return Effect(False, "no joint was commanded to move", is_over_time=True)
         errors = np.abs(self.signals.joint_positions[rows] - commands)[:, moved]
         lag = float(np.nanmax(errors))
-        return Effect(True, f"joints lagged up to {lag:.3g} rad behind their set points")
+        return Effect(True, f"joints lagged up to {amount(lag, 'rad')} behind their set points")
 
     def _touched(self, name: str, others: Sequence[str], rows: slice) -> BoolArray:
         touched = np.zeros(len(self.signals.times[rows]), dtype=bool)

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.core.amounts import amount
 from harness.language.base import Angle, Duration, Force, Fraction, Name, Number, PositiveDuration
 from harness.language.step import Step
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults
@@ -73,7 +74,7 @@ class Inject(Step):
         if self.joint_stall is not None:
             faults.append(f"stall {self.joint_stall}")
         if self.sensor_noise is not None:
-            faults.append(f"sensor noise {self.sensor_noise:g} rad")
+            faults.append(f"sensor noise {amount(self.sensor_noise, 'rad')}")
         if self.command_latency is not None:
             faults.append(f"latency {self.command_latency * 1e3:g} ms")
         return ", ".join(faults)

@@ -10,6 +10,7 @@ from functools import cached_property
 from harness.core.amounts import amount
 from harness.core.errors import Problem, SpecError
 from harness.judging.placed import describe
+from harness.language.expectation import ExpectationFields
 from harness.language.reading.load import load_scenario
 from harness.plugins.grading.assignment import LoadedAssignment
 from harness.plugins.grading.classroom.submissions import Submission
@@ -203,13 +204,23 @@ def criteria_of(loaded: LoadedAssignment, results: Sequence[CaseResult]) -> tupl
                 )
     has_points = any(each.points is not None for each in scenario.expect)
     rows = [
-        (e.name or describe(e), (e.points or 0.0) if has_points else 1.0) for e in scenario.expect
+        (each.name or text, (each.points or 0.0) if has_points else 1.0)
+        for each, text in zip(scenario.expect, _texts(scenario.expect, results), strict=True)
     ]
     if not sum(points for _, points in rows):
         problem = Problem(str(loaded.scenario), 0, 0, "no expectation of the file has points")
         raise SpecError([problem])
     whole = scenario.points if not has_points else None
     return _scaled(rows, loaded.model.points or whole)
+
+
+def _texts(
+    expectations: Sequence[ExpectationFields], results: Sequence[CaseResult]
+) -> Sequence[str]:
+    """The texts of expectations: of their verdicts, where the units of joints are known."""
+    judged = ([v.expectation for v in each.verdicts if not v.step] for each in results)
+    whole = (texts for texts in judged if len(texts) == len(expectations))
+    return next(whole, None) or [describe(each) for each in expectations]
 
 
 def _scaled(rows: Sequence[tuple[str, float]], whole: float | None) -> tuple[Criterion, ...]:
