@@ -413,7 +413,7 @@ def absent_plugins() -> list[str]:
     """A sentence where this installation is the core alone."""
     if BUNDLED.is_dir():
         return []
-    return ["this installation lacks the built-in plug-ins; install it again from its clone"]
+    return ["this installation lacks the built-in plug-ins; install it again"]
 
 
 def broken_plugins() -> list[str]:

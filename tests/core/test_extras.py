@@ -87,6 +87,14 @@ def test_a_video_without_its_package_is_refused_at_its_line(tmp_path):
     assert "pip install" in done.stdout
 
 
+def test_the_film_of_a_saved_run_without_its_package_is_refused(tmp_path, recorded_run):
+    scenario = tmp_path / "wait.scenario.yaml"
+    scenario.write_text("scenario: A\nrobot: open_manipulator_x\nsteps: [{wait: 0.1 s}]\n")
+    done = without(["av"], tmp_path, "film", recorded_run(scenario) / "run")
+    assert done.returncode == 2
+    assert done.stderr.startswith("harness: the Python package av is not installed; install it by:")
+
+
 CORNERS = np.array([*product((0, 0.04), repeat=3)], np.float32)
 FACES = ConvexHull(CORNERS).simplices
 OBJECT = """\

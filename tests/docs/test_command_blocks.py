@@ -38,7 +38,7 @@ PRINTED = {
     EXTENDING: "tests/docs/test_contributing.py",
     "docs/guides/grading.md": "tests/docs/test_guides.py",
     "docs/guides/ik_test.md": "tests/system/test_ik_test.py",
-    "docs/guides/pipelines.md": "tests/docs/test_guides.py",
+    "docs/guides/pipelines.md": "tests/plugins/ci/test_pipelines.py",
     "docs/reference/ik_packages.md": "tests/plugins/iktest/test_packages.py",
 }
 """Tests that print the `text` blocks of a page again, besides those of examples and the course."""

@@ -40,16 +40,6 @@ expect: [{duration: {at_most: 0.15 s}, name: quick}]
 """
 SAMPLED = PICK + "randomize: {friction: {uniform: [0.2, 1.2]}, wait: {uniform: [0.05 s, 0.2 s]}}\n"
 WAITS = "scenario: Wait\nrobot: {model: open_manipulator_x}\nsteps: [{wait: 0.1 s}]\n"
-NEAR = """\
-scenario: A wall is near
-robot: {model: open_manipulator_x}
-params: {wall: 124.3 mm}
-objects:
-  - {name: wall, static: true, box: {size: [1, 0.02, 1]}, pose: {xyz: [0, "${wall}", 0.5]}}
-steps: [{wait: 0.1 s}]
-expect:
-  - clearance: {between: [robot, wall], at_least: 10 mm}
-"""
 EXPECT = "expect: [{always: within_limits}]\n"
 ENVIRONMENT = {
     "CI_NODE_INDEX": "2",
@@ -94,8 +84,6 @@ def files_of(page, folder, recorded_run):
     (folder / "pick.scenario.yaml").write_text(SAMPLED)
     (folder / "typo.scenario.yaml").write_text(WAITS.replace("wait:", "weit:"))
     shutil.copy(ROOT / "tests/plugins/ros/lift_the_box.py", folder / "student.py")
-    if page.name == "pipelines.md":
-        (folder / "scenarios/near.scenario.yaml").write_text(NEAR)
     if page.name == "grading.md":
         recording = students_recording(read_run(recorded_run(SCENARIO) / "run").run)
         recording.write(folder / "student_bag.mcap")

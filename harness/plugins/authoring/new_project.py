@@ -17,6 +17,8 @@ from harness.suite.discovery import UsageError
 TEMPLATES = Path(__file__).parent / "templates" / "project"
 SCHEMA = "scenario.schema.json"
 SCENARIO = Path("scenarios/first.scenario.yaml")
+PACKAGE = f"{DISTRIBUTION}[meshes]"
+"""What a project installs: the arms that people bring have mesh files."""
 PLACES = {
     "readme.md": "README.md",
     "pytest.ini": "pytest.ini",
@@ -60,17 +62,18 @@ def write_project(folder: Path, write_scenario: Callable[[Path], None]) -> None:
 
 def requirement_lines() -> str:
     """The requirements file of a project: where this program was installed from."""
+    extra = "# `meshes` reads mesh files of robots and objects; leave it out if there are none.\n"
     stated = Distribution.from_name(DISTRIBUTION).read_text("direct_url.json")
     origin = json.loads(stated) if stated else {}
     address = str(origin.get("url", ""))
     if "vcs_info" in origin:
         commit = origin["vcs_info"]["commit_id"]
-        return f"{DISTRIBUTION} @ {origin['vcs_info']['vcs']}+{address}@{commit}\n"
+        return f"{extra}{PACKAGE} @ {origin['vcs_info']['vcs']}+{address}@{commit}\n"
     hint = (
         f"# {DISTRIBUTION} is on no package index. Other machines need its repository's address,\n"
-        f"# {DISTRIBUTION} @ git+https://HOST/OWNER/{DISTRIBUTION}@REF, or of a wheel.\n"
+        f"# {PACKAGE} @ git+https://HOST/OWNER/{DISTRIBUTION}@REF, or of a wheel.\n"
     )
-    return f"{hint}{DISTRIBUTION}{f' @ {address}' if address else ''}\n"
+    return f"{hint}{extra}{PACKAGE}{f' @ {address}' if address else ''}\n"
 
 
 def _copy(source: Path, target: Path) -> None:

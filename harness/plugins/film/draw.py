@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -14,8 +13,6 @@ from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
 from harness.cameras.stills import INK, overview
 from harness.core.activity import Activity, unobserved
-from harness.core.errors import HarnessError
-from harness.core.extras import install_command
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.plugins.film.story import Frame, Moment, deciding_moment, frames_of
@@ -42,11 +39,8 @@ def draw_film(
         activity: Called with the number of frames that are drawn, and their number.
 
     Raises:
-        HarnessError: The extra `video` is not installed.
+        ModuleNotFoundError: The extra `video` is not installed.
     """
-    if find_spec("av") is None:
-        hint = install_command("video")
-        raise HarnessError(f"the Python package av, which films, is not installed: {hint}")
     from harness.recording.film import encoded_film
 
     rate = min(rate, MOST_FRAMES / max(stored.run.duration, 1e-9))

@@ -19,6 +19,11 @@ def words(capsys, *given):
     return capsys.readouterr().out.split()
 
 
+def test_without_a_shell_the_shells_are_named(capsys):
+    assert main(["completion"]) == 2
+    assert capsys.readouterr().err == "harness: name a shell: bash, zsh, fish\n"
+
+
 def test_the_first_word_is_a_command(capsys):
     assert words(capsys, "") == [*registry("command")]
     assert words(capsys, "ch") == ["check"]

@@ -235,8 +235,8 @@ def test_a_project_of_a_robot_names_its_files_from_the_scenario(tmp_path, capsys
 def test_the_requirements_name_the_repository_that_the_program_was_installed_from(monkeypatch):
     origin = {"url": "https://host/x.git", "vcs_info": {"vcs": "git", "commit_id": "ab12"}}
     monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: json.dumps(origin))
-    assert requirement_lines() == "armharness @ git+https://host/x.git@ab12\n"
+    assert requirement_lines().endswith("\narmharness[meshes] @ git+https://host/x.git@ab12\n")
     monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: '{"url": "file:///c"}')
-    assert requirement_lines().endswith("\narmharness @ file:///c\n")
+    assert requirement_lines().endswith("\narmharness[meshes] @ file:///c\n")
     monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: None)
-    assert requirement_lines().endswith("\narmharness\n")
+    assert requirement_lines().endswith("\narmharness[meshes]\n")

@@ -320,7 +320,7 @@ def test_a_project_installs_and_passes_in_a_fresh_environment(tmp_path, monkeypa
     subprocess.run([fresh / "pip", "install", "--quiet", str(ROOT)], check=True)
     subprocess.run([fresh / "harness", "new", "--project", "cell"], check=True)
     requirements = (tmp_path / "cell/requirements.txt").read_text()
-    assert f"armharness @ {ROOT.as_uri()}\n" in requirements
+    assert f"armharness[meshes] @ {ROOT.as_uri()}\n" in requirements
     path = f"{fresh}:/usr/bin:/bin"
     done = script(
         "pip install --quiet -r requirements.txt; harness check scenarios; pytest -q;"

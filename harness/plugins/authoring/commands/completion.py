@@ -12,7 +12,7 @@ from harness.cli.arguments import CommandParser, Parser
 from harness.cli.command import SETUP, Command
 from harness.cli.main import parser_of
 from harness.cli.output import output, say
-from harness.suite.discovery import bundled_scenarios
+from harness.suite.discovery import UsageError, bundled_scenarios
 
 SCRIPTS = {
     "bash": """\
@@ -54,7 +54,7 @@ class CompletionCommand(Command):
 
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness completion`."""
-        which = command.add_mutually_exclusive_group(required=True)
+        which = command.add_mutually_exclusive_group()
         which.add_argument("shell", nargs="?", choices=tuple(SCRIPTS), help=HELP)
         text = "print what can stand for the last of these words; the code of a shell runs this"
         which.add_argument("--for-words", metavar="WORD", nargs=argparse.REMAINDER, help=text)
@@ -63,6 +63,8 @@ class CompletionCommand(Command):
         """Print the code for a shell, or the words that fit."""
         if arguments.shell:
             output().document(SCRIPTS[arguments.shell])
+        elif arguments.for_words is None:
+            raise UsageError(f"name a shell: {', '.join(SCRIPTS)}")
         else:
             *before, last = arguments.for_words or [""]
             say(*(word for word in _words(before, last) if word.startswith(last)))
