@@ -33,7 +33,6 @@ class GripperDrive:
         self.actuator = simulator.actuator_of(gripper)
         self._range = abs(gripper.closed_position - gripper.open_position)
         self._speed = joint_speed(simulator.description, gripper)
-        simulator.limit_grip(self.actuator, gripper.grip_effort)
         self.pending: SetPoints | None = None
 
     def start(self, position: float, max_effort: float) -> None:

@@ -19,7 +19,7 @@ from harness.simulation.adhesion import adhesion_of
 from harness.simulation.faults import MujocoFaults
 from harness.simulation.joint_drive import JointDrive
 from harness.simulation.model import build_model
-from harness.simulation.objects import overlaps
+from harness.simulation.objects import Objects, overlaps
 from harness.simulation.recording import Recording
 from harness.simulation.robot_mjcf import coupling
 from harness.simulation.set_points import SetPoints
@@ -92,6 +92,9 @@ class Motors:
         self._refuse_unusable_start()
         self.overlaps_at_start = overlaps(self.physics, self._data)
         self._recording.start(self._command)
+        self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
+        for gripper in description.grippers:
+            self.limit_grip(self.actuator_of(gripper), gripper.grip_effort)
 
     def limit(self, longest: float) -> None:
         """Let the run take at most this simulated time [s]; a call that exceeds it fails."""

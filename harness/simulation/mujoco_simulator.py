@@ -4,21 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Collection
 
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.types import FloatArray
-from harness.core.world import WorldObject
 from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import UnrestFailure
 from harness.recording.motion import Motion
 from harness.recording.signals import Signals
-from harness.robot.description import RobotDescription
-from harness.simulation.gripper_drive import GripperDrive
-from harness.simulation.objects import Objects
 from harness.simulation.snapshot import (
     PhysicsState,
     SimulatorCommand,
@@ -39,35 +34,6 @@ class MujocoSimulator(TrajectoryTracking):
     """
 
     unrecorded: tuple[str, ...] = ()
-
-    def __init__(
-        self,
-        description: RobotDescription,
-        world_objects: Sequence[WorldObject],
-        present: Collection[str],
-        *,
-        gravity: tuple[float, float, float] = (0.0, 0.0, -9.8),
-        timestep: float = 0.001,
-        frames: Sequence[str] = (),
-        seed: int = 0,
-        moving: Callable[[], AbstractContextManager[None]] = nullcontext,
-    ) -> None:
-        """Build the model and record its start state as sample 0; see `Motors`."""
-        super().__init__(
-            description,
-            world_objects,
-            present,
-            gravity=gravity,
-            timestep=timestep,
-            frames=frames,
-            seed=seed,
-            moving=moving,
-        )
-        self._objects = Objects(self.physics, self._data, self._recording, frozenset(present))
-        self._grippers = {
-            gripper.joint: GripperDrive(self, self._recording, gripper)
-            for gripper in description.grippers
-        }
 
     def object_pose(self, name: str) -> SE3:
         """The current T_world_object of a simulated object."""

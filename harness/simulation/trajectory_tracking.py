@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 
 import numpy as np
 
@@ -26,7 +27,13 @@ ABORT_HOLD = 0.2  # Time for which an aborted arm is held at its position [s]
 class TrajectoryTracking(Motors):
     """Motors that follow trajectories, and grippers that move meanwhile."""
 
-    _grippers: Mapping[str, GripperDrive]  # by joint
+    @cached_property
+    def _grippers(self) -> Mapping[str, GripperDrive]:
+        """What drives each gripper, by the name of its joint."""
+        return {
+            gripper.joint: GripperDrive(self, self._recording, gripper)
+            for gripper in self.description.grippers
+        }
 
     def track(self, trajectory: JointTrajectory) -> None:
         """Follow a trajectory, then hold its end until every joint is within the goal tolerance.
