@@ -11,7 +11,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.ports.kinematics import Kinematics
 from harness.ports.scene import PlanningScene
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 from harness.robot.tree import carriers
 
 LEAST_DISTANCE = 0.005  # [m]; two points nearer than this give no direction of a line

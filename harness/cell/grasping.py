@@ -20,7 +20,7 @@ from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.execution_failures import WidthFailure
 from harness.recording.explanation import Explanation
-from harness.robot.description import Gripper
+from harness.robot.end_effector import Gripper
 
 GRASP_DEPTH = 0.02  # [m] below the top of a tall object
 CLEARANCE = 0.005  # [m], of the palm from an object's top, and of fingertips from its bottom

@@ -11,7 +11,7 @@ from harness.core.registry import Plugin, registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.robot.description import Gripper
+from harness.robot.end_effector import Gripper
 
 
 class Grip(Plugin, ABC):

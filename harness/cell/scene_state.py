@@ -18,7 +18,8 @@ from harness.ports.kinematics import Kinematics
 from harness.ports.scene import PlanningScene
 from harness.ports.simulation import Simulator
 from harness.recording.step_results import CELL_RESULTS, SceneChange
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 
 
 @dataclass

@@ -20,7 +20,7 @@ from harness.judging.temporal import trailing_max, without_gaps
 from harness.judging.window import NotObservable, object_record
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
-from harness.robot.description import seal_words
+from harness.robot.end_effector import seal_words
 
 TOUCH_FORCE = 1e-3  # a tenth of the weight of one gram; less is no support and no grip [N]
 OVERLAP = 0.001  # [m]; what is less deep is rounding: convex hulls are off by as much

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from harness.judging.window import NotObservable
 from harness.recording.run import Run
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 
 
 def of_arm(run: Run, arm: str) -> Run:

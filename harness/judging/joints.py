@@ -18,7 +18,8 @@ from harness.judging.window import NotObservable, Window
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 
 SLIDING_TOLERANCE = 0.002  # [m]
 STANDING = 0.01  # [rad or m] within which encoders' noise and the sag of a held arm stay

@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 from harness.robot.urdf.write import write_urdf
 
 ACCELERATION = (5.0, "rad/s^2"), (1.0, "m/s^2")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from harness.core.spatial import SE3
 from harness.robot.compose import RobotPart
-from harness.robot.description import Link, fixed_joint
+from harness.robot.mechanism import Link, fixed_joint
 from harness.robot.srdf.srdf import Srdf
 
 FLANGE = "flange"

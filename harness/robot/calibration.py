@@ -8,7 +8,7 @@ from pathlib import Path
 
 from harness.core.spatial import SE3
 from harness.language.files.source import Located
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 from harness.robot.yaml_data import number, read_data, refuse
 
 JOINTS = {

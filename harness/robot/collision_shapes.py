@@ -10,7 +10,8 @@ import numpy as np
 from harness.core.errors import RobotOptionError
 from harness.core.geometry import CollisionMode, Mesh, Shape, reach, undivided
 from harness.core.suggestion import did_you_mean
-from harness.robot.description import Link, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Link
 from harness.robot.mesh_file import decomposition_of
 
 LEAST_LENGTH = 0.05  # Shorter links are not compared with their collision shapes [m]

@@ -14,19 +14,10 @@ from harness.core.registry import absent_plugins, registry
 from harness.core.spatial import SE3
 from harness.core.suggestion import did_you_mean
 from harness.core.wrench_sensor import WrenchSensor
-from harness.robot.description import (
-    WORLD,
-    Arm,
-    Cup,
-    Gripper,
-    Joint,
-    Link,
-    NamedState,
-    RobotDescription,
-    TrackingTolerances,
-    fixed_joint,
-)
+from harness.robot.description import Arm, NamedState, RobotDescription, TrackingTolerances
+from harness.robot.end_effector import Cup, Gripper
 from harness.robot.groups import planning_groups
+from harness.robot.mechanism import WORLD, Joint, Link, fixed_joint
 from harness.robot.robot_yaml import GripperFacts, Mount, RobotYaml
 from harness.robot.srdf.srdf import EndEffector, Srdf, write_srdf
 from harness.robot.tree import adjacent_pairs, free_name, in_tree_order

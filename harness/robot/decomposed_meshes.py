@@ -9,7 +9,8 @@ from dataclasses import replace
 from harness.core.errors import MissingPackage, RobotError
 from harness.core.geometry import Mesh
 from harness.core.slow_work import PATIENCE, reported
-from harness.robot.description import Link, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Link
 from harness.robot.mesh_file import decomposition_of, require_reader
 from harness.robot.urdf.urdf import MeshElements
 

@@ -6,116 +6,26 @@ are built from the same description, and a run stores it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
 from harness.core.amounts import JointUnits
 from harness.core.camera import Camera
-from harness.core.geometry import Shape
-from harness.core.kinematics import LinkJoint, LinkPoses
-from harness.core.spatial import SE3
+from harness.core.kinematics import LinkPoses
 from harness.core.types import FloatArray
 from harness.core.wrench_sensor import WrenchSensor
+from harness.robot.end_effector import Gripper
+from harness.robot.mechanism import Mechanism
 from harness.robot.task_space import TaskSpace, mechanism_rank
 
 ALL_ARMS = "arms"
 """Name of the planning group of the joints of all arms, of a robot with several."""
 
-WORLD = "world"
-"""Name of the root link of every composed robot, in which poses are in world coordinates."""
-
 RENAMED_ROOT = "robot_world"
 """New name of a root link that is named `world` in the robot's file."""
-
-
-@dataclass(frozen=True, eq=False)
-class Inertial:
-    """Mass properties of a link.
-
-    Attributes:
-        mass: The mass in kilograms [kg].
-        center_of_mass: Centre of mass in the link frame [m], shape (3,).
-        inertia: Inertia about the centre of mass, in link axes [kg m^2], shape (3, 3).
-        stated_moments: The principal moments in the file, ascending, where no body has these
-            [kg m^2], shape (3,); `inertia` is corrected then.
-    """
-
-    mass: float
-    center_of_mass: FloatArray
-    inertia: FloatArray
-    stated_moments: FloatArray | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Link:
-    """A rigid body of the robot; `inertial` is None for a pure frame."""
-
-    name: str
-    inertial: Inertial | None
-    visuals: tuple[Shape, ...] = ()
-    collisions: tuple[Shape, ...] = ()
-
-
-BODY_MASS = 0.01
-"""Least mass of a link that is a body where it is not drawn [kg]; frames have grams."""
-
-
-@dataclass(frozen=True)
-class Mimic:
-    """`value = multiplier * joint + offset`, as in URDF."""
-
-    joint: str
-    multiplier: float = 1.0
-    offset: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class Joint(LinkJoint):
-    """A joint and its limits; rad, rad/s, N m for turning joints, m, m/s, N for prismatic ones.
-
-    Attributes:
-        lower: Lower position limit; -inf when continuous.
-        upper: Upper position limit; inf when continuous.
-        velocity: Velocity limit; inf when the description has none.
-        is_velocity_assumed: Whether no file has the velocity limit.
-        acceleration: Acceleration limit (robot.yaml, as MoveIt's joint_limits.yaml).
-        effort: Effort limit from a data sheet.
-        effort_source: Source of the effort limit.
-        mimic: The relation to the joint that this joint mimics; None for a driven joint.
-        command_interfaces: Its command interfaces in ros2_control; the program commands efforts.
-    """
-
-    lower: float = -np.inf
-    upper: float = np.inf
-    velocity: float = np.inf
-    acceleration: float = 5.0
-    effort: float = np.inf
-    effort_source: str = ""
-    damping: float = 0.0
-    friction: float = 0.0
-    mimic: Mimic | None = None
-    command_interfaces: tuple[str, ...] = ()
-    is_velocity_assumed: bool = False
-
-    @property
-    def is_mimic(self) -> bool:
-        """Whether it follows another joint."""
-        return self.mimic is not None
-
-    @property
-    def position_unit(self) -> Literal["m", "rad"]:
-        """The unit of its position: `rad` or `m`."""
-        return "m" if self.kind == "prismatic" else "rad"
-
-
-def fixed_joint(name: str, parent: str, child: str, pose: SE3) -> Joint:
-    """A fixed joint at T_parent_joint."""
-    return Joint(name, "fixed", parent, child, pose, np.array([1.0, 0.0, 0.0]))
 
 
 @dataclass(frozen=True)
@@ -141,99 +51,6 @@ class NamedState:
     name: str
     group: str
     positions: Mapping[str, float]
-
-
-@dataclass(frozen=True)
-class Cup:
-    """A suction cup: a rigid rim with a lip that closes gaps.
-
-    Attributes:
-        name: Its name in the robot.yaml.
-        link: Its link, whose z axis leaves the gripper; z = 0 is the plane of the rim.
-        radius: The radius of the rim [m].
-        lip: The largest gap between rim and surface that it closes [m].
-        depth: How far a surface may bulge into it [m].
-    """
-
-    name: str
-    link: str
-    radius: float
-    lip: float
-    depth: float
-
-    @property
-    def area(self) -> float:
-        """The area inside the rim [m^2]."""
-        return math.pi * self.radius**2
-
-
-def seal_words(quarters: int | None) -> str:
-    """Why a cup holds nothing: the quarters of its rim that touch a body; None: it is near none."""
-    if not quarters:
-        return "its rim touches nothing"
-    if quarters < 4:
-        return f"{quarters} of 4 quarters of the rim touch"
-    return "the whole rim touches, and air enters inside it, as over a hole"
-
-
-@dataclass(frozen=True, eq=False)
-class Gripper:
-    """Two finger sides closed by one joint, or suction cups with one valve.
-
-    Of cups each one is a side; the joint is that of the valve, closed position: suction is on.
-
-    Attributes:
-        group: The name of its SRDF group.
-        joint: The actuated joint; others mimic it.
-        sides: Links of each of the two finger sides, by side name.
-        pads: The link of each side that touches a grasped object, by side name.
-        palm_link: The link that carries the fingers.
-        open_position: Joint position with the fingers widest apart.
-        closed_position: Joint position with the fingers closest.
-        grip_effort: Effort of the joint when no `max_effort` is given.
-        max_effort: Largest effort of the joint.
-        widths: Rows (joint position, pad gap [m]) with rising position, shape (N, 2); for `width`.
-        friction: Sliding friction coefficient of the pads.
-        approach_axis: Unit approach axis in the TCP frame, shape (3,); None for the one that
-            `harness.cell.approach` derives.
-        cups: The suction cups; none of a gripper with fingers.
-        vacuum: The pressure below the atmosphere's in sealed cups with the valve open [Pa].
-    """
-
-    group: str
-    joint: str
-    sides: Mapping[str, tuple[str, ...]]
-    pads: Mapping[str, str]
-    palm_link: str
-    open_position: float
-    closed_position: float
-    grip_effort: float
-    max_effort: float
-    widths: FloatArray
-    friction: float = 1.0
-    approach_axis: FloatArray | None = None
-    cups: tuple[Cup, ...] = ()
-    vacuum: float = 0.0
-
-    @property
-    def holding_force(self) -> float:
-        """The force with which all cups together hold a flat face [N]."""
-        return self.vacuum * sum(cup.area for cup in self.cups)
-
-    @property
-    def links(self) -> tuple[str, ...]:
-        """Finger links of both sides: the default touch_links of attached objects."""
-        return tuple(link for side in self.sides.values() for link in side)
-
-    def gap_at(self, positions: FloatArray | float) -> FloatArray:
-        """The gap between the pads at positions of the joint [m]."""
-        rows = self.widths[np.argsort(self.widths[:, 0])]
-        return np.asarray(np.interp(positions, rows[:, 0], rows[:, 1]))
-
-    @property
-    def has_single_jaw(self) -> bool:
-        """Whether a jaw closes on the palm, which is then one of the pads."""
-        return self.palm_link in self.pads.values()
 
 
 @dataclass(frozen=True)
@@ -267,18 +84,13 @@ class Arm:
 
 
 @dataclass(frozen=True, eq=False)
-class RobotDescription:
+class RobotDescription(Mechanism):
     """A composed robot: arm, gripper if any, base fixed in the world.
-
-    Joint vectors "in description order" have one entry per movable joint, mimic joints included,
-    in the order of `joint_names`.
 
     Attributes:
         name: Name for users (`ur3e`, or `ur3e + rh_p12_rn_a`).
         urdf: The composed URDF; its root link is `world`, so poses are in world coordinates.
         srdf: The text of the composed SRDF.
-        links: `world` first, then parents before children.
-        joints: The joints, in the order of their child links.
         groups: Groups by name; the arm's group is `arm_group`.
         named_states: The states of all groups.
         allowed_collisions: Link pairs (sorted tuples) that are not checked, with the reason.
@@ -311,8 +123,6 @@ class RobotDescription:
     name: str
     urdf: str
     srdf: str
-    links: tuple[Link, ...]
-    joints: tuple[Joint, ...]
     groups: Mapping[str, PlanningGroup]
     named_states: tuple[NamedState, ...]
     allowed_collisions: Mapping[tuple[str, str], str]
@@ -335,26 +145,6 @@ class RobotDescription:
     default_arm: str = ""
     selected_arm: str = ""
 
-    @cached_property
-    def movable_joints(self) -> tuple[Joint, ...]:
-        """Joints that have a position, mimic joints included."""
-        return tuple(joint for joint in self.joints if joint.is_movable)
-
-    @cached_property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of `movable_joints`: description order."""
-        return tuple(joint.name for joint in self.movable_joints)
-
-    @cached_property
-    def joint_index(self) -> Mapping[str, int]:
-        """Index of each movable joint in description order."""
-        return {name: index for index, name in enumerate(self.joint_names)}
-
-    @cached_property
-    def link_names(self) -> tuple[str, ...]:
-        """Names of `links`, `world` included."""
-        return tuple(link.name for link in self.links)
-
     @property
     def joint_units(self) -> JointUnits:
         """The units of its joint positions; of the gripper of the selected arm."""
@@ -362,49 +152,10 @@ class RobotDescription:
         return JointUnits(units, units.get(self.gripper.joint, "") if self.gripper else "")
 
     @cached_property
-    def joint_by_name(self) -> Mapping[str, Joint]:
-        """All joints, fixed ones included."""
-        return {joint.name: joint for joint in self.joints}
-
-    @cached_property
-    def static_links(self) -> frozenset[str]:
-        """Links that no movable joint separates from the world: they never move."""
-        static = {"world"}
-        for joint in self.joints:
-            if joint.kind == "fixed" and joint.parent in static:
-                static.add(joint.child)
-        return frozenset(static)
-
-    @cached_property
     def static_link_poses(self) -> Mapping[str, FloatArray]:
         """T_world_link of `static_links` (xyz, quat wxyz), shape (7,) each, `world` included."""
         poses = LinkPoses(self.joints, self.start_positions(), self.static_links)
         return {name: poses.rows(name)[0] for name in poses.rotations if name in self.static_links}
-
-    @cached_property
-    def link_visuals(self) -> Mapping[str, tuple[Shape, ...]]:
-        """Shapes for pictures, by link, of the links that have some."""
-        return {link.name: link.visuals for link in self.links if link.visuals}
-
-    @cached_property
-    def shapeless_links(self) -> tuple[str, ...]:
-        """Links that a joint moves and that nothing can touch.
-
-        Neither they nor what is fixed to them has collision shapes, though they are drawn or have a
-        mass of `BODY_MASS`: no frames.
-        """
-        moved_by: dict[str, str] = {}  # link -> the link that the last movable joint moves
-        for joint in self.joints:
-            first = joint.child if joint.is_movable else moved_by.get(joint.parent, "")
-            moved_by[joint.child] = first
-        links = [link for link in self.links if moved_by.get(link.name)]
-        solid = {moved_by[link.name] for link in links if link.collisions}
-        bodies = {
-            moved_by[link.name]
-            for link in links
-            if link.visuals or (link.inertial is not None and link.inertial.mass >= BODY_MASS)
-        }
-        return tuple(name for name in self.link_names if name in bodies - solid)
 
     @property
     def grippers(self) -> tuple[Gripper, ...]:
@@ -521,15 +272,6 @@ class RobotDescription:
         """Named states of a group, by name."""
         return {state.name: state for state in self.named_states if state.group == group}
 
-    def with_mimics(self, joint_positions: FloatArray) -> FloatArray:
-        """The same positions with every mimic joint set from the joint it follows."""
-        positions = np.array(joint_positions, dtype=float)
-        for index, joint in enumerate(self.movable_joints):
-            if joint.mimic is not None:
-                followed = positions[self.joint_index[joint.mimic.joint]]
-                positions[index] = joint.mimic.multiplier * followed + joint.mimic.offset
-        return positions
-
     def start_positions(self, placed: Mapping[str, float] | None = None) -> FloatArray:
         """`start_state` in description order, mimic joints consistent, missing joints at zero.
 
@@ -538,7 +280,3 @@ class RobotDescription:
         """
         named = {**self.start_state, **(placed or {})}
         return self.with_mimics(np.array([named.get(name, 0.0) for name in self.joint_names]))
-
-    def link_poses(self, joint_positions: FloatArray) -> dict[str, SE3]:
-        """T_world_link of every link at joint positions in description order, shape (n,)."""
-        return LinkPoses(self.joints, joint_positions).at(0)

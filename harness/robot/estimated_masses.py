@@ -10,7 +10,7 @@ import numpy as np
 from harness.core.geometry import Mesh, Shape
 from harness.core.solids import point_inertia
 from harness.robot.collision_shapes import collision_shapes
-from harness.robot.description import Inertial, Link
+from harness.robot.mechanism import Inertial, Link
 from harness.robot.mesh_file import hull_solid, shape_solid
 from harness.robot.tree import carriers
 from harness.robot.urdf.links import corrected_note, possible_moments

@@ -7,7 +7,8 @@ from itertools import pairwise
 from typing import NoReturn
 
 from harness.core.errors import RobotError
-from harness.robot.description import Joint, PlanningGroup
+from harness.robot.description import PlanningGroup
+from harness.robot.mechanism import Joint
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import joints_to
 

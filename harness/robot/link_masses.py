@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from harness.core.solids import TRIANGLE_SLACK
-from harness.robot.description import Inertial, Link, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Inertial, Link
 from harness.robot.urdf.links import corrected_note
 
 LONGEST_GYRATION = 2.0  # Radius of gyration that no link of an arm exceeds [m]

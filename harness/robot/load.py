@@ -26,10 +26,11 @@ from harness.robot.calibration import calibrated
 from harness.robot.collision_shapes import with_collision_modes, with_collision_shapes
 from harness.robot.compose import RobotPart, compose_robot
 from harness.robot.decomposed_meshes import decompose_meshes, without_undrawable
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
+from harness.robot.mechanism import Joint
 from harness.robot.mount import mounted
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath

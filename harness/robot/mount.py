@@ -13,8 +13,9 @@ from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.mount import MountSpec, RailSpec
-from harness.robot.description import WORLD, Inertial, Joint, Link, RobotDescription, fixed_joint
+from harness.robot.description import RobotDescription
 from harness.robot.groups import planning_groups
+from harness.robot.mechanism import WORLD, Inertial, Joint, Link, fixed_joint
 from harness.robot.srdf.srdf import link_pair, parse_srdf, write_srdf
 from harness.robot.tree import in_tree_order
 from harness.robot.urdf.write import write_urdf

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.language.files.source import Located
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 from harness.robot.yaml_data import known_entry, number, read_data, refuse
 
 SOLVER_KEYS = ("kinematics_solver", "position_only_ik")

@@ -10,8 +10,9 @@ import numpy as np
 from harness.core.errors import RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.language.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
-from harness.robot.description import Joint, NamedState, RobotDescription
+from harness.robot.description import NamedState, RobotDescription
 from harness.robot.find_file import find_file
+from harness.robot.mechanism import Joint
 from harness.robot.moveit_files import position_only_groups, with_joint_limits
 from harness.robot.srdf.srdf import parse_srdf, write_srdf
 from harness.robot.urdf.write import write_urdf

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 
 
 def sample_robot_positions(

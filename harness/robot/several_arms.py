@@ -9,15 +9,13 @@ from harness.core.errors import RobotError, RobotOptionError
 from harness.robot.compose import refuse_clashes, robot_of_tree
 from harness.robot.description import (
     ALL_ARMS,
-    WORLD,
     Arm,
-    Gripper,
-    Joint,
-    Link,
     NamedState,
     RobotDescription,
     TrackingTolerances,
 )
+from harness.robot.end_effector import Gripper
+from harness.robot.mechanism import WORLD, Joint, Link
 from harness.robot.srdf.all_arms import with_group_of_all
 from harness.robot.srdf.srdf import Srdf, SrdfGroup, link_pair, parse_srdf, write_srdf
 from harness.robot.tree import in_tree_order

@@ -7,7 +7,8 @@ from itertools import combinations, count
 
 from harness.core.errors import Problem, RobotError, SpecError
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, Link, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint, Link
 from harness.robot.srdf.srdf import link_pair
 
 Elements = Mapping[tuple[str, str], XmlElement]

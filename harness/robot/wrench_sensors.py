@@ -9,7 +9,8 @@ from harness.core.errors import RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.core.wrench_sensor import WrenchSensor
 from harness.language.wrench_sensors import WrenchSensorSpec
-from harness.robot.description import WORLD, Joint, Link, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import WORLD, Joint, Link
 
 
 def with_wrench_sensors(

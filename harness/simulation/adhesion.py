@@ -11,7 +11,7 @@ import mujoco
 
 from harness.core.registry import Plugin, registry
 from harness.core.types import FloatArray
-from harness.robot.description import Gripper
+from harness.robot.end_effector import Gripper
 from harness.simulation.model import PhysicsModel
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from harness.core.antipodal import combined_press, is_antipodal, least_thickness
 from harness.ports.simulation import GripperResult
-from harness.robot.description import Gripper, Joint
+from harness.robot.end_effector import Gripper
 from harness.robot.gripper.closing_speed import joint_speed
+from harness.robot.mechanism import Joint
 from harness.simulation.motors import Motors
 from harness.simulation.recording import Recording
 from harness.simulation.set_points import SetPoints, ramp

@@ -14,7 +14,8 @@ from harness.core.errors import ModelRefused, StepFailed
 from harness.core.types import FloatArray, IntArray
 from harness.core.world import WorldObject
 from harness.ports.joint_control import JointController
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 from harness.simulation.adhesion import adhesion_of
 from harness.simulation.faults import MujocoFaults
 from harness.simulation.joint_drive import JointDrive

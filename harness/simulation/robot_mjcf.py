@@ -12,7 +12,8 @@ import numpy as np
 from harness.core.geometry import Friction
 from harness.core.types import FloatArray
 from harness.robot.collision_shapes import convex_shapes
-from harness.robot.description import Inertial, Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Inertial, Joint
 from harness.robot.tree import excluded_contacts
 from harness.simulation.geoms import add_collision_geom
 

@@ -8,7 +8,7 @@ import mujoco
 
 from harness.core.spatial import SE3
 from harness.core.world import ObjectJoint, WorldObject
-from harness.robot.description import Inertial
+from harness.robot.mechanism import Inertial
 from harness.simulation.geoms import add_collision_geom
 from harness.simulation.robot_mjcf import set_inertia
 

@@ -19,15 +19,9 @@ from harness.recording.run import AttachmentRecord, ObjectRecord, Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.recording.step_results import SavedDetails, SavedResult
-from harness.robot.description import (
-    Gripper,
-    Joint,
-    Link,
-    NamedState,
-    PlanningGroup,
-    RobotDescription,
-    fixed_joint,
-)
+from harness.robot.description import NamedState, PlanningGroup, RobotDescription
+from harness.robot.end_effector import Gripper
+from harness.robot.mechanism import Joint, Link, fixed_joint
 from tests.approved import SAID, verdict_text
 
 DT = 0.01

@@ -28,7 +28,7 @@ from harness.judging.window import (
 )
 from harness.plugins.cameras.expectations.sees import Sees
 from harness.plugins.formulas.expectations.formula import Formula
-from harness.robot.description import Mimic
+from harness.robot.mechanism import Mimic
 from tests.judging.synthetic_run import ROBOT, changed, make_run, step
 
 STEPS = (

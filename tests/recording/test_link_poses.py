@@ -12,8 +12,8 @@ from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring.agreement import link_poses_in_physics
 from harness.recording.consistency import run_flaws
 from harness.recording.link_poses import replayed_link_poses
-from harness.robot.description import Link, fixed_joint
 from harness.robot.load import load_robot
+from harness.robot.mechanism import Link, fixed_joint
 from tests.judging.synthetic_run import ROBOT, make_run
 
 POSE = SE3.from_xyz_rpy((0.0, 0.0, 0.1))

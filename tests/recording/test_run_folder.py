@@ -33,7 +33,7 @@ from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.recording.step_results import SavedDetails, SavedResult
 from harness.recording.stored_run import StoredRun
 from harness.recording.write_run import run_folder, write_run
-from harness.robot.description import Inertial, Link
+from harness.robot.mechanism import Inertial, Link
 from tests.judging.synthetic_run import ROBOT, attachment, lift_run, make_run, step, thing
 
 EXPECTED = [

@@ -17,7 +17,7 @@ from harness.judging.window import NotObservable, Window
 from harness.language.base import Flag
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 STOP_SOFTNESS = 0.02  # share of its range by which a joint that rests on its stop may sink into it
 

@@ -9,7 +9,7 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.kinematics import IkRequest
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 
 def arm_joints(request: IkRequest) -> tuple[Joint, ...]:

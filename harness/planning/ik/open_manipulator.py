@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 _EXACT = 1e-9  # [1] tolerance of a cosine above one
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from harness.core.spatial import SE3, rotation_from_rpy
 from harness.core.types import FloatArray
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 _EXACT = 1e-9  # [1] tolerance of a cosine above one
 _NEARLY = 1e-3  # [1] tolerance for a candidate near a singularity, see `solve_ur`

@@ -17,7 +17,8 @@ from harness.plugins.authoring import robot_findings as look_at
 from harness.plugins.authoring.ik_trial import try_ik
 from harness.plugins.authoring.pair_statistics import REASONS, SelfTouches, self_touches
 from harness.plugins.authoring.robot_report import ArmLine, GroupLine, RobotFinding, RobotReport
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 from harness.robot.random_positions import sample_robot_positions
 
 KINEMATIC_SAMPLES = 20

@@ -15,8 +15,9 @@ from harness.plugins.authoring.ik_trial import IkTrial
 from harness.plugins.authoring.pair_statistics import SelfTouches
 from harness.plugins.authoring.robot_report import RobotFinding
 from harness.robot.collision_shapes import mesh_shapes
-from harness.robot.description import Link, RobotDescription
+from harness.robot.description import RobotDescription
 from harness.robot.link_masses import mass_notes, mass_problems
+from harness.robot.mechanism import Link
 from harness.robot.solids import box_corners, coal_geometry
 
 AGREEMENT = 1e-9  # [m], of the two libraries, and in parts of a quaternion and of the mass

@@ -12,7 +12,8 @@ from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.renderer import render_overview
 from harness.core.geometry import bounding_radius
 from harness.core.types import FloatArray
-from harness.robot.description import Link, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Link
 
 SIZE = 800  # [pixels], width and height of the picture
 SMALLEST, LARGEST = 0.03, 0.15  # [m], radius around a link's origin that is in view

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from harness.core.printable import counted
 from harness.reporting.terminal import Style
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from harness.core.types import FloatArray
 from harness.planning.collision.scene import CoalScene
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring.robot_findings import moving_mass
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 from harness.robot.random_positions import sample_robot_positions
 
 SAMPLES = 5000  # Random configurations that measure the reach

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from harness.core.kinematics import LinkPoses
 from harness.plugins.authoring.pair_statistics import SelfTouches
-from harness.robot.description import RENAMED_ROOT, WORLD, RobotDescription
+from harness.robot.description import RENAMED_ROOT, RobotDescription
+from harness.robot.mechanism import WORLD
 from harness.robot.srdf.srdf import link_pair, parse_srdf, write_srdf
 from harness.robot.tree import is_rigid
 

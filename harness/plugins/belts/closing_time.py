@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 from harness.robot.gripper.closing_speed import joint_speed
 
 

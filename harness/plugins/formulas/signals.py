@@ -22,7 +22,7 @@ from harness.judging.joints import joint_column
 from harness.judging.poses import UP, frame_poses, frame_present, physical_poses
 from harness.judging.window import NotObservable, Window
 from harness.plugins.formulas.language.formula import Arithmetic, Const, Number, Signal
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,8 @@ from harness.core.kinematics import LinkPoses
 from harness.core.pose_arrays import times_each
 from harness.core.spatial import SE3
 from harness.core.types import BoolArray, FloatArray
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 from harness.robot.tree import joints_to
 
 HOME = "home"  # named state that counterexamples shrink towards, if the arm has it

@@ -10,7 +10,8 @@ import numpy as np
 from harness.core.types import FloatArray
 from harness.recording.run import Run
 from harness.reporting.html.plot_group import MOST_SERIES, Group, Limit
-from harness.robot.description import Gripper, Joint
+from harness.robot.end_effector import Gripper
+from harness.robot.mechanism import Joint
 
 
 def _arm(run: Run) -> list[tuple[int, Joint]]:

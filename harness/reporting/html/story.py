@@ -16,7 +16,7 @@ from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 from harness.reporting.html.nearest import nearest_points
 from harness.reporting.margins import tightest_name, used_allowance
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 
 TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.robot.description import Gripper, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Gripper
 
 CLOSING_SPEED = 0.075
 """Rate at which the pad gap changes [m/s]; RH-P12-RN(A) specification table, ROBOTIS e-manual."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.core.kinematics import JointKind
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint, Mimic, fixed_joint
+from harness.robot.mechanism import Joint, Mimic, fixed_joint
 from harness.robot.urdf.values import number, pose, three
 from harness.robot.urdf.write import NO_LIMIT
 

@@ -13,7 +13,7 @@ from harness.core.errors import SpecError, collected
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Rgba, Shape, Sphere
 from harness.core.solids import TRIANGLE_SLACK
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Inertial, Link
+from harness.robot.mechanism import Inertial, Link
 from harness.robot.mesh_file import KINDS, SUFFIXES
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.urdf.values import lengths, number, pose, rgba, three

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from harness.core.errors import collected
 from harness.language.files.xml_file import XmlElement
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 from harness.robot.urdf.values import text_number
 
 Ignored = dict[tuple[str, str, float], list[str]]

@@ -9,7 +9,7 @@ from pathlib import Path
 from harness.core.errors import collected
 from harness.core.geometry import Mesh
 from harness.language.files.xml_file import XmlElement, parse_xml
-from harness.robot.description import Joint, Link
+from harness.robot.mechanism import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import Elements, in_tree_order
 from harness.robot.urdf.gazebo import COEFFICIENTS, link_frictions

@@ -13,7 +13,7 @@ import numpy as np
 from harness.core.errors import RobotError
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Plane, Shape, Sphere, undivided
 from harness.core.spatial import SE3, rotation_from_rpy, rpy_from_rotation
-from harness.robot.description import Inertial, Joint, Link
+from harness.robot.mechanism import Inertial, Joint, Link
 
 NO_LIMIT = 1e30
 """The written value of an unlimited velocity or effort; larger values are read as unlimited."""

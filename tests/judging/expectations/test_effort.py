@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.effort import Effort
-from harness.robot.description import Mimic
+from harness.robot.mechanism import Mimic
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Three
 from tests.judging.synthetic_run import ROBOT, make_run, verdict

@@ -11,7 +11,7 @@ from harness.judging.window import NotObservable
 from harness.plugins.paths.expectations.fraction import FractionCheck
 from harness.plugins.paths.expectations.tcp_path import TcpPath, along_arc, along_line
 from harness.reporting.margins import allowance_used, margin_share
-from harness.robot.description import fixed_joint
+from harness.robot.mechanism import fixed_joint
 from tests.judging import evidence_runs as shared
 from tests.judging.evidence import Evidence, Free, Three
 from tests.judging.synthetic_run import (

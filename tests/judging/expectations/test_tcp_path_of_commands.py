@@ -8,7 +8,7 @@ import pytest
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.plugins.paths.expectations.tcp_path import TcpPath
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 from tests.judging.synthetic_run import ROBOT, at, changed, make_run, step, verdict
 
 N = 400  # samples of 10 ms

@@ -14,7 +14,7 @@ from harness.core.spatial import SE3
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.plugins.authoring import robot_check, robot_findings
 from harness.plugins.authoring.pair_statistics import self_touches
-from harness.robot.description import Inertial
+from harness.robot.mechanism import Inertial
 from harness.robot.random_positions import sample_robot_positions
 from harness.robot.srdf.srdf import parse_srdf
 from tests.robot.arm_files import INERTIAL, LIMIT, SHAPE, SRDF, URDF, load_arm, write_arm

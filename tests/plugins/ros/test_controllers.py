@@ -11,7 +11,8 @@ from harness.plugins.ros.control.goals import Code, GoalRefused
 from harness.plugins.ros.control.step_response import StepResponse
 from harness.plugins.ros.control.trajectory import Spline, start_trajectory
 from harness.recording.commands import CommandRecord
-from harness.robot.description import Joint, TrackingTolerances
+from harness.robot.description import TrackingTolerances
+from harness.robot.mechanism import Joint
 
 JOINTS = [
     Joint(name, "revolute", "a", "b", SE3.identity(), np.array([0, 0, 1.0]), -2.0, 2.0)

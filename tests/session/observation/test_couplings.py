@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from harness.core.spatial import SE3
-from harness.robot.description import Joint, Mimic
+from harness.robot.mechanism import Joint, Mimic
 from harness.session.observation.couplings import coupling_findings
 from tests.judging.synthetic_run import changed, make_run
 

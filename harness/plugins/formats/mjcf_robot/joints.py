@@ -15,7 +15,7 @@ from harness.core.pose_arrays import rotations_about
 from harness.core.spatial import SE3
 from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.mjcf_robot.linkages import linkage_mimics
-from harness.robot.description import Joint, Mimic, fixed_joint
+from harness.robot.mechanism import Joint, Mimic, fixed_joint
 
 SLIDE = 2  # of mjtJoint
 

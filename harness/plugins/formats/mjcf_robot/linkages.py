@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.robot.description import Mimic
+from harness.robot.mechanism import Mimic
 
 POSITIONS = 9  # Positions of the driven joint at which a linkage is settled
 SETTLING = 1.0  # Simulated time in which a linkage comes to rest at each position [s]

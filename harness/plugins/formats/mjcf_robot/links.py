@@ -14,7 +14,7 @@ import numpy as np
 from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Shape, Sphere
 from harness.core.spatial import rotation_from_quat_wxyz
 from harness.plugins.formats.mjcf_robot.joints import mjcf_pose
-from harness.robot.description import Inertial, Link
+from harness.robot.mechanism import Inertial, Link
 from harness.robot.mesh_file import SUFFIXES
 from harness.robot.urdf.links import corrected_note, possible_moments
 

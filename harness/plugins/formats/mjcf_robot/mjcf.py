@@ -25,7 +25,8 @@ from harness.plugins.formats.mjcf_robot.joints import (
 from harness.plugins.formats.mjcf_robot.links import body_link, links_between
 from harness.plugins.formats.mjcf_robot.wrench_sensors import FORCE, TORQUE, wrench_sensors
 from harness.plugins.formats.robot_files.format_robot import FormatRobot
-from harness.robot.description import WORLD, Joint, Link, NamedState, fixed_joint
+from harness.robot.description import NamedState
+from harness.robot.mechanism import WORLD, Joint, Link, fixed_joint
 from harness.robot.packages import PackagePath
 from harness.robot.srdf.srdf import link_pair
 from harness.robot.tree import free_name, in_tree_order

@@ -9,8 +9,9 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.robot_files.absent_names import Absent, without_absent
 from harness.plugins.formats.robot_files.default_group import DEFAULT_GROUP, default_srdf
-from harness.robot.description import Joint, NamedState, PlanningGroup
+from harness.robot.description import NamedState, PlanningGroup
 from harness.robot.groups import planning_groups
+from harness.robot.mechanism import Joint
 from harness.robot.srdf.srdf import Srdf, has_several_values
 from harness.robot.urdf.urdf import Urdf
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import combinations, takewhile
 
 from harness.plugins.formats.robot_files.inferred_gripper import SHARED_RANGE, is_gripper
-from harness.robot.description import Joint
+from harness.robot.mechanism import Joint
 from harness.robot.srdf.srdf import Srdf, SrdfGroup
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf

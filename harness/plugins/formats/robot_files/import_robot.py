@@ -19,9 +19,10 @@ from harness.plugins.formats.robot_files.imported_part import imported_part, ref
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
 from harness.robot.decomposed_meshes import decompose_meshes
-from harness.robot.description import RENAMED_ROOT, WORLD, NamedState
+from harness.robot.description import RENAMED_ROOT, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
+from harness.robot.mechanism import WORLD
 from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
 from harness.robot.robot_format import FORMATS

@@ -25,8 +25,9 @@ from harness.plugins.formats.robot_files.inferred_tcp import (
 from harness.plugins.formats.touching_links import touching_pairs
 from harness.robot.assumed_limits import ACCELERATION, VELOCITY
 from harness.robot.compose import PartArm, RobotPart
-from harness.robot.description import Joint, PlanningGroup
+from harness.robot.description import PlanningGroup
 from harness.robot.groups import planning_groups
+from harness.robot.mechanism import Joint
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.all_arms import with_group_of_all
 from harness.robot.srdf.srdf import Srdf

@@ -16,7 +16,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.plugins.formats.touching_links import coal_transform, urdf_poses
 from harness.robot.collision_shapes import convex_shapes
-from harness.robot.description import Joint, Mimic, NamedState, PlanningGroup
+from harness.robot.description import NamedState, PlanningGroup
+from harness.robot.mechanism import Joint, Mimic
 from harness.robot.mesh_file import hull_of, is_flat
 from harness.robot.robot_yaml import FingerSide, GripperFacts
 from harness.robot.solids import DOT, coal_geometry, hull_corners

@@ -11,7 +11,8 @@ import numpy as np
 from harness.core.spatial import SE3
 from harness.plugins.formats.robot_files.inferred_gripper import IntegratedGripper
 from harness.plugins.formats.touching_links import urdf_poses
-from harness.robot.description import Link, PlanningGroup, fixed_joint
+from harness.robot.description import PlanningGroup
+from harness.robot.mechanism import Link, fixed_joint
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.tree import carriers
 from harness.robot.urdf.urdf import Urdf

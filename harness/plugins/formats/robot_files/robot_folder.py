@@ -15,8 +15,8 @@ from harness.core.geometry import Mesh
 from harness.language.scenario import RobotSpec
 from harness.plugins.formats.robot_files.import_robot import read_robot
 from harness.robot.compose import RobotPart
-from harness.robot.description import Joint
 from harness.robot.load import load_robot
+from harness.robot.mechanism import Joint
 from harness.robot.srdf.srdf import write_srdf
 from harness.robot.urdf.write import package_name, write_urdf
 

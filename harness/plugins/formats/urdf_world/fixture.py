@@ -17,7 +17,7 @@ from harness.plugins.formats.object_words import MassProperties, look_words, mas
 from harness.plugins.formats.plain_values import pose_spec, rounded
 from harness.plugins.formats.sdf.values import validated
 from harness.plugins.formats.touching_links import urdf_poses
-from harness.robot.description import Joint, Link
+from harness.robot.mechanism import Joint, Link
 from harness.robot.packages import PackagePath
 from harness.robot.tree import carriers, joints_to
 from harness.robot.urdf.urdf import Urdf, parse_urdf

@@ -33,7 +33,8 @@ from harness.plugins.formulas.language.ranges import decided, range_of_signal
 from harness.plugins.formulas.verdict import formula_verdict
 from harness.recording.run import Run
 from harness.recording.verdict import Verdict
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 
 RANGES: dict[str, Callable[[Joint], tuple[float, float]]] = {
     "position": lambda joint: (joint.lower, joint.upper),

@@ -12,7 +12,8 @@ from harness.core.types import FloatArray
 from harness.plugins.grading.bag.clocks import Timeline
 from harness.plugins.grading.bag.content import BagContent, RecordedTrack, Tracks, joined_tracks
 from harness.plugins.grading.bag.sampling import Trace, first_of_each
-from harness.robot.description import Joint, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.mechanism import Joint
 
 SLACK = {"revolute": 0.02, "continuous": 0.02, "prismatic": 0.002}
 """What noise and rounding may add to a position [rad or m]; a joint that moves by less stands

@@ -17,7 +17,8 @@ from harness.plugins.ros.control.gripper import GripperMotion
 from harness.plugins.ros.control.step_response import StepResponse
 from harness.plugins.ros.control.trajectory import follow_result, start_trajectory
 from harness.recording.commands import CommandKind, CommandRecord
-from harness.robot.description import Gripper, TrackingTolerances
+from harness.robot.description import TrackingTolerances
+from harness.robot.end_effector import Gripper
 
 if TYPE_CHECKING:
     from harness.simulation.mujoco_simulator import MujocoSimulator

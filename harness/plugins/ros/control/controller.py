@@ -9,7 +9,9 @@ from typing import Any, Protocol
 from harness.core.types import FloatArray, IntArray
 from harness.plugins.ros.control.goals import Code
 from harness.recording.commands import CommandKind
-from harness.robot.description import Gripper, Joint, TrackingTolerances
+from harness.robot.description import TrackingTolerances
+from harness.robot.end_effector import Gripper
+from harness.robot.mechanism import Joint
 
 Rows = FloatArray  # positions, velocities and accelerations, shape (3, N, dof)
 

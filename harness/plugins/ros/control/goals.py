@@ -12,7 +12,8 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.recording.commands import CommandRecord
-from harness.robot.description import Joint, TrackingTolerances
+from harness.robot.description import TrackingTolerances
+from harness.robot.mechanism import Joint
 
 LIMIT_SLACK = 1e-4  # excess of a position limit that is rounding of a decimal number [rad or m]
 LARGEST = 1e6  # position, velocity or acceleration that is no motion of an arm

@@ -12,7 +12,7 @@ from harness.plugins.ros.control.controller import Outcome, Rows, Window
 from harness.plugins.ros.control.goals import LIMIT_SLACK, Code, GoalRefused
 from harness.plugins.ros.interfaces import GRIPPER
 from harness.recording.commands import CommandRecord
-from harness.robot.description import Gripper
+from harness.robot.end_effector import Gripper
 from harness.robot.gripper.closing_speed import joint_speed
 from harness.simulation.gripper_drive import (
     GOAL_TOLERANCE,

@@ -16,7 +16,8 @@ from harness.plugins.ros.control.controller import Outcome, Rows, Window
 from harness.plugins.ros.control.goals import Code, TrajectoryGoal, checked_goal
 from harness.plugins.ros.interfaces import FOLLOW, POINT, header
 from harness.recording.commands import CommandRecord
-from harness.robot.description import Joint, TrackingTolerances
+from harness.robot.description import TrackingTolerances
+from harness.robot.mechanism import Joint
 
 TIME_SLACK = 1e-9
 

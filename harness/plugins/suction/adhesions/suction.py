@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray
-from harness.robot.description import Cup, Gripper, seal_words
+from harness.robot.end_effector import Cup, Gripper, seal_words
 from harness.simulation.adhesion import Adhesion
 from harness.simulation.model import PhysicsModel
 

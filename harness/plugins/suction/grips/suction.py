@@ -19,7 +19,8 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
 from harness.recording.explanation import Explanation
-from harness.robot.description import Cup, RobotDescription
+from harness.robot.description import RobotDescription
+from harness.robot.end_effector import Cup
 
 STANDOFF = 0.0005
 """Between the rims and the face that they approach [m]: within every lip, and the planner sees that
