@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field, replace
 
 from harness.cell.holding import Holding
@@ -80,6 +80,12 @@ class Cell(Holding):
         finally:
             self.step, self.notes = current, notes
 
+    def run_parts(self, parts: Generator[ProgramStep]) -> None:
+        """Run the steps that the current one is made of, each before the next is made."""
+        with closing(parts):
+            for part in parts:
+                self.run_children([part])
+
     # -- motion -------------------------------------------------------------------------------
 
     def motion(
@@ -136,6 +142,12 @@ class Cell(Holding):
                 TimeoutFailure(plan.trajectory.duration, timeout),
             )
         if self.waiting is not None:
+            if follow is not None:
+                raise StepFailed(
+                    "INVALID_MOTION_PLAN",
+                    f"`{self.current.spec.verb}` ends by what it meets: it cannot run at once with"
+                    " a motion of another arm",
+                )
             self.waiting.append(plan.trajectory)
         elif follow is None:
             self.simulator.track(plan.trajectory)

@@ -72,6 +72,7 @@ class SceneState:
         beliefs: Where objects of the planning scene alone stood, by name.
         notes: What the step leaves in its record.
         expected: T_world_object of objects that plans take to be elsewhere than they are.
+        unpadded: Pairs of bodies without padding, of each gripper that is about to grasp.
         waiting: Motions that begin together once all of them are planned; None: each begins at
             once.
     """
@@ -86,6 +87,7 @@ class SceneState:
     beliefs: dict[str, list[Belief]] = field(default_factory=dict[str, list[Belief]])
     notes: StepNotes = field(default_factory=StepNotes)
     expected: dict[str, SE3] = field(default_factory=dict[str, SE3])
+    unpadded: list[list[tuple[str, str]]] = field(default_factory=list[list[tuple[str, str]]])
     waiting: list[JointTrajectory] | None = None
 
     @property
@@ -111,12 +113,14 @@ class SceneState:
     @contextmanager
     def unpadded_gripper(self, name: str) -> Generator[None]:
         """Apply no padding between the gripper and an object that it is about to grasp."""
-        links = (self.gripper.palm_link, *self.gripper.links)
-        self.scene.set_unpadded([(link, name) for link in links])
+        pairs = [(link, name) for link in (self.gripper.palm_link, *self.gripper.links)]
+        self.unpadded.append(pairs)
         try:
+            self.scene.set_unpadded([pair for each in self.unpadded for pair in each])
             yield
         finally:
-            self.scene.set_unpadded([])
+            self.unpadded.remove(pairs)
+            self.scene.set_unpadded([pair for each in self.unpadded for pair in each])
 
     def report(self, part: Detail) -> None:
         """Leave a part of the step's result in its record, in place of an earlier one of its type.

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from harness.cell.cell import Cell
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory, together
+from harness.ports.motion_planning import MotionRequest
 from harness.ports.motions import TimedMotion
 from harness.robot.description import ALL_ARMS
 
@@ -14,48 +13,60 @@ DELAYS = 10  # of a motion of another arm, tried one after the other: tenths of 
 SET_POINTS = 0.01  # [s], between set points, of which delays are multiples
 
 
-def follow_together(cell: Cell, motions: Sequence[JointTrajectory]) -> tuple[float, ...]:
-    """Follow motions of different arms at once; returns when each begins [s].
+class MergedMotion:
+    """Motions of different arms as one.
 
     Each was planned around the arms before it at their ends. It begins as soon as the timed
     motion of all of them is free, in tenths of the motion before, at the latest when that has
     ended.
 
-    Raises:
-        PlanningFailed: INVALID_MOTION_PLAN, the motions are not free one after the other.
+    Attributes:
+        delays: When each motion begins [s].
     """
-    begun, whole = [(motions[0], 0.0)], motions[0]
-    for motion in motions[1:]:
-        whole, delay = _earliest(cell, begun, motion, whole.duration)
-        begun.append((motion, delay))
-    cell.notes.trajectory = whole
-    cell.simulator.track(whole)
-    return tuple(delay for _, delay in begun)
 
+    def __init__(self, cell: Cell) -> None:
+        """Merge motions that start where the robot is now."""
+        self._cell, self._start = cell, cell.planning_start()
+        self._motions: list[tuple[JointTrajectory, float]] = []
+        self._whole: JointTrajectory | None = None
 
-def _earliest(
-    cell: Cell,
-    begun: Sequence[tuple[JointTrajectory, float]],
-    motion: JointTrajectory,
-    longest: float,
-) -> tuple[JointTrajectory, float]:
-    """Motions of arms and one more, and the earliest begin at which they are free [s].
+    @property
+    def delays(self) -> tuple[float, ...]:
+        return tuple(delay for _, delay in self._motions)
 
-    Raises:
-        PlanningFailed: INVALID_MOTION_PLAN; none is.
-    """
-    start, names = cell.planning_start(), cell.robot.group_joints(ALL_ARMS)
-    rest = start[list(cell.robot.group_indices(ALL_ARMS))]
-    for number in range(DELAYS + 1):
-        delay = round(number * longest / DELAYS / SET_POINTS) * SET_POINTS
-        if number == DELAYS:
-            delay = longest
-        whole = together([*begun, (motion, delay)], names, rest)
-        try:
-            cell.planner.plan(cell.motion(ALL_ARMS, TimedMotion(whole)))
-        except PlanningFailed:
-            if number == DELAYS:
-                raise
-        else:
-            return whole, delay
-    raise AssertionError("the last delay is accepted or raises")
+    def add(self, motion: JointTrajectory) -> None:
+        """Let a motion begin as early as possible.
+
+        Raises:
+            PlanningFailed: INVALID_MOTION_PLAN, not even after the end of the others.
+        """
+        if self._whole is None:
+            self._whole, self._motions = motion, [(motion, 0.0)]
+            return
+        names, longest = self._cell.robot.group_joints(ALL_ARMS), self._whole.duration
+        rest = self._start[list(self._cell.robot.group_indices(ALL_ARMS))]
+        options = self._cell.current.options
+        for number in range(DELAYS + 1):
+            delay = round(number * longest / DELAYS / SET_POINTS) * SET_POINTS
+            delay = longest if number == DELAYS else delay
+            motions = [*self._motions, (motion, delay)]
+            whole = together(motions, names, rest)
+            try:
+                request = MotionRequest(ALL_ARMS, self._start, TimedMotion(whole), options)
+                self._cell.planner.plan(request)
+            except PlanningFailed:
+                if number == DELAYS:
+                    raise
+            else:
+                self._whole, self._motions = whole, motions
+                return
+
+    def follow(self) -> None:
+        """Follow the whole motion, which the step notes.
+
+        Raises:
+            StepFailed: CONTROL_FAILED; an arm cannot follow it.
+        """
+        assert self._whole is not None
+        self._cell.notes.trajectory = self._whole
+        self._cell.simulator.track(self._whole)

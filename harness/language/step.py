@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -21,6 +21,7 @@ from harness.language.world import ObjectSpec
 
 if TYPE_CHECKING:  # of what steps work with, which is built on the language
     from harness.cell.cell import Cell
+    from harness.cell.program import ProgramStep
     from harness.cell.scope import At
 
 TAG = "do"  # in the shape of the models, the key of a step's verb
@@ -148,6 +149,22 @@ class Step(SpecModel):
 
         Args:
             cell: The robot, the planning scene, the planner and the simulator.
+
+        Raises:
+            StepFailed: The step cannot be carried out.
+        """
+        raise NotImplementedError(self.verb)
+
+    @property
+    def is_made_of_parts(self) -> bool:
+        """Whether the step carries out `parts`, which `parallel` combines with another arm's."""
+        return False
+
+    def parts(self, cell: Cell) -> Generator[ProgramStep]:
+        """The steps that the step is made of.
+
+        What has to be planned is planned before the first one; each of the others may be requested
+        before those in front of it are carried out.
 
         Raises:
             StepFailed: The step cannot be carried out.

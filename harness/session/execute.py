@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from harness.cell.cell import Cell
 from harness.cell.program import Program, ProgramStep
 from harness.cell.scene_state import Belief, Presence, StepNotes
-from harness.cell.together import follow_together
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.ports.external import ExternalControl
@@ -20,8 +19,7 @@ from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 from harness.session.advice import advice
-
-OnStep = Callable[[ProgramStep, StepRecord | None], None]  # None: it begins
+from harness.session.at_once import AtOnce, End, Failure, OnStep, RunEndedError
 
 
 @dataclass(frozen=True)
@@ -39,19 +37,6 @@ class Execution:
     ended_early: str
 
 
-class _RunEndedError(Exception):
-    """A step failed in a way that nothing expected; carries the failure up through nesting.
-
-    Attributes:
-        failure: The failure of the innermost step.
-        summary: The summary of that step.
-    """
-
-    def __init__(self, failure: StepFailed, summary: str) -> None:
-        self.failure, self.summary = failure, summary
-        super().__init__(str(failure))
-
-
 @dataclass
 class _Runner:
     cell: Cell
@@ -67,60 +52,56 @@ class _Runner:
             self._run_step(step)
 
     def run_together(self, steps: Sequence[ProgramStep]) -> tuple[float, ...]:
-        """Plan the motions of steps of different arms, then carry them out at once.
+        """Carry out steps of different arms at once; returns when each of them begins [s]."""
+        return AtOnce(self, steps).run()
 
-        Returns:
-            When each of them begins [s].
-        """
-        cell, first = self.cell, len(self.records)
-        around, cell.waiting = (cell.step, cell.notes), []
-        try:
-            self.run(steps)
-        finally:
-            motions, cell.waiting = cell.waiting, None
-            cell.step, cell.notes = around
-        delays = follow_together(cell, motions)
-        ends = {"end_time": cell.simulator.time, "end_index": cell.simulator.sample_count}
-        self.records[first:] = [replace(each, **ends) for each in self.records[first:]]
-        return delays
-
-    def _run_step(self, step: ProgramStep) -> None:
+    def begin(self, step: ProgramStep) -> End:
+        """Begin the record of a step; returns what completes it from the cell's notes."""
         cell = self.cell
         self.on_step(step, None)
-        cell.step, cell.notes = step, StepNotes()
         place = len(self.records)
         self.records.append(_not_reached(step))
         # the sample at the step's start belongs to it, so that no step is without samples
         start_time, start_index = cell.simulator.time, max(0, cell.simulator.sample_count - 1)
-        inner = self._attempt(step)
-        failure = _own(inner) or _too_long(step, cell.simulator.time - start_time, self.timestep)
-        status, message = _judge_step(step, failure)
-        notes = cell.notes
-        self.records[place] = replace(
-            self.records[place],
-            status=status,
-            error_code=failure.code if failure else "",
-            message=message,
-            start_time=start_time,
-            end_time=cell.simulator.time,
-            start_index=start_index,
-            end_index=cell.simulator.sample_count,
-            trajectory=notes.trajectory,
-            planner=notes.planner,
-            explanation=notes.explanation + _details(failure, cell),
-            result=notes.result,
-        )
-        self.on_step(step, self.records[place])
-        if status == "failed" and (self.depth or not self.keep_going):
-            if isinstance(inner, _RunEndedError):
-                raise inner
-            raise _RunEndedError(failure or StepFailed("FAILURE", message), step.summary)
 
-    def _attempt(self, step: ProgramStep) -> StepFailed | _RunEndedError | None:
+        def end(inner: Failure | None) -> None:
+            failure = _own(inner) or _too_long(
+                step, cell.simulator.time - start_time, self.timestep
+            )
+            status, message = _judge_step(step, failure)
+            notes = cell.notes
+            self.records[place] = replace(
+                self.records[place],
+                status=status,
+                error_code=failure.code if failure else "",
+                message=message,
+                start_time=start_time,
+                end_time=cell.simulator.time,
+                start_index=start_index,
+                end_index=cell.simulator.sample_count,
+                trajectory=notes.trajectory,
+                planner=notes.planner,
+                explanation=notes.explanation + _details(failure, cell),
+                result=notes.result,
+            )
+            self.on_step(step, self.records[place])
+            if status == "failed" and (self.depth or not self.keep_going):
+                if isinstance(inner, RunEndedError):
+                    raise inner
+                raise RunEndedError(failure or StepFailed("FAILURE", message), step.summary)
+
+        return end
+
+    def _run_step(self, step: ProgramStep) -> None:
+        self.cell.step, self.cell.notes = step, StepNotes()
+        end = self.begin(step)
+        end(self._attempt(step))
+
+    def _attempt(self, step: ProgramStep) -> Failure | None:
         self.depth += 1
         try:
             step.spec.execute(self.cell)
-        except (StepFailed, _RunEndedError) as failure:
+        except (StepFailed, RunEndedError) as failure:
             return failure
         finally:
             self.depth -= 1
@@ -185,7 +166,7 @@ class ProgramExecution:
         """Carry out steps in order; the first unexpected failure ends it, as `ended_early` says."""
         try:
             self._runner.run(steps)
-        except _RunEndedError as ended:
+        except RunEndedError as ended:
             self.ended_early = str(ended.failure)
         if self.ended_early or [step.path for step in steps[-1:]] == [self.program.steps[-1].path]:
             self._show_last_change()
@@ -219,9 +200,9 @@ def execute_program(
     return execution.finish()
 
 
-def _own(failure: StepFailed | _RunEndedError | None) -> StepFailed | None:
+def _own(failure: Failure | None) -> StepFailed | None:
     """A step's failure; of a failed step inside it, only its name, since that step has its own."""
-    if isinstance(failure, _RunEndedError):
+    if isinstance(failure, RunEndedError):
         return StepFailed(failure.failure.code, f"its step `{failure.summary}` failed")
     return failure
 

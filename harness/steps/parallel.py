@@ -1,4 +1,4 @@
-"""parallel: the gripper moves while the arm does, or several arms move at once."""
+"""parallel: the gripper moves while the arm does, or several arms work at once."""
 
 from __future__ import annotations
 
@@ -24,12 +24,16 @@ class Delays(Detail):
 
 
 class Parallel(Step):
-    """Run one motion of the arm and one `gripper` step at once, or motions of several arms.
+    """Run one motion of the arm and one `gripper` step at once, or steps of several arms.
 
     It ends when all of them have. Motions of several arms are planned one after the other, each
     around the ends of those before it; then each begins as soon as the timed motion of all arms is
     free of collisions, in tenths of the motion before it, at the latest when that has ended. The
     step reports the `delays`.
+
+    A `pick` or `place` goes on in rounds: in each one the arms do their next motion at once, and
+    what closes or opens a gripper follows. A motion that another arm is in the way of waits for the
+    next round; when no arm can go on, the step fails with the pair of links.
     """
 
     short = "steps"
@@ -39,8 +43,8 @@ class Parallel(Step):
     results = (Delays,)
 
     steps: Annotated[tuple[AnyStep, ...], Field(min_length=2)] = Field(
-        description="One motion of the arm and one `gripper` step, or one motion of each of "
-        "several arms."
+        description="One motion of the arm and one `gripper` step, or one motion, `pick` or "
+        "`place` of each of several arms."
     )
 
     def summary(self) -> str:
@@ -52,14 +56,15 @@ class Parallel(Step):
     def check(self, at: At) -> None:
         grippers = sum(isinstance(child, Gripper) for child in self.steps)
         motions = sum(child.moves_arm for child in self.steps)
-        if motions == len(self.steps) and at.scope.description.arms:
+        made_of_parts = sum(child.is_made_of_parts for child in self.steps)
+        if motions + made_of_parts == len(self.steps) and at.scope.description.arms:
             self._check_arms(at)
         elif len(self.steps) != 2 or grippers != 1 or motions != 1:
             verbs = sorted(verb for verb, step in STEPS.items() if step.moves_arm)
             at.scope.problems.add(
                 at.key("steps"),
-                "`parallel` is one motion of the arm and one `gripper` step, or one motion of each"
-                " of several arms",
+                "`parallel` is one motion of the arm and one `gripper` step, or one motion, `pick`"
+                " or `place` without `track` of each of several arms",
                 "arm motions: " + ", ".join(verbs),
             )
         for index, child in enumerate(self.steps):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Generator
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -149,6 +150,10 @@ class Pick(Step):
             )
         return self
 
+    @property
+    def is_made_of_parts(self) -> bool:
+        return not self.track
+
     def summary(self) -> str:
         return self.object
 
@@ -177,21 +182,31 @@ class Pick(Step):
 
     def execute(self, cell: Cell) -> None:
         """Open, go to where the approach begins, approach straight, grasp, lift."""
-        grasp = Grasp(object=self.object, mode=self.mode, max_effort=self.max_effort)
-        lift = relative_step(self.lift, Direction(xyz=(0, 0, 1)), self.group)
-        if self.track:
-            step = self.model_copy(update={"approach": self.approach or APPROACH_IN_MOTION})
-            tracker().pick(grasp, lift, lambda: chosen_approach(step, lift, cell), cell)
+        if not self.track:
+            cell.run_parts(self.parts(cell))
             return
+        step = self.model_copy(update={"approach": self.approach or APPROACH_IN_MOTION})
+        lift = self._lift()
+        tracker().pick(self._grasp(), lift, lambda: chosen_approach(step, lift, cell), cell)
+
+    def _grasp(self) -> Grasp:
+        return Grasp(object=self.object, mode=self.mode, max_effort=self.max_effort)
+
+    def _lift(self) -> MoveRelative:
+        return relative_step(self.lift, Direction(xyz=(0, 0, 1)), self.group)
+
+    def parts(self, cell: Cell) -> Generator[ProgramStep]:
+        lift = self._lift()
         open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
         with cell.unpadded_gripper(self.object):
-            children = [
+            opening, approach = (
                 cell.child("open", open_hand, "gripper open"),
-                *_approach(self, lift, cell),
-                cell.child("grasp", grasp, f"grasp {self.object}"),
-                cell.child("lift", lift, f"move_relative lift {self.object}"),
-            ]
-            cell.run_children(children)
+                _approach(self, lift, cell),
+            )
+            yield opening
+            yield from approach
+            yield cell.child("grasp", self._grasp(), f"grasp {self.object}")
+            yield cell.child("lift", lift, f"move_relative lift {self.object}")
 
 
 def check_travel(travel: Travel | None, at: At, key: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
@@ -115,6 +115,10 @@ class Place(Step):
             raise ValueError("exactly one of `pose`, and `on` with the name of a support")
         return self
 
+    @property
+    def is_made_of_parts(self) -> bool:
+        return not self.track
+
     def summary(self) -> str:
         return " on ".join(filter(None, (self.object or "", self.on)))
 
@@ -147,6 +151,18 @@ class Place(Step):
         Raises:
             StepFailed: INVALID_OBJECT_NAME, when the object is not held.
         """
+        if not self.track:
+            cell.run_parts(self.parts(cell))
+            return
+        name = self._held_object(cell)
+        up = Direction(xyz=(0, 0, 1))
+        back = relative_step(self.retreat or DEFAULT_RETREAT, up, self.group)
+        distance = back.distance or back.max_distance or 0.0
+        targets, group = _targets(name, self, cell), group_of(cell, self.group)
+        tracker().place(name, targets, distance, group, cell)
+
+    def _held_object(self, cell: Cell) -> str:
+        """The name of the object that the step places."""
         held = cell.held_objects
         name = self.object or (held[-1] if held else None)
         if name is None or name not in cell.scene.attached():
@@ -158,24 +174,14 @@ class Place(Step):
                 Explanation(advice=f"put a step that takes it before: `- pick: {name or '...'}`"),
             )
         refuse_other_holder(name, cell)
-        if self.track:
-            up = Direction(xyz=(0, 0, 1))
-            back = relative_step(self.retreat or DEFAULT_RETREAT, up, self.group)
-            distance = back.distance or back.max_distance or 0.0
-            targets, group = _targets(name, self, cell), group_of(cell, self.group)
-            tracker().place(name, targets, distance, group, cell)
-            return
-        backwards = _retreat_direction(cell)
-        children = [
-            *_lowering(name, self, cell),
-            cell.child("release", Release(object=name), f"release {name}"),
-            cell.child(
-                "retreat",
-                relative_step(self.retreat or DEFAULT_RETREAT, backwards, self.group),
-                "move_relative back",
-            ),
-        ]
-        cell.run_children(children)
+        return name
+
+    def parts(self, cell: Cell) -> Generator[ProgramStep]:
+        name, backwards = self._held_object(cell), _retreat_direction(cell)
+        yield from _lowering(name, self, cell)
+        yield cell.child("release", Release(object=name), f"release {name}")
+        retreat = relative_step(self.retreat or DEFAULT_RETREAT, backwards, self.group)
+        yield cell.child("retreat", retreat, "move_relative back")
 
 
 def _check_support(name: str, held: str | None, at: At) -> None:

@@ -228,6 +228,72 @@ def test_two_arms_at_one_place_are_refused_with_the_pair(tmp_path):
     assert "right_" in failure.message
 
 
+BOTH_PICK = f"""
+scenario: both arms work at once
+{PAIR}
+objects:
+{box("a", 0.3, 0.3)}{box("b", 0.3, -0.3)}
+steps:
+  - parallel:
+      - pick: a
+        robot: left
+      - pick: b
+        robot: right
+"""
+BOTH_PLACE = """
+  - parallel:
+      - place: {{object: a, pose: {{xyz: [0.3, {0}, 0.041]}}}}
+        robot: left
+      - place: {{object: b, pose: {{xyz: [0.3, -{0}, 0.041]}}}}
+        robot: right
+"""
+
+
+def test_two_arms_pick_at_once(recorded_run):
+    text = BOTH_PICK + (
+        "expect:\n  - grasped: {object: a, by: left}\n  - lifted: {object: b, by: right}\n"
+        "  - never: collision\n"
+    )
+    stored = read_run(recorded_run(text) / "run")
+    assert [verdict.status for verdict in stored.verdicts] == ["passed"] * 3
+    steps = {step.path: step for step in stored.run.steps}
+    left, right = ({p: steps[f"steps[0].parallel[{n}].{p}"] for p in PARTS} for n in range(2))
+    for part in ("reach", "approach", "lift"):
+        assert left[part].end_time == right[part].end_time
+    assert [step.arm for step in right.values()] == ["right"] * len(PARTS)
+    assert steps["steps[0].parallel[1]"].start_time == 0
+    assert steps["steps[0].parallel[0]"].end_time == steps["steps[0]"].end_time
+
+
+PARTS = ("open", "reach", "approach", "grasp", "lift")
+
+
+@pytest.mark.nightly
+def test_places_next_to_each_other_wait_for_the_hand_that_opens(recorded_run):
+    """Each place is free by itself; the hands do not fit next to each other."""
+    text = BOTH_PICK + BOTH_PLACE.format(0.11) + "expect:\n  - placed: a\n  - never: collision\n"
+    stored = read_run(recorded_run(text) / "run")
+    assert [verdict.status for verdict in stored.verdicts] == ["passed"] * 2
+
+
+@pytest.mark.nightly
+def test_a_place_under_the_hand_that_stays_there_is_refused_before_anything_touches(recorded_run):
+    text = BOTH_PICK + BOTH_PLACE.format(0.05) + "expect:\n  - placed: b\n  - never: collision\n"
+    stored = read_run(recorded_run(text, "failed") / "run")
+    second = next(step for step in stored.run.steps if step.path == "steps[1].parallel[1]")
+    assert second.error_code == "GOAL_IN_COLLISION"
+    assert "left_rh_p12_rn" in second.message
+    assert [verdict.status for verdict in stored.verdicts] == ["not reached", "passed"]
+
+
+def test_a_pick_in_motion_is_no_step_of_two_arms_at_once(tmp_path):
+    text = at_once(
+        ("pick: {object: a, track: true}", "robot: left"), ("move_to: up", "robot: right")
+    )
+    problems = found(tmp_path, text, rest="objects:\n" + box("a", 0.3, 0.3))
+    assert any("`pick` or `place` without `track`" in message for _, message, _ in problems)
+
+
 @pytest.mark.parametrize("y", [-0.3, 0.9, 9.0])
 def test_arms_that_stand_apart(y, tmp_path):
     robot = PAIR.replace("[0, -0.3, 0]", f"[0, {y}, 0]")
