@@ -21,7 +21,10 @@ class CommandRecord:
         controller: The controller that it addresses, such as `arm_controller`.
         goal: The goal's identifier in hex; empty for what came on a topic.
         content: The values of the message.
-        answer: The immediate result: `accepted`, or why not.
+        answer: The immediate result: `accepted`, or why not; of a plan, what became of it.
+        summary: What the program requests, for people.
+        result: What became of a goal, and when; empty where nothing ended, or it has no result.
+        has_failed: Whether it was refused, or did not do what it requests.
     """
 
     sample: int
@@ -31,3 +34,6 @@ class CommandRecord:
     goal: str = ""
     content: Mapping[str, Any] = field(default_factory=dict[str, Any])
     answer: str = ""
+    summary: str = ""
+    result: str = ""
+    has_failed: bool = False

@@ -18,6 +18,9 @@ from harness.reporting.html.nearest import nearest_points
 from harness.reporting.margins import tightest_name, used_allowance
 from harness.robot.mechanism import Joint
 
+EXTERNAL = "external"
+"""The verb of the step in which programs outside command the robot."""
+
 TONES = {"passed": "good", "expected error": "good", "failed": "bad", "not reached": "open"}
 
 
@@ -78,7 +81,31 @@ def step_facts(run: Run, step: StepRecord, verdicts: Sequence[Verdict]) -> dict[
             {key: value for key, value in step.planner.plain().items() if key != "raw_path"}
         ),
         "explanation": finite(step.explanation),
+        "commands": command_rows(run, step),
     }
+
+
+def command_rows(run: Run, step: StepRecord) -> list[dict[str, Any]]:
+    """What programs outside commanded in a step; messages of a topic in a row are one row."""
+    rows: list[dict[str, Any]] = []
+    if step.verb != EXTERNAL:
+        return rows
+    others = [each for each in run.steps if each.verb == EXTERNAL and each.end_time > 0]
+    for command in run.commands:
+        owners = (each for each in others if each.start_time <= command.time <= each.end_time)
+        if next(owners, step).path != step.path:
+            continue
+        row = {
+            "what": f"{command.controller} {command.summary or command.kind}".strip(),
+            "answer": command.result or command.answer,
+            "isBad": command.has_failed,
+            "isGoal": bool(command.goal),
+        }
+        if rows and not command.goal and all(rows[-1][key] == row[key] for key in row):
+            rows[-1] |= {"until": command.time, "count": rows[-1]["count"] + 1}
+        else:
+            rows.append({**row, "time": command.time, "until": None, "count": 1})
+    return rows
 
 
 def verdict_facts(run: Run, verdict: Verdict) -> dict[str, Any]:

@@ -54,6 +54,17 @@ def test_a_client_plans_grasps_attaches_and_lifts_for_all_points(tmp_path):
     failed = [each for each in result.case.verdicts if each.status != "passed"]
     assert not failed
     assert result.case.outcome == "passed"
-    [attachment] = read_run(folder).run.attachments
+    run = read_run(folder).run
+    plan, motion = run.commands[:2]
+    assert (plan.summary, plan.answer) == ("plan for ur_manipulator: 6 joints", "planned")
+    assert motion.summary.startswith("trajectory of ")
+    assert motion.result.startswith("succeeded, t=")
+    above = run.commands[2].summary
+    assert above.startswith("plan for ur_manipulator: end_effector_link at ")
+    summaries = [(each.summary, each.has_failed) for each in run.commands]
+    assert ("planning scene: attach green_cylinder", False) in summaries
+    [gripped] = [each.result for each in run.commands if each.kind == "gripper"]
+    assert gripped.startswith("stalled on something")
+    [attachment] = run.attachments
     assert (attachment.object, attachment.link) == ("green_cylinder", TIP)
     assert replay(folder).digest == result.case.digest

@@ -15,6 +15,7 @@ from harness.plugins.ros.control.controller import Controller, Outcome, Rows, Wi
 from harness.plugins.ros.control.goals import Code, GoalRefused
 from harness.plugins.ros.control.gripper import GripperMotion
 from harness.plugins.ros.control.step_response import StepResponse
+from harness.plugins.ros.control.summaries import result_of, summary_of
 from harness.plugins.ros.control.trajectory import follow_result, start_trajectory
 from harness.recording.commands import CommandKind, CommandRecord
 from harness.robot.description import TrackingTolerances
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 TICK = 0.01  # [s] of simulated time between updates of controllers: 100 Hz, as in the course
 
+PLANNED = "planned"  # what became of a request to plan, where it is no failure
 CANCELED = "canceled"
 PREEMPTED = "a newer command replaced this goal"
 STOPPED = "the session ended while this goal was active"
@@ -96,7 +98,10 @@ class ExternalCell:
     ) -> CommandRecord:
         """Let a command take effect now, and record it with its result."""
         sample = self._servos.sample_count - 1
-        record = CommandRecord(sample, self.time, kind, controller, goal, content, "accepted")
+        summary = summary_of(kind, content)
+        record = CommandRecord(
+            sample, self.time, kind, controller, goal, content, "accepted", summary
+        )
         try:
             if kind == "cancel":
                 self._cancel(goal)
@@ -104,12 +109,15 @@ class ExternalCell:
                 self.end = record
             elif kind == "scene":
                 self.change_scene(content["changes"])
-            elif kind != "plan":
+            elif kind == "plan":
+                answer = content["answer"]
+                record = replace(record, answer=answer, has_failed=answer != PLANNED)
+            else:
                 self._begin(self.controllers[controller], record)
         except StepFailed as failure:  # of a change of the planning scene
-            record = replace(record, answer=str(failure))
+            record = replace(record, answer=str(failure), has_failed=True)
         except GoalRefused as refused:
-            record = replace(record, answer=str(refused))
+            record = replace(record, answer=str(refused), has_failed=True)
             if kind == "trajectory" and goal:
                 result = follow_result(refused.code, record.answer)
                 self.on_outcome(Outcome(goal, False, result))
@@ -137,7 +145,19 @@ class ExternalCell:
         """End what a controller follows before it is reached."""
         motion, controller.motion = controller.motion, None
         if motion is not None and motion.goal:  # what came from a topic has no result
-            self.on_outcome(motion.interrupted(code, reason, self._now(controller)))
+            self._end(motion.interrupted(code, reason, self._now(controller)), reason)
+
+    def _end(self, outcome: Outcome, reason: str = "") -> None:
+        """Record what became of a goal, and report it."""
+        for place, command in reversed([*enumerate(self.commands)]):
+            if outcome.goal and command.goal == outcome.goal and command.kind != "cancel":
+                self.commands[place] = replace(
+                    command,
+                    result=f"{reason or result_of(outcome)}, t={self.time:.2f} s",
+                    has_failed=not outcome.has_succeeded and reason != PREEMPTED,
+                )
+                break
+        self.on_outcome(outcome)
 
     def _cancel(self, goal: str) -> None:
         """Hold the joints of a goal where they are."""
@@ -165,7 +185,7 @@ class ExternalCell:
                 controller.motion = None
                 if ended.hold is not None:
                     self._hold(controller, ended.hold)
-                self.on_outcome(ended)
+                self._end(ended)
 
     def feedback(self) -> Iterator[tuple[str, Any]]:
         """Every goal that is followed, and the feedback of its action at this moment."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.cell.cell import Cell
 from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.printable import counted
 from harness.core.registry import registry
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
@@ -99,6 +100,24 @@ def sequence_response(cell: Cell, planned: Planned | None, code: Any, seconds: f
         planned_trajectories=[fields["planned_trajectory"]] if planned else [],
         planning_time=seconds,
     )
+
+
+def motion_text(request: Any) -> str:
+    """What a MotionPlanRequest is about, for people: its planner and its goals."""
+    planner = f"{request.pipeline_id} {request.planner_id}".strip()
+    goals = [_goal_text(each) for each in request.goal_constraints]
+    return f"{f' by {planner}' if planner else ''}: {' or '.join(goals) or 'no goal'}"
+
+
+def _goal_text(constraints: Any) -> str:
+    places = [
+        f"{each.link_name} at {at.position.x:.3f}, {at.position.y:.3f}, {at.position.z:.3f}"
+        f" in {each.header.frame_id or 'world'}"
+        for each in constraints.position_constraints
+        for at in each.constraint_region.primitive_poses[:1]
+    ]
+    joints = len(constraints.joint_constraints)
+    return ", ".join([*places, *([counted(joints, "joint")] if joints else [])]) or "no position"
 
 
 def warm_up(cell: Cell) -> None:

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from harness.cell.cell import Cell
 from harness.core.activity import unobserved
 from harness.core.errors import HarnessError, StepFailed
-from harness.plugins.ros.control.cell import ExternalCell
+from harness.plugins.ros.control.cell import PLANNED, ExternalCell
 from harness.plugins.ros.endpoints import Reply
 from harness.plugins.ros.moveit.client_scene import ClientScene
 from harness.plugins.ros.moveit.planning import (
     Planned,
     display_trajectory,
+    motion_text,
     plan_motion,
     unknown_planner,
     warm_up,
@@ -225,20 +226,21 @@ class Requests:
         def end(result: Planned | StepFailed) -> None:
             failure = result if isinstance(result, StepFailed) else None
             planned = None if isinstance(result, StepFailed) else result
-            self._record(str(motions[0].group_name), failure)
+            self._record(motions, failure)
             if planned is not None:
                 self.on_plan(display_trajectory(scene.cell, planned))
             done(planned, error_code(failure), time.monotonic() - begin)
 
         self.compute(work, end, is_awaited)
 
-    def _record(self, group: str, failure: StepFailed | None) -> None:
+    def _record(self, motions: Sequence[Any], failure: StepFailed | None) -> None:
         """Record a request to plan with what became of it."""
-        answer = "planned"
+        answer = PLANNED
         if failure is not None:
             explanation = failure.details.find(Explanation)
             advice = f"; advice: {explanation.advice}" if explanation and explanation.advice else ""
             answer = f"{failure}{advice}"
             self.report(answer)
-        group = group or self.here.cell.description.default_group
-        self.control.receive("plan", goal="", group=group, answer=answer)
+        group = str(motions[0].group_name) or self.here.cell.description.default_group
+        motion = motion_text(motions[0]) if len(motions) == 1 else f": {len(motions)} motions"
+        self.control.receive("plan", group=group, motion=motion, answer=answer)

@@ -32,7 +32,7 @@ async function start() {
 
   const plots = new Plots(payload, clock, bands);
   const scene = makeScene(payload, () => plots.panelData("contact"));
-  const showCurrentStep = makeSteps(payload, { step: selectStep, verdict: selectVerdict });
+  const showCurrentStep = makeSteps(payload, { step: selectStep, verdict: selectVerdict, time: (time) => clock.seek(time) });
   const source = sourceView(payload, selectLine);
   const verdicts = verdictList(payload, selectVerdict);
   const passed = run.verdicts.filter(({ status }) => status === "passed").length;

@@ -5,14 +5,14 @@ import { STATUS, tone } from "./units.js";
 
 /**
  * @param {import("./payload.js").Payload} payload
- * @param {{step: (index: number) => void, verdict: (index: number) => void}} select
+ * @param {{step: (index: number) => void, verdict: (index: number) => void, time: (time: number) => void}} select
  * @returns {(index: number) => void} marks the step that runs
  */
 export function makeSteps({ run }, select) {
   const parents = parentsOf(run.steps);
   const items = run.steps.map((step, index) => {
     const dots = run.verdicts.flatMap((verdict, number) => (verdict.step === step.id ? [dot(verdict, number, select.verdict)] : []));
-    return element("li", { style: `--depth: ${step.depth}` }, row(step, index, select.step), element("span.dots", {}, ...dots));
+    return element("li", { style: `--depth: ${step.depth}` }, row(step, index, select.step), element("span.dots", {}, ...dots), step.commands.length > 0 && commandList(step, select.time));
   });
   const folded = new Set(run.steps.flatMap((step, index) => (step.hasChildren && step.tone === "good" ? [index] : [])));
   const show = () => items.forEach((item, index) => (item.hidden = ancestors(parents, index).some((each) => folded.has(each))));
@@ -78,6 +78,22 @@ function row(step, index, select) {
     ...step.broken.map((text) => element("span.why", {}, text)),
     step.status === "expected error" && element("span.what.wide", {}, "failed as the file expects"),
   );
+}
+
+/** What programs outside commanded, folded where it went well. */
+function commandList({ commands, tone }, seek) {
+  const total = commands.reduce((sum, { count }) => sum + count, 0);
+  const bad = commands.filter(({ isBad }) => isBad).length;
+  const rows = commands.map(({ time, until, count, what, answer, isBad }) =>
+    element(
+      isBad ? "div.bad" : "div",
+      {},
+      element("button.link", { type: "button", onclick: () => seek(time), title: "Show this moment" }, `${time.toFixed(2)} s`),
+      element("span", {}, count > 1 ? `${count} × ${what}, until ${until.toFixed(2)} s` : what, element("span.what", {}, ` ${answer}`)),
+    ),
+  );
+  const title = `${total} ${total === 1 ? "command" : "commands"}${bad ? `, ${bad} without success` : ""}`;
+  return element("details.commands", { open: tone === "bad" }, element("summary", {}, title), ...rows);
 }
 
 function dot(verdict, number, select) {
