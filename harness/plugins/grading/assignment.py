@@ -205,11 +205,13 @@ class LoadedAssignment:
     Attributes:
         folder: The folder of its file.
         scenario: The scenario file that grades; None of a solver's test.
+        lines: Where each value of its file stands.
     """
 
     model: Assignment
     folder: Path
     scenario: Path | None
+    lines: SourceMap | None = None
 
     @property
     def name(self) -> str:
@@ -239,7 +241,7 @@ def read_assignment(path: Path) -> LoadedAssignment:
     scenario = _scenario_file(model, file.parent, lines, problems)
     if problems:
         raise SpecError(problems)
-    return LoadedAssignment(model, file.parent, scenario)
+    return LoadedAssignment(model, file.parent, scenario, lines)
 
 
 def _contradictions(model: Assignment, lines: SourceMap) -> Iterator[Problem]:

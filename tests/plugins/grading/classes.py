@@ -125,7 +125,7 @@ def ik(x, y, z, pitch):
 CONSTANT = "def ik(x, y, z, pitch):\n    return [0.0, 0.0, 0.0, 0.0]\n"
 SUBMISSIONS = {
     "perfect": Handed(RIGHT, 7, ""),
-    "wrong branch": Handed(BRANCH, 5, "targets within reach are answered rightly"),
+    "wrong branch": Handed(BRANCH, 5, "refuses a target within reach"),
     "low": Handed(RIGHT.replace("= 0.0595", "= 0.0595 + 0.017"), 0, "17 mm"),
     "constant": Handed(CONSTANT, 1, "misses the position"),
     "hanging": Handed("def ik(x, y, z, pitch):\n    while True: pass\n", 0, "not come back"),

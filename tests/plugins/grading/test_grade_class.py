@@ -275,6 +275,39 @@ def test_an_assignment_that_cannot_grade_is_refused_before_anything_runs(
     assert not (tmp_path / "g").exists()
 
 
+@pytest.mark.nightly(but=["{set: {objects.bx.mass: 1}}-bx"])
+@pytest.mark.parametrize(
+    ("hidden", "words"),
+    [
+        ("{set: {objects.bx.mass: 1}}", "bx"),
+        ("{set: {params.y: 3}}", "y"),
+        ("{set: {params.x: far}}", "far"),
+        ("{robot: open_manipulator_y}", "did you mean `open_manipulator_x`"),
+    ],
+)
+def test_a_hidden_case_that_the_scenario_cannot_be_is_refused_at_its_line(
+    tmp_path, capsys, hidden, words
+):
+    """It would cost every student points, and students see no reason of hidden cases."""
+    assignment, submissions = scenario_class(tmp_path)
+    file = assignment / "assignment.yaml"
+    lines = [line for line in file.read_text().splitlines() if not line.startswith("hidden")]
+    file.write_text("\n".join([*lines, f"hidden: [{{seed: 3}}, {hidden}]", ""]))
+    command = [
+        "grade-class",
+        str(assignment),
+        str(submissions),
+        "--report-dir",
+        str(tmp_path / "g"),
+    ]
+    assert main(command) == 2
+    said = capsys.readouterr().err
+    assert f"assignment.yaml:{len(lines) + 1}:" in said
+    assert "hidden case 2: " in said
+    assert words in said
+    assert not (tmp_path / "g").exists()
+
+
 def test_results_for_a_grading_system_are_of_one_submission(tmp_path, capsys):
     assignment, submissions = scenario_class(tmp_path)
     shutil.rmtree(assignment.parent / "submissions")

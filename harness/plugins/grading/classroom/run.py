@@ -64,6 +64,7 @@ def grade_class(
     """
     criteria_of(loaded, ())
     _refuse_several_cases(loaded)
+    _refuse_wrong_hidden_cases(loaded)
     runs_programs = loaded.model.kind in ("node", "ik")
     changes_user = runs_programs and may_change_user()
     problems: dict[int, str] = {}
@@ -112,6 +113,37 @@ def _refuse_several_cases(loaded: LoadedAssignment) -> None:
         message = "the scenario has several cases; a graded one has one"
         hint = "list the others under `hidden` of the assignment"
         raise SpecError([Problem(str(loaded.scenario), 0, 0, message, hint)])
+
+
+def _refuse_wrong_hidden_cases(loaded: LoadedAssignment) -> None:
+    """Refuse hidden cases that no submission could pass, since the scenario cannot be changed so.
+
+    Raises:
+        SpecError: A path, a value or a robot of a hidden case is wrong.
+    """
+    if loaded.scenario is None or loaded.lines is None or not loaded.model.hidden:
+        return
+    known = {each.message for each in _mistakes(loaded.scenario, {})}
+    problems = [
+        loaded.lines.problem(
+            ("hidden", index), f"hidden case {index + 1}: {each.message}", each.hint
+        )
+        for index, hidden in enumerate(loaded.model.hidden)
+        for each in _mistakes(loaded.scenario, _overrides(loaded, hidden))
+        if each.message not in known
+    ]
+    if problems:
+        raise SpecError(problems)
+
+
+def _mistakes(scenario: Path, overrides: dict[str, str]) -> Sequence[Problem]:
+    from harness.session.prepare import prepare
+
+    try:
+        prepare(scenario, overrides)
+    except SpecError as error:
+        return error.problems
+    return ()
 
 
 def _cases(
