@@ -124,5 +124,5 @@ class StateTopics:
 
     def publish_wrench(self, time: float, name: str, wrench: FloatArray) -> None:
         """Publish what a sensor of force and torque reads, shape (6,), at a simulated time [s]."""
-        sensor = self._robot.wrench_sensors[name]
-        self._wrenches[name].publish(wrench_message(time, sensor, wrench))
+        head = header(time, self._robot.wrench_sensors[name].frame_id)
+        self._wrenches[name].publish(wrench_message(head, wrench))

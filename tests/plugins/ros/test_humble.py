@@ -16,7 +16,7 @@ from harness.plugins.ros.interfaces import (
 )
 from harness.plugins.ros.moveit.values import NUMBERS
 from harness.plugins.ros.rtps import wire
-from harness.plugins.ros.rtps.graph import DISCOVERY, FAST_DDS, INFO, SERVICE_QOS, Graph, dds_type
+from harness.plugins.ros.rtps.graph import DISCOVERY, INFO, SERVICE_QOS, Graph, dds_type
 from harness.plugins.ros.rtps.participant import Participant
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import GROUP, UR, moveit, pose, stamped
@@ -30,7 +30,7 @@ class HumbleClient:
 
     def __init__(self, domain, monkeypatch):
         with monkeypatch.context() as patch:
-            patch.setattr(wire, "VENDOR", FAST_DDS)
+            patch.setattr(wire, "VENDOR", wire.FAST_DDS)
             self.participant = Participant(domain, name="humble")
         self.close = self.participant.close
 
@@ -107,7 +107,7 @@ def test_nodes_are_introduced_by_identifiers_of_the_length_that_a_distribution_r
         graph.advertise("/numbers", "std_msgs/msg/String")
         with monkeypatch.context() as patch:
             if is_humble:
-                patch.setattr(wire, "VENDOR", FAST_DDS)
+                patch.setattr(wire, "VENDOR", wire.FAST_DDS)
             other = Participant(domain, name="other")
         with closing(other):
             qos = Qos(is_latched=True, depth=1)

@@ -20,14 +20,14 @@ def wrench_topic(sensor: str) -> Topic:
     return Topic(f"/{topic_word(sensor)}/wrench", WRENCH)
 
 
-def wrench_message(time: float, sensor: WrenchSensor, wrench: FloatArray) -> Any:
-    """A reading at a simulated time [s], shape (6,): force [N], then torque [N m]."""
+def wrench_message(head: Any, wrench: FloatArray) -> Any:
+    """A reading with a header, shape (6,): force [N], then torque [N m]."""
     content = message(
         "geometry_msgs/msg/Wrench",
         force=vector(wrench[:3].tolist()),
         torque=vector(wrench[3:].tolist()),
     )
-    return message(WRENCH, header=header(time, sensor.frame_id), wrench=content)
+    return message(WRENCH, header=head, wrench=content)
 
 
 def wrenches(run: Run, sensor: WrenchSensor, indices: IntArray) -> Iterator[Message]:
@@ -37,4 +37,4 @@ def wrenches(run: Run, sensor: WrenchSensor, indices: IntArray) -> Iterator[Mess
     topic, rows = wrench_topic(sensor.name), run.signals.wrenches[sensor.name]
     for index in indices:
         time = float(run.signals.times[index])
-        yield Message(time, topic, wrench_message(time, sensor, rows[index]))
+        yield Message(time, topic, wrench_message(header(time, sensor.frame_id), rows[index]))

@@ -35,7 +35,6 @@ INFO = "rmw_dds_common/msg/ParticipantEntitiesInfo"  # the type, whatever its id
 Take = Callable[[Any, bytes, bool], object]
 """Takes a message, the identity of its request, and whether it is of ROS 2 Humble."""
 
-FAST_DDS = b"\x01\x0f"  # its vendor, at the start of a GUID
 CYCLONE = b"\x01\x10"
 """Vendor at the start of a GUID. Its ROS middleware carries what identifies a request in the
 content, between the encapsulation header and the message of requests and responses."""
@@ -187,7 +186,7 @@ class Graph:
 
 def _is_of_humble(endpoint: Endpoint) -> bool:
     """Whether an endpoint is of ROS 2 Humble: one of Fast DDS that has no type hash."""
-    return endpoint.guid.startswith(FAST_DDS) and not endpoint.has_type_hash
+    return endpoint.guid.startswith(wire.FAST_DDS) and not endpoint.has_type_hash
 
 
 def _is_later_than_humble(endpoint: Endpoint) -> bool:

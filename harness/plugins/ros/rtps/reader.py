@@ -12,8 +12,6 @@ from harness.plugins.ros.rtps.discovery import Endpoint
 from harness.plugins.ros.rtps.wire import Address, Sample
 from harness.plugins.ros.rtps.writer import Send
 
-FAST_DDS = b"\x01\x0f"  # vendor at the start of a GUID
-
 
 @dataclass
 class _Writer:
@@ -96,7 +94,7 @@ class Reader:
 
     def _request_heartbeat(self, guid: bytes, proxy: _Writer) -> None:
         """Fast DDS answers a base of 0 at once, and 1 with its next heartbeat, 3 s later."""
-        self._acknowledge(guid, proxy, 0 if guid.startswith(FAST_DDS) else 1, [])
+        self._acknowledge(guid, proxy, 0 if guid.startswith(wire.FAST_DDS) else 1, [])
 
     def _drain(self, proxy: _Writer) -> None:
         for passed in (proxy.waiting, proxy.partial):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 VERSION = b"\x02\x03"
 VENDOR = b"\x01\x7a"  # a vendor that is not registered: peers use no private extension with it
+FAST_DDS = b"\x01\x0f"  # its vendor, at the start of a GUID
 
 NO_ENTITY, PARTICIPANT, SPDP_WRITER = bytes(4), b"\x00\x00\x01\xc1", b"\x00\x01\x00\xc2"
 PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
