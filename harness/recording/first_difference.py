@@ -14,14 +14,27 @@ from harness.recording.run import Run
 DERIVED = ("clearance", "planned_clearances")  # drawn between samples: they part a little too early
 
 
+OF_JOINTS: dict[str, tuple[str, str | None]] = {
+    "joint_positions": ("position", ""),
+    "joint_velocities": ("velocity", "/s"),
+    "joint_efforts": ("effort", None),
+    "joint_commands": ("commanded position", ""),
+    "joint_command_velocities": ("commanded velocity", "/s"),
+}
+"""Signals with a column for each joint, in words, and what follows a position's unit."""
+
+POSE = ("x", "y", "z", *(f"{part} of the quaternion" for part in "wxyz"))
+
+
 @dataclass(frozen=True)
 class FirstDifference:
     """Where two recordings part: the first sample, and the signal that differs most there.
 
     Attributes:
         step: Id of the step it happened in; empty when the runs part before the first.
-        signal: Its name, with the column's where it is a joint's.
+        signal: Its name, with the column's where it is a joint's or a part of a pose.
         time: The time of the sample [s].
+        unit: The unit of the values; empty where none is known.
     """
 
     step: str
@@ -29,6 +42,7 @@ class FirstDifference:
     time: float
     before: float
     after: float
+    unit: str = ""
 
 
 def first_difference(one: Run, two: Run) -> FirstDifference | None:
@@ -44,12 +58,14 @@ def first_difference(one: Run, two: Run) -> FirstDifference | None:
     before, after = np.atleast_1d(ours[name][row]), np.atleast_1d(theirs[name][row])
     apart = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(before - after))
     column = int(np.argmax(np.nan_to_num(apart, nan=np.inf)))
+    signal, unit = _signal_name(one, name, column, len(before))
     return FirstDifference(
         _step_at(one, row),
-        _signal_name(one, name, column, len(before)),
+        signal,
         float(one.signals.times[row]),
         float(before[column]),
         float(after[column]),
+        unit,
     )
 
 
@@ -89,8 +105,14 @@ def _step_at(run: Run, row: int) -> str:
     return inside[-1] if inside else ""
 
 
-def _signal_name(run: Run, name: str, column: int, columns: int) -> str:
+def _signal_name(run: Run, name: str, column: int, columns: int) -> tuple[str, str]:
+    """A signal in words, and its unit: `velocity of elbow`, `y of red_box`."""
     joints = run.robot.movable_joints
-    if name.startswith("joint_") and columns == len(joints):
-        return f"{name} of {joints[column].name}"
-    return name
+    if name in OF_JOINTS and columns == len(joints):
+        unit = joints[column].position_unit
+        words, per = OF_JOINTS[name]
+        return f"{words} of {joints[column].name}", f"{unit}{per}" if per is not None else ""
+    kind, _, body = name.partition("/")
+    if kind == "object_poses" and columns == len(POSE):
+        return f"{POSE[column]} of {body}", "m" if column < 3 else ""
+    return name.replace("_", " ").replace("/", " of "), ""

@@ -8,7 +8,9 @@ import pytest
 
 from harness.cli.main import main
 from harness.language.reading.load import load_scenario
+from harness.plugins.formats.moveit_import import import_moveit
 from harness.robot.mesh_file import read_triangles
+from harness.robot.robot_source import RobotSource
 from harness.session.check import check_file
 from harness.session.prepare import prepare
 from tests.robot.arm_files import write_arm
@@ -117,6 +119,20 @@ def test_a_scene_and_its_request_become_a_scenario_that_runs(folder, capsys, sce
     assert step.during[0].joints == {"turn": 1.0, "bend": 0.5, "reach": 0.02}
     assert load_scenario(file).scenario.planning.max_acceleration_scaling_factor == 0.5
     assert main(["run", "--no-report", "--in-process", str(file)]) == 0, capsys.readouterr().out
+
+
+def test_progress_is_reported_for_each_file(folder):
+    names = ("scene1.yaml", "request1.yaml", "request2.yaml")
+    for name in names:
+        text = LISTS if name.startswith("scene") else REQUEST
+        Path(name).write_text(text, encoding="utf-8")
+    seen = []
+    robot = RobotSource("arm.urdf", srdf="arm.srdf")
+    import_moveit([*map(Path, names)], robot, folder / "out", lambda *each: seen.append(each))
+    assert seen == [
+        *(("reading", done, 3) for done in range(3)),
+        *(("converting", done, 2) for done in range(2)),
+    ]
 
 
 def test_cones_and_planes_of_a_scene_are_imported(folder):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
@@ -18,6 +19,9 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
+
+DRAWN = re.compile(r"-?\d+\.\d{7,}")  # as `randomize` draws them, not as people write them
+EVERY_DIGIT = 17  # of a double
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
     names = names_of(pairs)
     changes = [
         *_words("outcome", "", first.outcome, second.outcome),
-        *(Change("scenario", "", before, after) for before, after in line_changes(first, second)),
+        *(Change("scenario", "", *_readable(*each)) for each in line_changes(first, second)),
         *_words("robot", "", one.robot.name, two.robot.name),
         *_words("seed", "", str(one.seed), str(two.seed)),
         *_versions(one.versions, two.versions),
@@ -88,6 +92,18 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
     )
     is_same = first.content_digest == second.content_digest
     return RunComparison(is_same, tuple(changes), first_difference(one, two), warnings)
+
+
+def _readable(before: str, after: str) -> tuple[str, str]:
+    """Two lines of files, whose drawn numbers have as many digits as show where they differ."""
+    for digits in range(4, EVERY_DIGIT):
+        lines = [
+            DRAWN.sub(lambda number, count=digits: f"{float(number[0]):.{count}g}", line)
+            for line in (before, after)
+        ]
+        if lines[0] != lines[1]:
+            return lines[0], lines[1]
+    return before, after
 
 
 def _words(what: str, name: str, before: str, after: str) -> list[Change]:

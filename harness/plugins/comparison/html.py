@@ -83,7 +83,7 @@ def _indices(first: StoredRun, second: StoredRun) -> list[dict[str, int | None]]
     ]
 
 
-ORDER = ("outcome", "verdict", "findings", "margin", "scenario", "robot", "seed", "version")
+ORDER = ("outcome", "verdict", "scenario", "margin", "findings", "robot", "seed", "version")
 
 
 def _groups(changes: Sequence[Change]) -> list[dict[str, Any]]:

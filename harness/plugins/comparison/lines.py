@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 
-from harness.core.quantity import distinct
+from harness.core.amounts import amounts
 from harness.plugins.comparison.compare import Change, FirstDifference, RunComparison
 from harness.reporting.terminal import PLAIN, Style
 
@@ -51,8 +51,9 @@ def parting_text(first: FirstDifference) -> str:
     where = f"in step {first.step}, " if first.step else ""
     if first.signal == "times":
         return f"one run continues {where}after t={first.time:.3f} s"
-    values = distinct(first.before, first.after, lambda value, more: f"{value:.{3 + more}g}")
-    return f"first {where}at t={first.time:.3f} s: {first.signal} is {' and '.join(values)}"
+    values = amounts(first.before, first.after, first.unit)
+    shown = " and ".join(value.rstrip() for value in values)
+    return f"first {where}at t={first.time:.3f} s: {first.signal} is {shown}"
 
 
 def _line(change: Change) -> str:

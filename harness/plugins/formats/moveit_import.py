@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from harness.robot.robot_source import RobotSource
 from harness.robot.yaml_data import read_data
 from harness.world.notes import Note
 
+OnProgress = Callable[[str, int, int], None]
 SOURCE_KEYS = ("urdf", "xacro", "mjcf", "srdf")  # keys of `robot:` that hold a path
 
 
@@ -37,7 +38,12 @@ class Imported:
     notes: list[Note] = field(default_factory=list[Note])
 
 
-def import_moveit(paths: Sequence[Path], robot: RobotSource, folder: Path) -> Imported:
+def import_moveit(
+    paths: Sequence[Path],
+    robot: RobotSource,
+    folder: Path,
+    on_progress: OnProgress = lambda *_: None,
+) -> Imported:
     """World files of scenes, and a scenario for each request.
 
     A request belongs to the scene whose name ends in the same number, or to the only scene.
@@ -46,6 +52,7 @@ def import_moveit(paths: Sequence[Path], robot: RobotSource, folder: Path) -> Im
         paths: PlanningScene and MotionPlanRequest files.
         robot: The robot that they are about.
         folder: Where the files will be.
+        on_progress: Is called with a stage, the number of files that are done, and of all.
 
     Raises:
         SpecError: A file has mistakes, or names joints that the robot does not have; of all files.
@@ -57,7 +64,8 @@ def import_moveit(paths: Sequence[Path], robot: RobotSource, folder: Path) -> Im
     found, problems = Imported(), list[Problem]()
     all_scenes: dict[Path, MoveItScene] = {}
     all_requests: dict[Path, MoveItRequest] = {}
-    for path in paths:
+    for done, path in enumerate(paths):
+        on_progress("reading", done, len(paths))
         try:
             content = read_data(path, (*scenes.KEYS, *requests.KEYS), "MoveIt message").mapping()
             if any(key in content for key in scenes.KEYS):
@@ -69,7 +77,8 @@ def import_moveit(paths: Sequence[Path], robot: RobotSource, folder: Path) -> Im
             problems += error.problems
     for path, scene in all_scenes.items():
         _add_world(found, path, scene, folder)
-    for path, request in all_requests.items():
+    for done, (path, request) in enumerate(all_requests.items()):
+        on_progress("converting", done, len(all_requests))
         scene_path = _scene_of(path, list(all_scenes))
         scene = None if scene_path is None else all_scenes[scene_path]
         try:

@@ -344,6 +344,26 @@ def test_plan_and_execute_stay_on_the_screen_and_no_name_is_cut(opened, size):
     page.set_viewport_size({"width": 1400, "height": 900})
 
 
+LONG = "a reason that has to be read to its end, as long as those of a planner are; " * 4
+IS_WHOLE = "(box => box.scrollHeight <= box.clientHeight)(document.getElementById('plan-result'))"
+
+
+def test_a_long_reason_is_shown_whole_and_the_buttons_stay(opened):
+    page = opened.page
+    page.set_viewport_size({"width": 1024, "height": 700})
+    page.evaluate(f"document.getElementById('plan-result').textContent = {LONG!r}")
+    assert page.evaluate(IS_WHOLE)
+    assert page.evaluate(IS_SEEN)
+    page.evaluate("document.getElementById('plan-result').replaceChildren()")
+    page.set_viewport_size({"width": 1400, "height": 900})
+
+
+def test_a_choice_that_is_longer_than_its_field_is_read_under_the_pointer(opened):
+    page = opened.page
+    page.hover("#verb")
+    assert page.get_attribute("#verb", "title") == page.input_value("#verb")
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_phone_shows_everything_without_scrolling_sideways(opened, scheme):
     page = opened.page

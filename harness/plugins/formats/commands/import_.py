@@ -11,6 +11,7 @@ from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import refuse_existing, refusing_unwritable
 from harness.cli.output import say
 from harness.cli.robot_options import add_robot_options, source_of
+from harness.cli.work_bar import WorkBar
 from harness.core.files import replaced
 from harness.core.printable import counted
 from harness.suite.discovery import SUFFIX, UsageError
@@ -78,7 +79,7 @@ def _moveit(arguments: argparse.Namespace) -> int:
         raise UsageError(f"'{folder}' is no folder: a world and a scenario are written into one")
     from harness.plugins.formats.moveit_import import import_moveit
 
-    found = import_moveit(files, source_of(arguments), folder)
+    found = import_moveit(files, source_of(arguments), folder, WorkBar())
     _write(found.files, is_forced=arguments.force)
     for note in found.notes[:MOST_NOTES]:
         say(f"note: {note}")

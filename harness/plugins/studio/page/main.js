@@ -154,6 +154,9 @@ function showPlan(reply) {
     : element("div", { title: reply.step }, reply.duration === undefined ? reply.note ?? `executed: ${reply.step}` : `takes ${reply.duration.toFixed(2)} s over ${amount(reply.length, "m")} (${reply.planner})`));
 }
 
+// a choice that is longer than its field is read under the pointer
+addEventListener("pointerover", ({ target }) => { if (target instanceof HTMLSelectElement) target.title = target.selectedOptions[0]?.textContent ?? ""; });
+
 const click = (id, action) => $(id).addEventListener("click", action);
 click("play", () => act("play", { on: !state.is_playing }));
 click("advance", () => act("advance", { seconds: 0.01 }));

@@ -93,13 +93,13 @@ export class Plots {
       ),
     );
     const reading = element("output", { "aria-live": "off" });
-    const panel = { plot, choice, reading, data: null, element: null };
+    const panel = { plot, choice, reading, data: null, element: null, saves: [] };
     choice.addEventListener("change", () => {
       this.#fill(panel, choice.value);
       this.#showLegend();
     });
-    const save = (text, write) => element("button.link", { type: "button", title: `Save this plot as ${text}`, onclick: () => write(panel) }, text);
-    panel.element = element("figure.plot", {}, element("figcaption", {}, choice, reading, save("SVG", saveSvg), save("PNG", savePng)), plot.canvas);
+    panel.saves = [["SVG", saveSvg], ["PNG", savePng]].map(([kind, write]) => element("button.link", { type: "button", onclick: () => write(panel) }, kind));
+    panel.element = element("figure.plot", {}, element("figcaption", {}, choice, reading, ...panel.saves), plot.canvas);
     this.#fill(panel, id);
     return panel;
   }
@@ -107,6 +107,7 @@ export class Plots {
   #fill(panel, id) {
     panel.choice.value = id;
     panel.data = this.data(id);
+    for (const save of panel.saves) save.title = save.ariaLabel = `Save the plot of ${panel.data.title} as ${save.textContent}`;
   }
 
   /** Of the lines of a plot: the largest value at the cursor, and whose it is. */

@@ -152,7 +152,7 @@ export function drawCampaign() {
   }
 
   function describe(found) {
-    if (!found) return "";
+    if (!found) return "Point at a run to read its values.";
     if (kind.value === "rate") return `${Math.round(found.failed)} of ${Math.round(found.all)} runs failed`;
     const values = data.parameters.map((each, index) => `${each.name} ${text(index, found[index])}`).join(", ");
     const why = found[CAUSE] < 0 ? "passed" : data.causes[found[CAUSE]] ?? "another cause";
@@ -195,6 +195,7 @@ export function drawCampaign() {
   }
 
   section.hidden = false;
+  caption.textContent = describe(null);
   up.value = count > 1 ? 1 : SHARE;
   draw();
 }

@@ -60,7 +60,7 @@ export function startTable(payload) {
         element("span.title", {}, name, ...row.tags.map((tag) => element("span.tag", {}, tag))),
         element("div.quiet", {}, row.file, ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
         row.why && why(row)),
-      element("td.nearest", {}, row.margin && allowance(row), row.margin && element("div.quiet", {}, row.expectation)),
+      element("td.nearest", {}, ...(hasNearest(row) ? [allowance(row), element("div.quiet", {}, row.expectation)] : [])),
       payload.run.history && element("td.history", {}, row.trend && spark(row.trend)),
       element("td.number", { title: `${row.simulated.toFixed(1)} s simulated` }, row.wall ? `${row.wall.toFixed(1)} s` : "–"));
     return made;
@@ -68,7 +68,7 @@ export function startTable(payload) {
 
   /** The cause in a line; a click shows everything that is known. */
   function why(row) {
-    if (!row.why) return element("details.more-of", {}, element("summary", { "aria-label": `details of ${row.name}` }, "…"), facts(row));
+    if (!row.why) return element("details.more-of", {}, element("summary", { "aria-label": `details of ${row.name}` }, "details"), facts(row));
     return element("details.why", {}, element("summary", {}, row.why),
       ...row.details.map((text) => element("pre", {}, text)), facts(row));
   }
@@ -81,6 +81,11 @@ export function startTable(payload) {
   return { show: watched(more, extend, show) };
 }
 
+
+/** Whether a margin says something of the outcome: one that holds says nothing of a failure. */
+function hasNearest({ margin, holds, outcome }) {
+  return margin && (holds === (outcome === "passed"));
+}
 
 /** How much of the allowance was used, and the margin. */
 function allowance(row) {
