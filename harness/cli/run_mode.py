@@ -5,13 +5,30 @@ from __future__ import annotations
 import argparse
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from harness.core.registry import Plugin
-from harness.suite.hooks import SuiteHooks
+from harness.suite.hooks import NO_HOOKS, SuiteHooks
 
-RunFiles = Callable[[argparse.Namespace, Sequence[Path], SuiteHooks], int]  # the exit code
+
+@dataclass(frozen=True)
+class RunCall:
+    """A call of `harness run`.
+
+    Attributes:
+        arguments: Its options.
+        files: The scenario files that it found.
+        hooks: What modes change in how the suite runs.
+    """
+
+    arguments: argparse.Namespace
+    files: Sequence[Path]
+    hooks: SuiteHooks = NO_HOOKS
+
+
+RunFiles = Callable[[RunCall], int]  # the exit code
 
 
 class RunMode(Plugin, ABC):
@@ -24,20 +41,12 @@ class RunMode(Plugin, ABC):
         """Add the options of the mode to those of `harness run`."""
 
     @abstractmethod
-    def run(
-        self,
-        run_files: RunFiles,
-        arguments: argparse.Namespace,
-        files: Sequence[Path],
-        hooks: SuiteHooks,
-    ) -> int:
+    def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios in the way of this mode, or as without it where no option requests it.
 
         Args:
             run_files: Runs the files as `harness run` does without this mode.
-            arguments: The options of `harness run`.
-            files: The scenario files that the command found.
-            hooks: What other modes change; a mode adds its own changes to them.
+            call: The call; a mode adds its own changes to the hooks of other modes.
 
         Returns:
             The exit code of the command.

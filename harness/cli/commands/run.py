@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.options import add_options, read_options
 from harness.cli.output import only_json_on_stdout, output
-from harness.cli.run_mode import RunFiles, RunMode
+from harness.cli.run_mode import RunCall, RunFiles, RunMode
 from harness.cli.shared_options import (
     add_format,
     add_hard_cap,
@@ -37,7 +37,6 @@ from harness.core.lazy import LazySequence
 from harness.core.registry import registry
 from harness.suite.case_runner import case_runner
 from harness.suite.discovery import UsageError, discover
-from harness.suite.hooks import NO_HOOKS, SuiteHooks
 from harness.suite.leftovers import clean_report_folder
 from harness.suite.request import SuiteRequest
 
@@ -78,21 +77,20 @@ class RunCommand(Command):
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Run scenarios; print steps and outcomes as they come, and failures last."""
-        files = discover(arguments.paths)
         run_files: RunFiles = _run_files
         for mode in self._modes:
             run_files = partial(mode.run, run_files)
-        return run_files(arguments, files, NO_HOOKS)
+        return run_files(RunCall(arguments, discover(arguments.paths)))
 
 
-def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> int:
-    start = time.monotonic()
+def _run_files(call: RunCall) -> int:
+    start, arguments, hooks = time.monotonic(), call.arguments, call.hooks
     from harness.suite.warm import WarmServer
 
     with WarmServer() as server:
         if not arguments.in_process and hooks.execute is None:
             server.open()  # it imports for as long as this process takes to get ready
-        suite = _suite(arguments, files, hooks)
+        suite = _suite(call)
         update_page = _page_updates(arguments, suite)
         from harness.cli.progress import ProgressLines, slow_work_on_stderr
 
@@ -126,13 +124,14 @@ def _run_files(arguments: argparse.Namespace, files: Sequence[Path], hooks: Suit
     return suite.exit_code
 
 
-def _suite(arguments: argparse.Namespace, files: Sequence[Path], hooks: SuiteHooks) -> SuiteRun:
+def _suite(call: RunCall) -> SuiteRun:
     from harness.core.errors import HarnessError
     from harness.reporting.reporter import check_reporters
     from harness.session.run_request import named_commands
     from harness.suite.plan import planned_cases
     from harness.suite.suite_run import SuiteRun
 
+    arguments, files, hooks = call.arguments, call.files, call.hooks
     if arguments.nodes:
         case_runner("nodes")  # refuses where no plug-in runs them
     if arguments.history and not Path(arguments.history).is_dir():

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.output import complain, say
-from harness.cli.run_mode import RunFiles, RunMode
+from harness.cli.run_mode import RunCall, RunFiles, RunMode
 from harness.suite.discovery import UsageError
 from harness.suite.hooks import Execute, SuiteHooks
 
@@ -48,24 +48,18 @@ class CampaignMode(RunMode):
         )
         add("--on", metavar="CLUSTER", dest="cluster", default="", help=text)
 
-    def run(
-        self,
-        run_files: RunFiles,
-        arguments: argparse.Namespace,
-        files: Sequence[Path],
-        hooks: SuiteHooks,
-    ) -> int:
+    def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios; every suite with samples gets a file of their conditions."""
         processors = set[str]()
-        hooks = replace(hooks, write=_write)
+        arguments, hooks = call.arguments, replace(call.hooks, write=_write)
         if arguments.cluster:
             hooks = replace(hooks, execute=_on_cluster(arguments, processors))
-        conditions = _conditions(arguments, files)
+        conditions = _conditions(arguments, call.files)
         if conditions is not None:
             hooks = replace(hooks, cases=conditions.replace)
         if arguments.shard:
             hooks = _with_part(hooks, arguments, conditions)
-        code = run_files(arguments, files, hooks)
+        code = run_files(replace(call, hooks=hooks))
         if len(processors) > 1 and arguments.format == "full":
             say(
                 f"the cases ran on {len(processors)} processor families"

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.run_mode import RunFiles, RunMode
+from harness.cli.run_mode import RunCall, RunFiles, RunMode
 from harness.suite.discovery import UsageError
-from harness.suite.hooks import SuiteHooks
 from harness.suite.outcome import EXIT_CODES
 
 
@@ -25,19 +23,14 @@ class PipelineMode(RunMode):
 
         add_gate_options(command)
 
-    def run(
-        self,
-        run_files: RunFiles,
-        arguments: argparse.Namespace,
-        files: Sequence[Path],
-        hooks: SuiteHooks,
-    ) -> int:
+    def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios; a margin that shrank fails a suite whose cases pass."""
         from harness.plugins.ci.baseline import read_baseline
         from harness.plugins.ci.gate import gate, is_requested
 
+        arguments, hooks = call.arguments, call.hooks
         if not is_requested(arguments):
-            return run_files(arguments, files, hooks)
+            return run_files(call)
         for option in ("no_report", "shard"):
             if getattr(arguments, option, False):
                 name = f"--{option.replace('_', '-')}"
@@ -49,7 +42,7 @@ class PipelineMode(RunMode):
             raise UsageError("--repeat compares runs of a case; leave it out with --baseline")
         if arguments.baseline and not arguments.update_baseline:
             read_baseline(Path(arguments.baseline))  # refused before anything runs
-        code = run_files(arguments, files, replace(hooks, writes_single_case=True))
+        code = run_files(replace(call, hooks=replace(hooks, writes_single_case=True)))
         if code > max(EXIT_CODES.values()):
             return code  # interrupted
         return max(code, gate(arguments, Path(arguments.report_dir)))

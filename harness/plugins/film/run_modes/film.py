@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
-from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.run_mode import RunFiles, RunMode
-from harness.suite.hooks import SuiteHooks
+from harness.cli.run_mode import RunCall, RunFiles, RunMode
 
 
 class FilmMode(RunMode):
@@ -21,14 +18,8 @@ class FilmMode(RunMode):
         text = "write a film of the replay and a picture of the deciding moment into the report too"
         command.add_argument("--film", action="store_true", help=f"{text}; needs the extra `video`")
 
-    def run(
-        self,
-        run_files: RunFiles,
-        arguments: argparse.Namespace,
-        files: Sequence[Path],
-        hooks: SuiteHooks,
-    ) -> int:
+    def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios, with the reporter `film` if it is requested."""
-        if getattr(arguments, "film", False):
-            arguments.reporters = (*(arguments.reporters or ()), "film")
-        return run_files(arguments, files, hooks)
+        if call.arguments.film:
+            call.arguments.reporters = (*call.arguments.reporters, "film")
+        return run_files(call)

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.arguments import share_of_one
 from harness.cli.output import complain, output, say
-from harness.cli.run_mode import RunFiles, RunMode
+from harness.cli.run_mode import RunCall, RunFiles, RunMode
 from harness.cli.suite_output import show_case
 from harness.plugins.ros.options import add_domain
 from harness.suite.discovery import UsageError
-from harness.suite.hooks import SuiteHooks
 from harness.suite.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -44,26 +43,21 @@ class RemoteMode(RunMode):
         add("--velocity-scaling", metavar="SHARE", type=share_of_one, default=1.0, help=text)
         add_domain(command)
 
-    def run(
-        self,
-        run_files: RunFiles,
-        arguments: argparse.Namespace,
-        files: Sequence[Path],
-        hooks: SuiteHooks,
-    ) -> int:
+    def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios, with `--robot ros2` one of them on the robot."""
+        arguments = call.arguments
         if arguments.robot == "ros2":
             simulated = {"--live": "live", "--shard": "shard", "--on": "cluster"}
             for option, name in {**simulated, "--conditions": "conditions"}.items():
                 if vars(arguments).get(name):
                     raise UsageError(f"--robot ros2 and {option} exclude each other")
-            return run_on_ros2(arguments, files)
+            return run_on_ros2(arguments, call.files)
         if arguments.yes or arguments.velocity_scaling != 1.0:
             raise UsageError(
                 "--yes and --velocity-scaling need --robot ros2; in a file the speed is"
                 " `planning: {max_velocity_scaling_factor: 0.5}`"
             )
-        return run_files(arguments, files, hooks)
+        return run_files(call)
 
 
 def run_on_ros2(arguments: argparse.Namespace, files: Sequence[Path]) -> int:

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import ClassVar
 
 from harness.cli.commands.view import open_browser
 from harness.cli.output import complain
-from harness.cli.run_mode import RunFiles, RunMode
+from harness.cli.run_mode import RunCall, RunFiles, RunMode
 from harness.plugins.studio.commands.studio import refuse_missing_extra
 from harness.suite.discovery import UsageError
-from harness.suite.hooks import SuiteHooks
 
 LONGEST_WAIT_FOR_PAGE = 10.0  # [s]; then a run begins although its page is not open
 
@@ -28,18 +25,12 @@ class LiveMode(RunMode):
         text = "show the cases on a page of this machine while they run; needs the extra `studio`"
         command.add_argument("--live", action="store_true", help=text)
 
-    def run(
-        self,
-        run_files: RunFiles,
-        arguments: argparse.Namespace,
-        files: Sequence[Path],
-        hooks: SuiteHooks,
-    ) -> int:
+    def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios, with `--live` while a page shows them."""
-        if not arguments.live:
-            return run_files(arguments, files, hooks)
+        if not call.arguments.live:
+            return run_files(call)
         for option, name in {"--on": "cluster", "--node": "nodes"}.items():
-            if vars(arguments).get(name):
+            if vars(call.arguments).get(name):
                 raise UsageError(f"--live and {option} exclude each other")
         refuse_missing_extra()
         from harness.plugins.studio.watch import Watch
@@ -48,4 +39,4 @@ class LiveMode(RunMode):
             complain(f"live: {watch.page}")
             if open_browser(watch.page):
                 watch.wait_for_page(LONGEST_WAIT_FOR_PAGE)
-            return run_files(arguments, files, replace(hooks, live=watch.address))
+            return run_files(replace(call, hooks=replace(call.hooks, live=watch.address)))
