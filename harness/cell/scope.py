@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from harness.core.camera import Camera
 from harness.core.errors import Problem, SpecError
+from harness.core.limits import LONGEST_RUN
 from harness.core.spatial import SE3
 from harness.core.state_words import stated_name
 from harness.core.suggestion import did_you_mean
@@ -17,7 +18,6 @@ from harness.language.files.source import Loc, SourceMap
 from harness.language.poses import Pose
 from harness.language.reading.partial import Prerequisite
 from harness.language.units import in_si
-from harness.ports.simulation import LONGEST_RUN
 from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
 

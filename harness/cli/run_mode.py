@@ -18,8 +18,8 @@ class RunCall:
     """A call of `harness run`.
 
     Attributes:
-        arguments: Its options.
-        files: The scenario files that it found.
+        arguments: The options that the user gave.
+        files: The scenario files that the command found.
         hooks: What modes change in how the suite runs.
     """
 

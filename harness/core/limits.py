@@ -10,6 +10,8 @@ READING_MEMORY = GB
 """Most memory that reading one file adds to the process [bytes], where a file's size does not
 bound it: meshes and JSON documents. Linux enforces it."""
 
+LONGEST_RUN = 600.0  # [s], simulated: a file cannot fill the machine's memory or its day
+
 YAML_FILE = 2 * MB
 YAML_VALUES = 100_000  # aliases expanded, included files counted
 YAML_LEVELS = 50

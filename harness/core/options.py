@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import field, fields
 from typing import Any
 
 
@@ -16,3 +16,8 @@ def option(*flags: str, default: Any, text: str, **words: Any) -> Any:
         words: Further arguments of `ArgumentParser.add_argument`, such as `metavar`.
     """
     return field(default=default, metadata={"flags": flags, "words": {"help": text, **words}})
+
+
+def values_of(model: type, whole: Any) -> dict[str, Any]:
+    """The values of a model's fields, from an object that has these fields and others."""
+    return {each.name: getattr(whole, each.name) for each in fields(model)}

@@ -14,8 +14,6 @@ from harness.ports.joint_control import JointController
 from harness.ports.scene import Touch
 from harness.recording.signals import Signals
 
-LONGEST_RUN = 600.0  # [s], simulated: a file cannot fill the machine's memory or its day
-
 
 @dataclass(frozen=True)
 class GripperResult:

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from harness.core.errors import Problem, SpecError
+from harness.core.limits import LONGEST_RUN
+from harness.core.options import option
 from harness.language.files.source import Source
-from harness.ports.simulation import LONGEST_RUN
 
 
 class Draw(Protocol):
@@ -39,8 +40,29 @@ class Redraw(Protocol):
         ...
 
 
+STRICT = "fail where a verdict has a warning, such as `already true at the start`"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """What a command requests alike of each of its cases, besides what it writes.
+
+    Attributes:
+        nodes: Commands by name that steps may start as ROS 2 nodes.
+    """
+
+    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
+    strict: bool = option("--strict", default=False, text=STRICT)
+    reporters: tuple[str, ...] = option(
+        "--reporter",
+        metavar="NAME",
+        default=(),
+        text="let a reporter of `harness list reporters` write into the report too; repeatable",
+    )
+
+
 @dataclass(frozen=True)
-class RunRequest:
+class RunRequest(RunOptions):
     """One case of a scenario file, how it is run and what is written of it.
 
     Attributes:
@@ -54,8 +76,6 @@ class RunRequest:
         source: Takes the place of both and names the file of each line; relative paths begin at
             `file` nevertheless.
         redraw: Draws the sample again while objects overlap at the start; None draws it once.
-        strict: Whether a warning of a verdict fails the case.
-        nodes: Commands by name that steps may start as ROS 2 nodes.
         live: The Unix socket to which the case sends its poses while it runs; empty sends none.
         longest: The most simulated time of the run [s]; a step that would exceed it fails.
     """
@@ -67,14 +87,11 @@ class RunRequest:
     stills: bool = True
     page: bool = True
     bag: bool = False
-    reporters: tuple[str, ...] = ()
     case: str = ""
     only_failed: bool = False
     text: str | None = None
     source: Source | None = None
     redraw: Redraw | None = None
-    strict: bool = False
-    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     live: str = ""
     longest: float = LONGEST_RUN
 

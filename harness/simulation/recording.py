@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 
 from harness.core.errors import SimulationDiverged, StepFailed
+from harness.core.limits import LONGEST_RUN
 from harness.core.types import FloatArray
-from harness.ports.simulation import LONGEST_RUN
 from harness.recording.execution_failures import LengthFailure
 from harness.recording.signals import Signals
 from harness.simulation.adhesion import Adhesion

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from harness.core.lazy import LazySequence
+from harness.core.options import values_of
 from harness.core.variation import MOST_SAMPLES
-from harness.session.run_request import RunRequest
+from harness.session.run_request import RunOptions, RunRequest
 from harness.suite.discovery import UsageError
 from harness.suite.folders import folder_name, report_folders
 from harness.suite.header import ScenarioHeader, read_header
@@ -230,11 +231,9 @@ def _job(file: Path, case: Case, folder: Path | None, request: SuiteRequest) -> 
         folder / folder_name(case.name) if folder is not None and case.name else folder,
         page=request.page,
         bag=request.bag,
-        reporters=tuple(request.reporters),
         case=case.name,
         only_failed=keep == "failed",
         redraw=fixed.redraw,
-        strict=request.strict,
-        nodes=request.nodes,
         live=request.hooks.live,
+        **values_of(RunOptions, request),
     )

@@ -7,24 +7,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from harness.core.options import option
+from harness.session.run_request import RunOptions
 from harness.suite.hooks import NO_HOOKS, SuiteHooks
-
-STRICT = "fail where a verdict has a warning, such as `already true at the start`"
 
 
 @dataclass(frozen=True)
-class SuiteSelection:
+class SuiteSelection(RunOptions):
     """What selects the cases of a suite, and what their results follow from besides files.
 
     Attributes:
         overrides: Dotted path -> value as YAML; they take precedence over a case's own values.
         seed: Seed that replaces the files' seeds.
-        nodes: Commands by name that steps may start as ROS 2 nodes.
     """
 
     overrides: Mapping[str, str] = field(default_factory=dict[str, str])
     seed: int | None = None
-    nodes: Mapping[str, str] = field(default_factory=dict[str, str])
     expression: str = option(
         "-k",
         metavar="EXPR",
@@ -42,13 +39,6 @@ class SuiteSelection:
         metavar="N",
         default=None,
         text="draw this many samples, instead of the number in the file",
-    )
-    strict: bool = option("--strict", default=False, text=STRICT)
-    reporters: tuple[str, ...] = option(
-        "--reporter",
-        metavar="NAME",
-        default=(),
-        text="let a reporter of `harness list reporters` write into the report too; repeatable",
     )
 
 

@@ -12,9 +12,9 @@ from harness.cli.command import RESULTS, Command
 from harness.cli.files import run_folder
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json, add_plugin
+from harness.session.run_request import STRICT
 from harness.suite.discovery import UsageError
 from harness.suite.outcome import EXIT_CODES
-from harness.suite.request import STRICT
 
 if TYPE_CHECKING:
     from harness.recording.signals import ContactRecord

@@ -7,13 +7,14 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from harness.core.errors import SpecError
 from harness.core.files import read_at_most, replaced, writing
 from harness.core.limits import RESULTS_DOCUMENT
+from harness.core.options import values_of
 from harness.core.untrusted_json import parse_json
 from harness.recording.plain import from_plain, to_plain
 from harness.suite.discovery import UsageError
@@ -166,8 +167,8 @@ def record_of(
         for file in files
         for header in [read_header(file, request.overrides)]
     ]
-    selection = {each.name: getattr(request, each.name) for each in fields(SuiteSelection)}
-    return ShardRecord(shard, str(root), tuple(planned), SuiteSelection(**selection), conditions)
+    selection = SuiteSelection(**values_of(SuiteSelection, request))
+    return ShardRecord(shard, str(root), tuple(planned), selection, conditions)
 
 
 def write_shard_record(record: ShardRecord) -> None:

@@ -7,10 +7,10 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 from harness.core.errors import Problem, SpecError
+from harness.core.limits import LONGEST_RUN
 from harness.plugins.ros.domain import free_domain
 from harness.plugins.ros.live import BridgeRequest, LiveControl
 from harness.plugins.ros.rtps.graph import Graph
-from harness.ports.simulation import LONGEST_RUN
 from harness.reporting.result import CaseResult
 from harness.session.progress import Notify
 from harness.session.run_case import run_case
