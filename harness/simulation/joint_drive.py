@@ -181,10 +181,12 @@ class JointDrive:
             raise
         except Exception as error:
             raise StepFailed("CONTROL_FAILED", f"{who} failed: {raised(error)}") from error
-        if not np.isfinite(request.set_positions).all():
-            return answer
         for name, values in vars(answer).items():
-            if not np.isfinite(values).all() or (name != "efforts" and (values < 0).any()):
+            if values is None:
+                continue
+            if not np.isfinite(values).all() or (name != "efforts" and np.less(values, 0).any()):
+                if not np.isfinite(request.set_positions).all():
+                    return answer
                 message = f"{who} returned {name} that are no finite numbers, or negative"
                 raise StepFailed("CONTROL_FAILED", message)
         return answer
@@ -222,11 +224,9 @@ class _Efforts:
 
 
 def _shaped(answer: ControlResult, rows: int, joints: int) -> ControlResult:
-    """An answer with one row of efforts for each set point."""
-    none = np.zeros(joints)
-    efforts = np.asarray(answer.efforts, dtype=float)
+    """An answer with one row of efforts for each set point, and a number for each joint."""
     return ControlResult(
-        np.broadcast_to(efforts, (rows, joints)),
-        np.broadcast_to(none if answer.stiffness is None else answer.stiffness, (joints,)),
-        np.broadcast_to(none if answer.damping is None else answer.damping, (joints,)),
+        np.broadcast_to(np.asarray(answer.efforts, dtype=float), (rows, joints)),
+        None if answer.stiffness is None else np.broadcast_to(answer.stiffness, (joints,)),
+        None if answer.damping is None else np.broadcast_to(answer.damping, (joints,)),
     )

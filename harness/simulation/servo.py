@@ -134,6 +134,7 @@ class FeedForward:
         self._positions = np.array([joint.qposadr[0] for joint in joints], dtype=np.intp)
         self._velocities = np.array([joint.dofadr[0] for joint in joints], dtype=np.intp)
         self._coupling = coupling(description)
+        self._bodies = {self._model.body(index).name: index for index in range(self._model.nbody)}
 
     def __call__(
         self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
@@ -172,7 +173,7 @@ class FeedForward:
         data.qpos[self._positions] = positions
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        body, jacobian = model.body(link).id, np.empty((6, model.nv))
+        body, jacobian = self._bodies[link], np.empty((6, model.nv))
         mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
         pose = SE3(data.xmat[body].reshape(3, 3).copy(), data.xpos[body].copy())
         return LinkMotion(pose, jacobian[:, self._velocities] @ self._coupling)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -72,7 +73,11 @@ class CartesianCompliance(JointController):
 
     def __init__(self, compliance: Compliance) -> None:
         self._compliance = compliance
+        self._wrench = np.nan_to_num(compliance.wrench)
+        self._bound = np.where(compliance.is_free, 0.0, 1.0)
+        self._standing = None if compliance.rotation is None else _turn(compliance.rotation)
         self._gains: tuple[FloatArray, FloatArray] | None = None
+        self._inertia = np.zeros(0)  # of each joint by itself, at the beginning
         self.deviation = np.zeros(6)
         self.effort_share, self.joint = 0.0, ""
 
@@ -87,25 +92,26 @@ class CartesianCompliance(JointController):
         jacobian = turn.T @ at.jacobian
         stiffness, damping = self._gains or self._design(request, jacobian)
         error = turn.T @ _deviation(at.pose, to.pose)
-        speed = jacobian @ request.velocities
-        commanded = np.where(law.is_free, 0.0, jacobian @ request.set_velocities[0])
-        force = stiffness @ error + damping @ (commanded - speed) + np.nan_to_num(law.wrench)
-        inverse = np.asarray(np.linalg.pinv(jacobian, RANK), dtype=np.float64)
+        left, sizes, right = np.linalg.svd(jacobian, full_matrices=False)
+        rank = int((sizes > RANK * sizes[0]).sum())
+        inverse = (right[:rank].T / sizes[:rank]) @ left[:, :rank].T
+        commanded = self._bound * (jacobian @ request.set_velocities[0])
+        speed = commanded - jacobian @ request.velocities
+        force = stiffness @ error + damping @ speed + self._wrench
         efforts = self._dynamics(request, jacobian, inverse) + jacobian.T @ force
-        efforts += self._posture(request, jacobian, inverse)
-        efforts -= at.jacobian.T @ self._weight(at.pose, request.gravity)
+        if rank < len(efforts):
+            efforts += self._posture(request, right[:rank])
+        if self._compliance.load[0] > 0:
+            efforts -= at.jacobian.T @ self._weight(at.pose, request.gravity)
         self._note(request, efforts, error)
         return ControlResult(efforts)
 
     def _frame(self, request: ControlRequest) -> FloatArray:
         """The axes of the frame in the world, for forces and torques, shape (6, 6)."""
-        rotation = self._compliance.rotation
-        if rotation is None:
-            frame = self._compliance.frame_link
-            rotation = request.link_motion(frame, request.set_positions[0]).pose.rotation
-        turn = np.zeros((6, 6))
-        turn[:3, :3] = turn[3:, 3:] = rotation
-        return turn
+        if self._standing is not None:
+            return self._standing
+        frame = self._compliance.frame_link
+        return _turn(request.link_motion(frame, request.set_positions[0]).pose.rotation)
 
     def _design(
         self, request: ControlRequest, jacobian: FloatArray
@@ -121,8 +127,9 @@ class CartesianCompliance(JointController):
             [1] A. Albu-Schäffer, C. Ott, U. Frese, G. Hirzinger, "Cartesian Impedance Control of
                 Redundant Robots: Recent Results with the DLR-Light-Weight-Arms", ICRA 2003.
         """
-        law = self._compliance
-        mobility = jacobian @ np.linalg.solve(request.inertia(), jacobian.T)
+        law, inertia = self._compliance, request.inertia()
+        self._inertia = np.diag(inertia)
+        mobility = jacobian @ np.linalg.solve(inertia, jacobian.T)
         values, vectors = np.linalg.eigh(mobility)
         moves = values > RANK**2 * values[-1]
         vectors, roots = vectors[:, moves], np.sqrt(values[moves])
@@ -151,24 +158,23 @@ class CartesianCompliance(JointController):
     ) -> FloatArray:
         """Torques of gravity and of the commanded motion, without that of free axes, shape (m,)."""
         velocities, accelerations = request.set_velocities[0], request.set_accelerations[0]
-        free = np.where(self._compliance.is_free, 1.0, 0.0)
-        if free.any():
+        if not self._bound.all() and (velocities.any() or accelerations.any()):
+            free = 1.0 - self._bound
             velocities = velocities - inverse @ (free * (jacobian @ velocities))
             accelerations = accelerations - inverse @ (free * (jacobian @ accelerations))
         rows = (request.positions, velocities, accelerations)
         return request.inverse_dynamics(*(row[None] for row in rows))[0]
 
-    def _posture(
-        self, request: ControlRequest, jacobian: FloatArray, inverse: FloatArray
-    ) -> FloatArray:
-        """Torques that hold what joints can do without moving the link, shape (m,)."""
-        rest = np.eye(len(request.positions)) - inverse @ jacobian
-        if np.trace(rest) < 0.5:  # the trace is the number of such motions
-            return np.zeros(len(request.positions))
-        inertia = np.diag(request.inertia())
+    def _posture(self, request: ControlRequest, moving: FloatArray) -> FloatArray:
+        """Torques that hold what joints can do without moving the link, shape (m,).
+
+        Args:
+            moving: Orthonormal motions of the joints that move the link, shape (rank, m).
+        """
         error = request.set_positions[0] - request.positions
         speed = request.set_velocities[0] - request.velocities
-        return rest @ (inertia * HOLDING * (HOLDING * error + 2 * speed))
+        torques = self._inertia * HOLDING * (HOLDING * error + 2 * speed)
+        return torques - moving.T @ (moving @ torques)
 
     def _weight(self, pose: SE3, gravity: FloatArray) -> FloatArray:
         """The weight of what the link carries, about its origin, in world axes, shape (6,)."""
@@ -202,7 +208,22 @@ def _refuse(what: str, stated: FloatArray, rates: FloatArray, most: float) -> No
     )
 
 
+def _turn(rotation: FloatArray) -> FloatArray:
+    """A rotation of forces and torques alike, shape (6, 6)."""
+    turn = np.zeros((6, 6))
+    turn[:3, :3] = turn[3:, 3:] = rotation
+    return turn
+
+
 def _deviation(at: SE3, to: SE3) -> FloatArray:
     """From a pose to another: translation and rotation vector in the world, shape (6,)."""
-    turn = rotation_vector(quat_wxyz_from_rotation(to.rotation @ at.rotation.T))
-    return np.concatenate([to.translation - at.translation, turn])
+    turn = to.rotation @ at.rotation.T
+    vector = np.array(
+        [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
+    )  # twice the sine of the angle, along the axis
+    sine, cosine = math.sqrt(vector @ vector), turn[0, 0] + turn[1, 1] + turn[2, 2] - 1
+    if cosine > 0:
+        vector *= math.atan2(sine, cosine) / sine if sine > 1e-9 else 0.5
+    else:  # more than a quarter of a turn; the sine vanishes at half a turn
+        vector = rotation_vector(quat_wxyz_from_rotation(turn))
+    return np.concatenate([to.translation - at.translation, vector])
