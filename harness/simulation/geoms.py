@@ -51,13 +51,14 @@ pushed across the ground, mu 0.4 (friction needs 7.84 N), by a finger at 0.1 m/s
 An object sinks 0.08 mm into what it stands on.
 """
 
-GRASP_SOLREF = (0.002, 1.0)
-GRASP_SOLIMP = (0.97, 0.999, 1e-5, 0.5, 2.0)
-"""The same of a contact between a finger and a free object.
+STIFF_SOLREF = (0.002, 1.0)
+STIFF_SOLIMP = (0.97, 0.999, 1e-5, 0.5, 2.0)
+"""The same of a contact of a free object with a finger, or with a body that has a hole.
 
-Such contacts stick and are pressed by a motor instead of a weight: they are stiffer, so that what
-is held creeps less. At 0.95 of Coulomb's limit a cylinder of 0.1 kg creeps by 0.01 mm in 3 s;
-with the values of other contacts by 1.6 mm.
+A grasp sticks and is pressed by a motor instead of a weight: it is stiffer, so that what is held
+creeps less. At 0.95 of Coulomb's limit a cylinder of 0.1 kg creeps by 0.01 mm in 3 s; with the
+values of other contacts by 1.6 mm. Walls of a hole that give way by 0.1 mm would let a peg in
+that is 0.1 mm too thick, pressed with 10 N.
 """
 
 CONTACT_DIMENSIONS = 6

@@ -17,8 +17,8 @@ from harness.robot.description import RobotDescription
 from harness.simulation.compiling import compile_model, refuse_unusable_masses
 from harness.simulation.geoms import (
     CONTACT_DIMENSIONS,
-    GRASP_SOLIMP,
-    GRASP_SOLREF,
+    STIFF_SOLIMP,
+    STIFF_SOLREF,
     roughness,
     set_smaller_frictions,
 )
@@ -153,6 +153,7 @@ def _compiled(
     for index, obj in enumerate(objects):
         add_object(spec, obj, obj.pose if obj.name in present else parking_pose(index))
     _add_grasp_contacts(spec, description, objects)
+    _add_hole_contacts(spec, objects)
     for frame in (description.tcp_link, *frames):
         _add_frame_sensors(spec, frame)
     for joint in description.movable_joints:
@@ -203,12 +204,28 @@ def _add_grasp_contacts(
     damping = FRICTION_DAMPING_PER_STEP / spec.option.timestep
     for link in (link for gripper in description.grippers for link in gripper.links):
         for obj in (obj for obj in objects if not obj.is_static):
-            for finger_geom in spec.body(link).geoms:
-                for object_geom in spec.body(obj.name).geoms:
-                    pair = spec.add_pair(geomname1=finger_geom.name, geomname2=object_geom.name)
-                    pair.condim = CONTACT_DIMENSIONS
-                    pair.solref, pair.solimp = GRASP_SOLREF, GRASP_SOLIMP
-                    pair.solreffriction = -1.0, -damping
+            for pair in _stiff_pairs(spec, link, obj.name):
+                pair.solreffriction = -1.0, -damping
+
+
+def _add_hole_contacts(spec: mujoco.MjSpec, objects: Sequence[WorldObject]) -> None:
+    """Add an explicit contact pair for each geom of a body with a hole and of the free objects."""
+    for block in (obj for obj in objects if obj.holes):
+        for obj in (obj for obj in objects if not obj.is_static and obj.joint is None):
+            _stiff_pairs(spec, block.name, obj.name)
+
+
+def _stiff_pairs(spec: mujoco.MjSpec, first: str, second: str) -> list[mujoco.MjsPair]:
+    """Explicit contact pairs of two bodies' geoms, stiffer than other contacts."""
+    pairs = [
+        spec.add_pair(geomname1=one.name, geomname2=other.name)
+        for one in spec.body(first).geoms
+        for other in spec.body(second).geoms
+    ]
+    for pair in pairs:
+        pair.condim = CONTACT_DIMENSIONS
+        pair.solref, pair.solimp = STIFF_SOLREF, STIFF_SOLIMP
+    return pairs
 
 
 def _places(

@@ -83,7 +83,7 @@ class CartesianCompliance(JointController):
 
     def control(self, request: ControlRequest) -> ControlResult:
         """Torques of the arm's joints for the next cycle."""
-        law, link = self._compliance, self._compliance.link
+        link = self._compliance.link
         at, to = (
             request.link_motion(link, positions)
             for positions in (request.positions, request.set_positions[0])

@@ -21,6 +21,7 @@ from harness.judging.hold import averaged_force
 from harness.judging.joints import joint_column
 from harness.judging.poses import UP, frame_poses, frame_present, physical_poses
 from harness.judging.window import NotObservable, Window
+from harness.judging.wrenches import averaged_wrench
 from harness.plugins.formulas.language.formula import Arithmetic, Const, Number, Signal
 from harness.robot.mechanism import Joint
 
@@ -113,6 +114,10 @@ def _recorded(node: Signal, window: Window, force_window: float) -> Values:
             rows = recorded_distances(window.run, first, second)
             stack = np.stack([window.cut(values) for values in rows.values()])
             return Values(np.where(np.isnan(stack), np.inf, stack).min(axis=0), "m")
+        case "force_x" | "force_y" | "force_z" as name, (sensor,):
+            return _reading(window, sensor, "xyz".index(name[-1]), "N", force_window)
+        case "torque_x" | "torque_y" | "torque_z" as name, (sensor,):
+            return _reading(window, sensor, 3 + "xyz".index(name[-1]), "N m", force_window)
         case name, (joint,):
             return _joint(name, joint, window)
         case _:
@@ -126,6 +131,10 @@ def _poses(window: Window, name: str) -> FloatArray:
     if any(record.name == name for record in run.objects):
         return physical_poses(run, name)
     return frame_poses(run, name)
+
+
+def _reading(window: Window, sensor: str, column: int, unit: str, force_window: float) -> Values:
+    return Values(window.cut(averaged_wrench(window.run, sensor, force_window)[:, column]), unit)
 
 
 def _joint(name: str, joint: str, window: Window) -> Values:

@@ -57,6 +57,8 @@ PLOTS = {
     "velocity": "velocity",
     "effort": "effort",
     "force": "contact",
+    **{f"force_{axis}": "wrench_force" for axis in "xyz"},
+    **{f"torque_{axis}": "wrench_torque" for axis in "xyz"},
     "distance": "clearance",
     "speed": "displacement",
 }
@@ -140,7 +142,7 @@ def formula_verdict(text: str, window: Window, force_window: float = FORCE_WINDO
 
 def _about_forces(comparison: Comparison, span: float) -> str:
     """Over which time forces that decided are averaged; empty where none did."""
-    if all(each.name != "force" for each in signals_of(comparison)):
+    if not any(each.name.startswith(("force", "torque")) for each in signals_of(comparison)):
         return ""
     if span == 0:
         return "; forces are those of single steps of the physics: a contact that bounces has peaks"

@@ -63,7 +63,9 @@ def grade_bag(
         gravity=program.world.gravity,
     )
     arms = dict.fromkeys(program.description.of_arm, program.description.joint_names)
-    run = run_of_bag(bag, replace(topics or BagTopics(), arms=arms), known)
+    reads_wrenches = bool(known.description.wrench_sensors)
+    topics = replace(topics or BagTopics(), arms=arms, reads_wrenches=reads_wrenches)
+    run = run_of_bag(bag, topics, known)
     notes = [finding.message for finding in run.findings]
     doubts = [
         finding.values

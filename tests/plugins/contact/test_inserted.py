@@ -82,6 +82,24 @@ def test_a_peg_that_does_not_fit_stands_on_the_rim_or_next_to_it_is_not_in(
     assert said in str(result)
 
 
+@pytest.mark.parametrize(
+    ("hole", "peg"),
+    [
+        (ROUND, "mass: 4, cylinder: {radius: 10.16 mm, length: 80 mm}"),
+        (
+            "{size: [20.2 mm, 30.2 mm]}",
+            "mass: 4, friction: 0.1, box: {size: [20.3 mm, 30 mm, 80 mm]}",
+        ),
+    ],
+)
+def test_a_peg_that_is_a_tenth_too_thick_is_not_pressed_in_by_its_weight(tmp_path, hole, peg):
+    """40 N; walls that give way by a tenth of a millimetre under load would let it in."""
+    result = run_of(tmp_path, hole, peg, "[0.5, 0.1, 0.09]", depth="2 mm", wait=0.6)
+    assert result.case.outcome == "failed"
+    depth = 0.09 - result.run.signals.object_poses["peg"][-1, 2]
+    assert depth < 5e-4
+
+
 def test_a_peg_in_a_weld_passes_with_a_warning(inserted):
     """It may hang in the air above the bottom, and nothing shows that it would stay."""
     record = AttachmentRecord(

@@ -100,6 +100,12 @@ def test_the_lesson_finds_its_hole_within_the_radius_alone(overrides, said):
 
 
 @pytest.mark.nightly
+def test_the_lesson_finds_no_hole_that_is_a_tenth_of_a_millimetre_too_narrow():
+    result = harness.run(LESSON, overrides={"objects.block.box.hole.diameter": "19.9 mm"})
+    assert "the hole is farther away than the `radius`" in str(result)
+
+
+@pytest.mark.nightly
 def test_the_lesson_fails_without_compliance_and_says_what_is_missing(tmp_path):
     text = LESSON.read_text(encoding="utf-8").replace("wrench: {z: -10 N}", "wrench: {rz: 0}")
     (tmp_path / "rigid.scenario.yaml").write_text(text, encoding="utf-8")

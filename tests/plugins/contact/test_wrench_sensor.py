@@ -102,7 +102,29 @@ steps:
 expect:
   - wrench: {below: 60 N, torque_below: 6 N*m}
   - eventually: {wrench: {above: 19 N, direction: {xyz: [0, 0, 1]}}, for: 0.3}
+  - formula: eventually (force_z(tip) > 19 N and abs(torque_x(tip)) < 0.5)
+  - formula: always (force_z(tip) < 60 N and abs(force_x(tip)) < 0.7 * force(quill, block) + 1 N)
 """
+
+
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        ("always (force_z(tpi) < 60 N)", "`tip`"),
+        ("always (force_z(tip) < 60 mm)", "one kind"),
+        ("always (torque_z < 1)", "of one name"),
+        ("always (force_z(quill) < 1)", "wrench sensor"),
+    ],
+)
+def test_a_formula_of_what_no_sensor_reads_is_a_located_error(tmp_path, formula, said):
+    sensors = '<sensor><force site="tip"/><torque site="tip"/></sensor></mujoco>'
+    (tmp_path / "gantry.xml").write_text(GANTRY.replace("</mujoco>", sensors), encoding="utf-8")
+    file = tmp_path / "press.scenario.yaml"
+    file.write_text(PRESS + f"  - formula: {formula}\n", encoding="utf-8")
+    result = harness.run(file)
+    assert result.case.outcome == "invalid"
+    assert said in str(result)
+    assert "press.scenario.yaml:20:" in str(result)
 
 
 def test_noise_is_the_same_however_the_time_is_divided_and_whenever_it_is_read(ur5e):

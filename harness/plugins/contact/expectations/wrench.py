@@ -13,12 +13,11 @@ from harness.core.pose_arrays import rotate
 from harness.core.types import FloatArray
 from harness.judging.contacts import FORCE_WINDOW
 from harness.judging.expectation import Predicate
-from harness.judging.hold import recent_mean
 from harness.judging.margins import Comparison, MarginSignal, Part, all_of
 from harness.judging.observations import Observations
 from harness.judging.poses import frame_poses
-from harness.judging.temporal import TIME_RESOLUTION
-from harness.judging.window import NotObservable, Window
+from harness.judging.window import Window
+from harness.judging.wrenches import averaged_wrench
 from harness.language.base import Duration, Force, Name, Torque
 from harness.language.expectation import Judged, Quantity
 from harness.language.poses import Direction
@@ -126,10 +125,7 @@ class Wrench(Predicate):
         """Magnitudes of the three components from a column on, or components along a direction."""
         run = window.run
         sensor = sensor_of(run.robot, self.sensor)
-        if sensor.name not in run.signals.wrenches:
-            raise NotObservable(f"the sensor '{sensor.name}' was not recorded")
-        vectors = run.signals.wrenches[sensor.name][:, first : first + 3]
-        vectors = recent_mean(run, vectors, max(self.force_window - 2 * TIME_RESOLUTION, 0.0))
+        vectors = averaged_wrench(run, sensor.name, self.force_window)[:, first : first + 3]
         if self.direction is None:
             return window.cut(np.linalg.norm(vectors, axis=1))
         axis = np.array(self.direction.xyz) / np.linalg.norm(self.direction.xyz)

@@ -22,6 +22,7 @@ from harness.plugins.formulas.language.formula import (
     Const,
     Node,
     Signal,
+    arguments_of,
     comparisons_of,
     constants_of,
     frames_of,
@@ -79,9 +80,15 @@ class Formula(Expectation):
         for comparison in comparisons_of(root):
             if problem := _beyond_range(comparison, robot) or _unbreakable(comparison, robot):
                 at.scope.problems.add_in_text(at.key("formula"), comparison.start, *problem)
-        known = {"joint": robot.joint_names, "frame": frames, "body": bodies}
+        sensors = tuple(robot.wrench_sensors)
+        known = {"joint": robot.joint_names, "frame": frames, "body": bodies, "sensor": sensors}
         measured = (*MEASURED_WORDS, *robot.of_arm, *at.scope.objects)
-        kind_names = {"joint": "joint", "frame": "link or object", "body": "object or link"}
+        kind_names = {
+            "joint": "joint",
+            "frame": "link or object",
+            "body": "object or link",
+            "sensor": "wrench sensor",
+        }
         for signal in signals_of(root):
             kinds, _, _ = SIGNALS[signal.name]
             for kind, name, start in zip(kinds, signal.arguments, signal.starts, strict=True):
@@ -96,8 +103,7 @@ class Formula(Expectation):
                     at.scope.problems.add_in_text(at.key("formula"), signal.starts[0], reason, HINT)
 
     def names(self) -> frozenset[str]:
-        arguments = [signal.arguments for signal in signals_of(parse_formula(self.formula))]
-        return frozenset(name for names in arguments for name in names)
+        return frozenset(arguments_of(parse_formula(self.formula), "frame", "body", "joint"))
 
     def observations(self) -> Observations:
         root = parse_formula(self.formula)

@@ -18,7 +18,19 @@ from typing import Literal, TypeGuard
 
 from harness.language.units import COMMON
 
-Kind = Literal["frame", "body", "joint"]
+Kind = Literal["frame", "body", "joint", "sensor"]
+
+SENSED: dict[str, tuple[tuple[Kind, ...], str, str]] = {
+    f"{what}_{axis}": (
+        ("sensor",),
+        unit,
+        f"{what} that a sensor of force and torque reads along its {axis} axis, mean over "
+        "`force_window`",
+    )
+    for what, unit in (("force", "N"), ("torque", "N m"))
+    for axis in "xyz"
+}
+"""Signals of sensors of force and torque, in the form of `SIGNALS`."""
 
 SIGNALS: dict[str, tuple[tuple[Kind, ...], str, str]] = {
     "time": ((), "s", "time since the window's start"),
@@ -42,6 +54,7 @@ SIGNALS: dict[str, tuple[tuple[Kind, ...], str, str]] = {
         "m",
         "distance between `robot`, or what it holds, and an object",
     ),
+    **SENSED,
 }
 """Name -> kinds of its arguments, unit (empty: the joint's), meaning."""
 
@@ -147,11 +160,16 @@ def signals_of(node: Node | Number) -> list[Signal]:
 
 def frames_of(node: Node) -> set[str]:
     """Names whose poses a formula reads: `tcp`, links, objects."""
+    return arguments_of(node, "frame")
+
+
+def arguments_of(node: Node, *kinds: Kind) -> set[str]:
+    """The names of some kinds that a formula's signals are of."""
     return {
         name
         for signal in signals_of(node)
         for name, kind in zip(signal.arguments, SIGNALS[signal.name][0], strict=True)
-        if kind == "frame"
+        if kind in kinds
     }
 
 

@@ -62,6 +62,7 @@ class BagContent:
         edges: T_parent_child (xyz, quat wxyz) by frames, from the frame tree.
         static_edges: The same for static transforms.
         objects: T_frame_object by (frame, object), from the topics that the user named.
+        wrenches: Forces [N] and torques [N m] by (topic, frame).
         events: (logged [ns], content) of events in this program's form.
         topics: Type and number of messages of each topic.
     """
@@ -71,6 +72,7 @@ class BagContent:
     edges: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
     static_edges: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
     objects: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
+    wrenches: Tracks = field(default_factory=dict[tuple[str, ...], RecordedTrack])
     events: list[tuple[int, dict[str, Any]]] = field(
         default_factory=list[tuple[int, dict[str, Any]]]
     )
@@ -92,6 +94,8 @@ class BagTopics:
         arms: The joints of the robot, by the name of each of several arms. A topic of joints below
             `/ARM` is that of one arm, whose recorded joints may lack the arm's name and `_`.
         csv_period: Time between the rows of a CSV without a column of times [s].
+        reads_wrenches: Whether the robot has sensors of force and torque, so that their topics
+            are read.
     """
 
     joint_states: str = "/joint_states"
@@ -101,3 +105,4 @@ class BagTopics:
     object_poses: Mapping[str, str] = field(default_factory=dict[str, str])
     arms: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     csv_period: float = 0.01
+    reads_wrenches: bool = False

@@ -122,6 +122,8 @@ class _Reader:
                 return partial(self._put_joints, self._content.commands, arm)
             case ("/tf" | "/tf_static", "tf2_msgs/msg/TFMessage"):
                 return self._frames
+            case (_, "geometry_msgs/msg/WrenchStamped") if self._topics.reads_wrenches:
+                return self._wrench
             case ("/armharness/events", "std_msgs/msg/String"):
                 return self._event
         return None
@@ -209,6 +211,15 @@ class _Reader:
         if not all(map(math.isfinite, row)) or abs(length - 1) > 0.01:
             raise _Unusable("its numbers are no pose: not finite, or no unit quaternion")
         self._put(self._track(edges, edge, 7), header, message, row)
+
+    def _wrench(self, content: Any, message: RawMessage) -> None:
+        force, torque = content.wrench.force, content.wrench.torque
+        row = [force.x, force.y, force.z, torque.x, torque.y, torque.z]
+        if not all(map(math.isfinite, row)):
+            raise _Unusable("its numbers are not finite")
+        frame = str(content.header.frame_id).lstrip("/").removeprefix(self._topics.joint_prefix)
+        track = self._track(self._content.wrenches, (message.topic, frame), 6)
+        self._put(track, content.header, message, row)
 
     def _event(self, content: Any, message: RawMessage) -> None:
         event = parse_json(content.data)

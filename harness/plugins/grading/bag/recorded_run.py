@@ -41,6 +41,7 @@ from harness.plugins.grading.bag.message_files import bag_error
 from harness.plugins.grading.bag.missing import gaps, no_joints
 from harness.plugins.grading.bag.reader import read_bag
 from harness.plugins.grading.bag.sampling import Trace, gap_limit, sample_times
+from harness.plugins.grading.bag.wrenches import wrench_traces
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Finding, ObjectRecord, Run
 from harness.recording.signals import UNPUBLISHED, Signals
@@ -116,8 +117,15 @@ class _Recording:
         self._movable = [obj.name for obj in known.objects if not obj.is_static]
         moving = frames.moving(self._shapes)
         kinds = [*joints.values(), *commanded_joints.values()]
+        self._wrenches = wrench_traces(content, description.wrench_sensors.values(), timeline)
         traces = [*(trace for each in kinds for trace in each), *map(frames.trace, moving)]
-        others = (*content.joints.values(), *content.commands.values(), *moving)
+        traces += self._wrenches.values()
+        others = (
+            *content.joints.values(),
+            *content.commands.values(),
+            *content.wrenches.values(),
+            *moving,
+        )
         self._times = times = _judged_times(path, traces, [reference, *others], content, timeline)
         self._refuse_too_many()
         self._measured = joint_rows(joints, description, times)
@@ -190,6 +198,7 @@ class _Recording:
             tcp_pose=links[known.description.tcp_link],
             frames={name: links[name] for name in known.frames if name in links},
             object_poses=self._poses,
+            wrenches={name: trace.at(self._times) for name, trace in self._wrenches.items()},
         )
 
     def _notes(self, signals: Signals) -> list[str]:
