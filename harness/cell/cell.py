@@ -145,8 +145,8 @@ class Cell(Holding):
             if follow is not None:
                 raise StepFailed(
                     "INVALID_MOTION_PLAN",
-                    f"`{self.current.spec.verb}` ends by what it meets: it cannot run at once with"
-                    " a motion of another arm",
+                    f"`{self.current.spec.verb}` ends by what it meets, so it cannot be timed with"
+                    " another motion",
                 )
             self.waiting.append(plan.trajectory)
         elif follow is None:

@@ -20,6 +20,7 @@ from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 from harness.session.advice import advice
 from harness.session.at_once import AtOnce, End, Failure, OnStep, RunEndedError
+from harness.session.moving_frames import execute_motion
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ class _Runner:
     def _attempt(self, step: ProgramStep) -> Failure | None:
         self.depth += 1
         try:
-            step.spec.execute(self.cell)
+            execute_motion(step.spec, self.cell)
         except (StepFailed, RunEndedError) as failure:
             return failure
         finally:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach
@@ -15,10 +15,36 @@ from harness.steps.grasp import Grasp
 from harness.steps.move_relative import MoveRelative
 
 
+class Carried(Protocol):
+    """An object that the surface of a belt or turntable carries."""
+
+    @property
+    def belt(self) -> str:
+        """The name of what carries it."""
+        ...
+
+    @property
+    def speed(self) -> float:
+        """The speed of the object now [m/s]."""
+        ...
+
+    def pose(self, duration: float) -> SE3:
+        """T_world_object after a duration [s]."""
+        ...
+
+    def is_on(self, duration: float) -> bool:
+        """Whether the surface still carries the object after a duration [s]."""
+        ...
+
+
 class Tracker(Plugin, ABC):
     """Picks and places in motion, for `track: true`."""
 
     plugin_kind: ClassVar[str] = "tracker"
+
+    @abstractmethod
+    def carried(self, name: str, cell: Cell) -> Carried | None:
+        """What carries an object now; None where it stands."""
 
     @abstractmethod
     def pick(
@@ -59,6 +85,17 @@ class Tracker(Plugin, ABC):
 def tracker() -> Tracker:
     """The plug-in that follows belts and turntables."""
     return registry(Tracker.plugin_kind).find("belt")()
+
+
+def carried(name: str, cell: Cell) -> Carried | None:
+    """What carries an object now; None where it stands, or where no plug-in follows belts."""
+    presence = cell.presence[name]
+    is_free = presence.is_there and presence.obj.in_simulation and not presence.obj.is_static
+    moving = [each for each in cell.presence.values() if each.obj.surface_motion is not None]
+    is_held = name in cell.scene.attached() or name not in cell.scene.object_names()
+    if not (is_free and moving) or is_held or "belt" not in registry(Tracker.plugin_kind):
+        return None
+    return tracker().carried(name, cell)
 
 
 def check_track(track: bool, at: At) -> None:

@@ -1,0 +1,118 @@
+"""Carries out motions whose goals are in the frame of an object that a belt or turntable moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from typing import cast
+
+from pydantic import BaseModel
+
+from harness.cell.cell import Cell
+from harness.cell.scene_state import StepNotes
+from harness.core.errors import PlanningFailed, StepFailed
+from harness.core.trajectory import JointTrajectory
+from harness.language.step import Step
+from harness.recording.explanation import Explanation
+from harness.steps._tracker import Carried, carried
+
+SLACK = 0.1  # of a motion's duration, by which the arrival is later than it would have to be
+PLANS = 6  # that are made until one is no longer than the time to its arrival
+LATER = 0.5  # [s], by which a goal is tried later that cannot be reached or has no motion to it
+LONGEST = 30.0  # [s]: farther ahead, slip and rolling make a prediction worthless
+
+
+def execute_motion(spec: Step, cell: Cell) -> None:
+    """Carry out a step; a motion to where an object is carried ends when the object is there.
+
+    Raises:
+        StepFailed: The step cannot be carried out, or the arm cannot be there in time.
+    """
+    rides = _rides(spec, cell)
+    if not rides:
+        spec.execute(cell)
+        return
+    if cell.waiting is not None:
+        message = (
+            f"a motion to {' and '.join(map(repr, rides))}, which moves, has a time of its own"
+        )
+        raise StepFailed("INVALID_MOTION_PLAN", f"{message}: it cannot run at once with others")
+    arrival, motion = _meeting(spec, rides, cell)
+    cell.simulator.hold(arrival - motion.duration)
+    cell.simulator.track(motion)
+
+
+def _meeting(spec: Step, rides: Mapping[str, Carried], cell: Cell) -> tuple[float, JointTrajectory]:
+    """The earliest time found at which the arm can be where the objects are then, and its motion.
+
+    Raises:
+        StepFailed: There is none; of a goal that cannot be reached the failure is that of the
+            first attempt.
+    """
+    arrival, plans, refused = 0.0, 0, None
+    while arrival < LONGEST:
+        for name, ride in rides.items():
+            if not ride.is_on(arrival):
+                raise _missed(refused, f"'{name}' leaves '{ride.belt}' in {arrival:.2f} s")
+        try:
+            motion = _planned(spec, rides, arrival, cell)
+        except PlanningFailed as failure:
+            refused, arrival = refused or failure, arrival + LATER
+            continue
+        if motion.duration <= arrival:
+            return arrival, motion
+        arrival, plans = round(motion.duration * (1 + SLACK) + 0.01, 2), plans + 1
+        if plans == PLANS:
+            break
+    names = " and ".join(f"'{name}' at {ride.speed:.3g} m/s" for name, ride in rides.items())
+    raise _missed(refused, f"{names} is not met")
+
+
+def _missed(refused: PlanningFailed | None, why: str) -> PlanningFailed:
+    """The failure of a goal that moves, with that of its first attempt."""
+    if refused is not None:
+        return PlanningFailed(refused.code, f"{refused.message}; later, {why}", *refused.details)
+    advice = (
+        "begin the motion earlier, stop the belt with `conveyor`, or give the goal in the frame of"
+        " the belt, which stands"
+    )
+    return PlanningFailed(
+        "INVALID_MOTION_PLAN", f"{why}, before the arm can be there", Explanation(advice=advice)
+    )
+
+
+def _rides(spec: Step, cell: Cell) -> Mapping[str, Carried]:
+    """What carries the objects in whose frames a step has something, where that moves."""
+    if not spec.moves_arm:
+        return {}
+    found = {name: carried(name, cell) for name in {*_frames(spec)} & cell.presence.keys()}
+    return {name: ride for name, ride in found.items() if ride is not None}
+
+
+def _frames(value: object) -> Iterator[str]:
+    """Every `frame` inside a step."""
+    if isinstance(value, BaseModel):
+        frame = getattr(value, "frame", None)
+        if isinstance(frame, str):
+            yield frame
+        for key in type(value).model_fields:
+            yield from _frames(getattr(value, key))
+    elif isinstance(value, Mapping | tuple):
+        content = cast("Mapping[str, object] | tuple[object, ...]", value)
+        for each in content.values() if isinstance(content, Mapping) else content:
+            yield from _frames(each)
+
+
+def _planned(
+    spec: Step, rides: Mapping[str, Carried], arrival: float, cell: Cell
+) -> JointTrajectory:
+    """The motion of a step to where the objects will be after some time [s]."""
+    with ExitStack() as stack:
+        for name, ride in rides.items():
+            stack.enter_context(cell.expecting(name, ride.pose(arrival)))
+        cell.notes, cell.waiting = StepNotes(), []
+        try:
+            spec.execute(cell)
+            return cell.waiting[0]
+        finally:
+            cell.waiting = None
