@@ -119,7 +119,8 @@ def test_the_pytest_commands_of_pages_find_tests(words):
     arguments = words[words.index("pytest") + 1 :]
     command = [sys.executable, "-m", "pytest", "--collect-only", "-q", *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
+    needs_an_extra = done.returncode == 5 and "SKIPPED" in done.stdout
+    assert done.returncode == 0 or needs_an_extra, done.stdout + done.stderr
 
 
 def test_the_headers_that_a_page_removes_are_where_it_says():

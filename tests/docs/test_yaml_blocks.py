@@ -84,6 +84,11 @@ samples: 2
         TWO_ARMS,
         TWO_ARMS + "steps: [{move_to: {pose: {xyz: [0.5, 0.45, 0.3], rpy: [180 deg, 0, 0]}},"
         " robot: left}]\n",
+        TWO_ARMS + "steps: [{pick: a, robot: left}]\nobjects:\n"
+        "  - {name: a, box: {size: [5 cm, 5 cm, 8 cm]}, mass: 0.1, pose: {xyz: [0.5, 0.4, 0.04]}}\n"
+        "  - {name: b, box: {size: [5 cm, 5 cm, 8 cm]}, mass: 0.1,"
+        " pose: {xyz: [0.5, -0.4, 0.04]}}\n"
+        "expect: [{placed: a}, {grasped: {object: b, by: right}}, {never: collision}]\n",
         TWO_ARMS + "steps: [{move_to: up, robot: left}]\nobjects: [{name: rod, mass: 0.1,"
         " box: {size: [2 cm, 2 cm, 20 cm]}, pose: {xyz: [0.5, 0.4, 0.1]}}]\n",
     ],
