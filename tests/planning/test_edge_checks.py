@@ -12,9 +12,6 @@ from harness.planning.collision.native import library
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
-from harness.ports.goals import JointGoal
-from harness.ports.motion_planning import MotionRequest, PlanningOptions
-from harness.ports.motions import FreeMotion
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
 from tests.planning.problem import HOMES, description_of
 from tests.second_opinion.runs import SRDF, URDF
@@ -94,15 +91,15 @@ ROBOTS = {
 @pytest.mark.nightly(
     but=[
         "0.01-0.025-ur5e with a hull",
-        "0.0-0.000125-ur3e",
+        "0.0-0.004-ur3e",
         "0.0-0.025-open_manipulator_x",
         "0.01-0.025-open_manipulator_x",
-        "0.0-0.000125-open_manipulator_x",
+        "0.0-0.004-open_manipulator_x",
     ]
 )
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize(
-    ("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 8000)]
+    ("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 250)]
 )
 def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
     name, padding, resolution, stages, tmp_path
@@ -169,23 +166,6 @@ def test_a_motion_that_ends_exactly_at_its_margin_is_judged_as_its_last_state(
     robot = "{urdf: gantry.urdf, srdf: gantry.srdf, start_state: {named_target: ready}}"
     result, _ = run(tmp_path, "- ptp: {joints: {slide: 0.0, lift: 0.072}}", robot=robot)
     assert result.outcome == "passed"
-
-
-def test_plans_are_the_same_with_and_without_the_compiled_check(stages):
-    plans = []
-    for when in ("never", "always"):
-        stages(when)
-        cell = Cell(ur("ur5e"))
-        cell.state = cell.with_arm(cell.named("mogi_down"))
-        cell.add(boxes(*FIRST_BOXES))
-        goal = JointGoal(cell.named("up"))
-        plans.append(
-            cell.planner.plan(
-                MotionRequest(ARM, cell.state, FreeMotion(goal), PlanningOptions(seed=3))
-            )
-        )
-    assert plans[0].statistics == plans[1].statistics
-    assert np.array_equal(plans[0].trajectory.positions, plans[1].trajectory.positions)
 
 
 @pytest.mark.nightly(but=["ur3e-arm", "open_manipulator_x-gripper"])

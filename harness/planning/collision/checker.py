@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -18,8 +17,7 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.approximation import approximation_note
-from harness.planning.collision.certificates import ROUNDING, MotionArrays, motion_arrays
-from harness.planning.collision.motion_rates import motion_rates
+from harness.planning.collision.certificates import MotionArrays, motion_arrays
 from harness.planning.collision.native import library
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.collision.scene import CoalScene
@@ -37,9 +35,6 @@ HOLD_RESOLUTION = 1 / 16
 """Joint-space distance between states at which the arm must be able to stand still [rad]: an effort
 changes by a few per cent between two of them."""
 
-CERTIFIED_REACHES = tuple(2.0**exponent for exponent in range(-12, -4))
-"""Joint-space distances up to which Coal certifies states around the one that it checks [rad]."""
-
 
 class MotionChecker:
     """Answers whether a group's joint positions, and straight lines between them, are free.
@@ -49,11 +44,11 @@ class MotionChecker:
     grasps) keeps its start distance minus `MARGIN_SLACK` instead: it may separate and slide, but
     not penetrate deeper. A pair without contact at the start never gets into contact.
 
-    A motion is free when all its states at the requested spacing are free. Most of them are not
-    checked one by one: where every pair is farther apart than a stretch of the motion can bring it
-    nearer, the whole stretch is free (conservative advancement). The compiled check does so with
-    exact distances on the same shapes; Coal decides what is left, and everything in a source tree
-    without the compiled check. Results, counts and plans do not depend on which of them decides.
+    A motion is free when all its states at the requested spacing are free. The compiled check does
+    not look at most of them one by one: where every pair is farther apart than a stretch of the
+    motion can bring it nearer, the whole stretch is free (conservative advancement). Coal decides
+    the states that are left, and all of them in a source tree without the compiled check. Results,
+    counts and plans do not depend on which of them decides.
 
     Attributes:
         checks: The number of states checked, as `SampledMotion.counted` has it.
@@ -80,7 +75,6 @@ class MotionChecker:
         self._robot = self._scene_model.robot.model
         self._data = self._robot.createData()
         self._margins = self._choose_margins(start)
-        self._managers: dict[float, tuple[Any, pin.GeometryData]] = {}
 
     def _choose_margins(self, start: FloatArray) -> FloatArray:
         margins = self._scene_model.margins(self.padding)
@@ -163,62 +157,29 @@ class MotionChecker:
         blocked, undecided = self._arrays.certify(library.certify, motion, low, high)
         if blocked >= 0:
             return blocked
-        if not len(undecided):
-            return None
-        first, last = undecided[np.argsort(undecided[:, 0])].T
-        starts = np.append(True, first[1:] > last[:-1] + 1)
-        stretches = zip(
-            first[starts].tolist(), last[np.append(starts[1:], True)].tolist(), strict=True
-        )
-        found = (self._blocked_by_coal(motion, *stretch) for stretch in stretches)
+        found = (self._blocked_by_coal(motion, *stretch) for stretch in undecided.tolist())
         return next((state for state in found if state is not None), None)
 
     def _blocked_by_coal(self, motion: SampledMotion, low: int, high: int) -> int | None:
-        """The same by Coal alone, with margins that are larger by bounds of the motion."""
-        waiting = deque([(high, high), (low, high - 1)])
-        while waiting:
-            low, high = waiting.popleft()
-            if low > high:
-                continue
-            middle = (low + high) // 2
-            state = motion.state(middle)
-            reach = (high - middle) * motion.spacing
-            level = next((each for each in CERTIFIED_REACHES if each / 2 < reach <= each), None)
-            if level is not None and self._exact(state, level):
-                continue
-            if not self._exact(state):
-                return middle
-            waiting.extend([(low, middle - 1), (middle + 1, high)])
-        return None
+        """The same by Coal alone, the last state first: a motion often ends in an obstacle."""
+        states = (high, *range(low, high))
+        return next(
+            (each for each in states if not self._is_free_in_coal(motion.state(each))), None
+        )
 
     @cached_property
     def _arrays(self) -> MotionArrays:
         return motion_arrays(self._scene_model, self.space, self._margins)
 
     @cached_property
-    def _rates(self) -> FloatArray:
-        return motion_rates(self._scene_model, self.space)
+    def _broad_phase(self) -> tuple[Any, pin.GeometryData]:
+        """Coal's broad phase, and its data, to which it refers."""
+        geometry, data = self._scene_model.geometry, self._scene_model.check_data(self._margins)
+        manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager
+        return manager(self._robot, geometry, data), data
 
-    def _manager(self, reach: float) -> tuple[Any, pin.GeometryData]:
-        """Coal's broad phase with margins for states near others, and its data, to which it refers.
-
-        Args:
-            reach: The largest joint-space distance of the others [rad].
-        """
-        if reach not in self._managers:
-            geometry, margins = self._scene_model.geometry, self._margins
-            if reach > 0:
-                margins = margins + reach * self._rates + ROUNDING
-            data = self._scene_model.check_data(margins)
-            manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
-                self._robot, geometry, data
-            )
-            self._managers[reach] = manager, data
-        return self._managers[reach]
-
-    def _exact(self, positions: FloatArray, reach: float = 0.0) -> bool:
-        """Whether Coal finds all states free that are at most that near."""
-        manager, _ = self._manager(reach)
+    def _is_free_in_coal(self, positions: FloatArray) -> bool:
+        manager, _ = self._broad_phase
         configuration = self.space.configuration(positions)
         return not pin.computeCollisions(self._robot, self._data, manager, configuration, True)
 

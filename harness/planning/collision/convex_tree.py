@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.planning.collision.convex_kinds import POINTS, POLYTOPE
 from harness.robot.mesh_file import hull_of
+
+POINTS, POLYTOPE, CYLINDER, HALF_SPACE = range(4)
+"""Kinds of convex sets: a few points, corners of a hull with its edges, solids with a formula."""
 
 FEW_POINTS = 32
 """Number of points up to which comparing all of them finds the farthest one the fastest."""

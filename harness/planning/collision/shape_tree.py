@@ -7,10 +7,27 @@ from functools import lru_cache
 
 import numpy as np
 
-from harness.core.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Shape, Sphere
+from harness.core.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Plane,
+    Shape,
+    Sphere,
+    reach,
+)
 from harness.core.types import FloatArray
-from harness.planning.collision.convex_kinds import CYLINDER, HALF_SPACE, POINTS
-from harness.planning.collision.convex_tree import ConvexTree, coal_hull, leaf, single_node
+from harness.planning.collision.convex_tree import (
+    CYLINDER,
+    HALF_SPACE,
+    POINTS,
+    ConvexTree,
+    coal_hull,
+    leaf,
+    single_node,
+)
 from harness.planning.collision.surface_tree import surface_tree
 from harness.robot.mesh_file import convex_hull, decomposition_of, read_triangles
 
@@ -35,22 +52,12 @@ def shape_box(shape: Shape) -> FloatArray:
         RobotError: A mesh file cannot be read.
     """
     rotation, middle = shape.pose.rotation, shape.pose.translation
-    match shape.geometry:
-        case Box(size=size):
-            reach = np.abs(rotation) @ size / 2
-        case Sphere(radius=radius):
-            reach = np.full(3, radius)
-        case Capsule(radius=radius, length=length):
-            reach = np.abs(rotation[:, 2]) * length / 2 + radius
-        case Cylinder(radius=radius, length=length):
-            across = np.sqrt(np.maximum(1.0 - rotation[:, 2] ** 2, 0.0))
-            reach = np.abs(rotation[:, 2]) * length / 2 + across * radius
-        case Plane():
-            reach = np.full(3, np.inf)
-        case Mesh():
-            points = _points(shape.geometry) @ rotation.T + middle
-            return np.concatenate([points.min(axis=0), points.max(axis=0)])
-    return np.concatenate([middle - reach, middle + reach])
+    if isinstance(shape.geometry, Mesh):
+        points = _points(shape.geometry) @ rotation.T + middle
+        return np.concatenate([points.min(axis=0), points.max(axis=0)])
+    away = reach(shape.geometry, rotation)
+    away = np.full(3, np.inf) if away is None else away  # a plane
+    return np.concatenate([middle - away, middle + away])
 
 
 def _points(geometry: Mesh) -> FloatArray:
@@ -70,15 +77,15 @@ def geometry_tree(geometry: Geometry) -> ConvexTree:
     """
     match geometry:
         case Box(size=size):
-            reach = 0.5 * float(np.linalg.norm(size))
-            return single_node([0.0, 0.0, 0.0, reach], POINTS, (0.0, 0.0, 0.0), _CUBE * size)
+            radius = 0.5 * float(np.linalg.norm(size))
+            return single_node([0.0, 0.0, 0.0, radius], POINTS, (0.0, 0.0, 0.0), _CUBE * size)
         case Sphere(radius=radius):
             return leaf(np.zeros((1, 3)), rounding=radius)
         case Capsule(radius=radius, length=length):
             return leaf(_along_z(-0.5 * length, 0.5 * length), rounding=radius)
         case Cylinder(radius=radius, length=length):
-            sizes, reach = (0.0, radius, 0.5 * length), float(np.hypot(radius, 0.5 * length))
-            return _formula(CYLINDER, sizes, reach)
+            sizes = (0.0, radius, 0.5 * length)
+            return _formula(CYLINDER, sizes, float(np.hypot(radius, 0.5 * length)))
         case Plane():
             return _formula(HALF_SPACE, (0.0, 0.0, 0.0), np.inf)
         case Mesh(collision="exact"):
@@ -92,6 +99,6 @@ def _along_z(*heights: float) -> FloatArray:
     return np.column_stack([np.zeros((len(heights), 2)), heights])
 
 
-def _formula(kind: int, sizes: Sequence[float], reach: float) -> ConvexTree:
+def _formula(kind: int, sizes: Sequence[float], radius: float) -> ConvexTree:
     """A solid about the origin whose farthest points follow from a formula."""
-    return single_node([0.0, 0.0, 0.0, reach], kind, sizes, _along_z(0.0, 1.0))
+    return single_node([0.0, 0.0, 0.0, radius], kind, sizes, _along_z(0.0, 1.0))

@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.planning.collision.convex_kinds import POINTS
-from harness.planning.collision.convex_tree import FEW_POINTS, ConvexTree, hull_of_points
+from harness.planning.collision.convex_tree import (
+    FEW_POINTS,
+    POINTS,
+    ConvexTree,
+    hull_of_points,
+)
 
 
 def surface_tree(vertices: FloatArray, faces: IntArray) -> ConvexTree:

@@ -54,8 +54,7 @@ def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> St
 
 
 def _too_few_joints(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
-    best, task = study.answer.missed[0], study.answer.task
-    nearest = NearestPose(best.positions, best.pose, best.shift, best.turn)
+    nearest, task = study.answer.missed[0], study.answer.task
     stage = Stage(
         "reach",
         "failed",

@@ -16,7 +16,13 @@ from harness.planning.ik.kinematics import CLOSED_FORMS, PinocchioKinematics
 from harness.planning.ik.numeric import LinkGoal
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.scene import Touch
-from harness.recording.goal_failures import BrokenLimit, IkResidual, IkSolution, IkStudy
+from harness.recording.goal_failures import (
+    BrokenLimit,
+    IkResidual,
+    IkSolution,
+    IkStudy,
+    RefusedIkSolution,
+)
 
 MOST_GOALS = 8
 """Number of solutions of inverse kinematics that are checked and planned to, nearest first."""
@@ -147,7 +153,13 @@ class GoalStudy:
             answer.task,
             tuple(branch.record for branch in self.branches),
             tuple(solution.record(name) for solution, name in limited),
-            tuple(solution.record for solution in answer.refused) or None,
+            tuple(
+                RefusedIkSolution(
+                    tuple(map(float, refused.positions)), IkResidual(refused.shift, refused.turn)
+                )
+                for refused in answer.refused
+            )
+            or None,
         )
 
 

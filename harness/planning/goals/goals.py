@@ -22,9 +22,9 @@ from harness.planning.collision.wording import (
     touches,
 )
 from harness.planning.goals.goal_study import GoalStudy, broken_limits, limit_sentence, study_goal
-from harness.planning.ik.answer import LimitedSolution, MissedSolution
+from harness.planning.ik.answer import LimitedSolution
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.nearest_pose import nearest_pose, target_of
+from harness.planning.ik.nearest_pose import NearestPose, nearest_pose, target_of
 from harness.planning.model.robot_model import GroupSpace
 from harness.ports.goals import Goal, JointGoal, PoseGoal, PositionGoal
 from harness.ports.kinematics import IkSolver
@@ -175,7 +175,7 @@ def _all_refused(study: GoalStudy, goal: PoseGoal | PositionGoal) -> PlanningFai
 
 
 def _constraints_violated(
-    space: GroupSpace, study: GoalStudy, missed: MissedSolution, goal: PoseGoal | PositionGoal
+    space: GroupSpace, study: GoalStudy, missed: NearestPose, goal: PoseGoal | PositionGoal
 ) -> PlanningFailed:
     """The failure of an arm with too few joints, which misses part of the pose."""
     turned_by = angle(missed.turn)

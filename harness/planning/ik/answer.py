@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.recording.goal_failures import IkResidual, LimitedIkSolution, RefusedIkSolution
+from harness.planning.ik.nearest_pose import NearestPose
+from harness.recording.goal_failures import LimitedIkSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,44 +37,6 @@ class LimitedSolution:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class MissedSolution:
-    """A solution inside the limits of the part of a pose that the arm can choose.
-
-    Attributes:
-        positions: The positions of the group's joints.
-        pose: T_world_link at these positions.
-        shift: The position error [m].
-        turn: The orientation error [rad], which exceeds the tolerance.
-    """
-
-    positions: FloatArray
-    pose: SE3
-    shift: float
-    turn: float
-
-
-@dataclass(frozen=True, eq=False)
-class RefusedSolution:
-    """An answer of a third-party solver that misses the goal.
-
-    Attributes:
-        positions: The positions of the group's joints.
-        shift: The position error [m].
-        turn: The orientation error [rad].
-    """
-
-    positions: FloatArray
-    shift: float
-    turn: float
-
-    @property
-    def record(self) -> RefusedIkSolution:
-        """The answer as a step's record has it."""
-        positions = tuple(map(float, self.positions))
-        return RefusedIkSolution(positions, IkResidual(self.shift, self.turn))
-
-
 @dataclass(frozen=True)
 class IkAnswer:
     """The complete result of inverse kinematics.
@@ -86,7 +48,8 @@ class IkAnswer:
         method: The name of the solver, a plug-in of the kind `ik_solver`.
         task: What is solved for: `pose`, or for an arm with too few joints `position and pitch`
             (four or five joints) or `position` (three).
-        missed: Solutions of that task outside the pose's tolerance, least error first.
+        missed: Solutions of that task inside the limits and outside the pose's tolerance, least
+            error first.
         refused: Answers of a third-party solver that miss the goal, least error first.
     """
 
@@ -95,5 +58,5 @@ class IkAnswer:
     excess: float
     method: str
     task: str = "pose"
-    missed: tuple[MissedSolution, ...] = ()
-    refused: tuple[RefusedSolution, ...] = ()
+    missed: tuple[NearestPose, ...] = ()
+    refused: tuple[NearestPose, ...] = ()

@@ -11,13 +11,8 @@ from harness.core.kinematics import LinkPoses
 from harness.core.registry import OWN_PACKAGE, registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.ik.answer import (
-    IkAnswer,
-    LimitedSolution,
-    MissedSolution,
-    RefusedSolution,
-)
-from harness.planning.ik.nearest_pose import distance_to_goal
+from harness.planning.ik.answer import IkAnswer, LimitedSolution
+from harness.planning.ik.nearest_pose import NearestPose, distance_to_goal
 from harness.planning.ik.numeric import LinkGoal, LinkTask
 from harness.planning.ik.task import task_of
 from harness.planning.ik.third_party import solve_with_third_party
@@ -87,7 +82,7 @@ class PinocchioKinematics:
         solver = self._solver(request)
         is_own = is_built_in(solver.name)
         result = solver().solve(request) if is_own else solve_with_third_party(solver, request)
-        refused: list[RefusedSolution] = []
+        refused: list[NearestPose] = []
         solutions = result.solutions
         if not is_own:
             solutions = _reaching(space, request, solutions, refused)
@@ -148,12 +143,12 @@ class PinocchioKinematics:
         reference: FloatArray,
         *,
         polish: bool,
-    ) -> tuple[list[FloatArray], list[LimitedSolution], list[MissedSolution]]:
+    ) -> tuple[list[FloatArray], list[LimitedSolution], list[NearestPose]]:
         """Refine candidates, turn them into the limits, and sort them: inside, outside, missed."""
         task = LinkTask(space, goal)
         inside: list[FloatArray] = []
         outside: list[LimitedSolution] = []
-        missed: list[MissedSolution] = []
+        missed: list[NearestPose] = []
         for positions in raw:
             if polish:
                 exact, error = task.polish(positions)
@@ -181,14 +176,14 @@ class PinocchioKinematics:
         positions: FloatArray,
         pose: SE3,
         reference: FloatArray,
-    ) -> list[MissedSolution]:
+    ) -> list[NearestPose]:
         """The candidate as a missed solution if it reaches the position inside the limits."""
         kept = into_limits(space, positions, reference)
         shift, turn = distance_to_goal(goal, pose)
         at_the_point = isinstance(goal, PoseGoal) and shift <= goal.position_tolerance
         if isinstance(kept, LimitedSolution) or not at_the_point:
             return []
-        return [MissedSolution(kept, pose, shift, turn)]
+        return [NearestPose(kept, pose, shift, turn)]
 
     def _check_link(self, space: GroupSpace, link: str) -> None:
         if link not in self.description.link_names:
@@ -211,7 +206,7 @@ def _reaching(
     space: GroupSpace,
     request: IkRequest,
     solutions: Sequence[FloatArray],
-    refused: list[RefusedSolution],
+    refused: list[NearestPose],
 ) -> list[FloatArray]:
     """Solutions that reach the goal, or the part of it that the arm can choose."""
     kept: list[FloatArray] = []
@@ -223,7 +218,7 @@ def _reaching(
         if meets_tolerance(request.goal, pose) or (is_part and at_the_point):
             kept.append(positions)
         else:
-            refused.append(RefusedSolution(positions, shift, turn))
+            refused.append(NearestPose(positions, pose, shift, turn))
     refused.sort(key=lambda one: (round(one.shift + one.turn, 9), tuple(one.positions)))
     return kept
 

@@ -30,30 +30,18 @@ _CLASSES: Mapping[str, str] = {
 }
 """Planner name -> class of the OMPL wheel; the first two are built in."""
 
-_REFUSED: Mapping[str, str] = {
-    "LazyPRM": "the OMPL wheel does not have it",
-    "LazyPRMstar": "the OMPL wheel does not have it",
-    "EST": "the OMPL wheel does not have it",
-    "BiEST": "the OMPL wheel does not have it",
-    "ProjEST": "the OMPL wheel does not have it",
-    "SBL": "the OMPL wheel does not have it",
-    "TRRT": "the OMPL wheel does not have it",
-    "BiTRRT": "the OMPL wheel does not have it",
-    "LBTRRT": "the OMPL wheel does not have it",
-    "STRIDE": "the OMPL wheel does not have it",
-    "PDST": "the OMPL wheel does not have it",
-    "SPARS": "the OMPL wheel does not have it",
-    "SPARStwo": "the OMPL wheel does not have it",
-    "AITstar": "the OMPL wheel does not have it",
-    "EITstar": "the OMPL wheel does not have it",
-    "AnytimePathShortening": "it plans on several threads; shortening is always on",
-    "CHOMP": "it is a pipeline of MoveIt, not a planner of OMPL",
-    "STOMP": "it is a pipeline of MoveIt, not a planner of OMPL",
-    "TrajOpt": "it is a pipeline of MoveIt, not a planner of OMPL",
-    "PTP": "Pilz's motions are steps: write `ptp`",
-    "LIN": "Pilz's motions are steps: write `lin`",
-    "CIRC": "Pilz's motions are steps: write `circ`",
+_REASONS: Mapping[str, tuple[str, ...]] = {
+    "the OMPL wheel does not have it": (
+        *("LazyPRM", "LazyPRMstar", "EST", "BiEST", "ProjEST", "SBL", "TRRT", "BiTRRT", "LBTRRT"),
+        *("STRIDE", "PDST", "SPARS", "SPARStwo", "AITstar", "EITstar"),
+    ),
+    "it plans on several threads; shortening is always on": ("AnytimePathShortening",),
+    "it is a pipeline of MoveIt, not a planner of OMPL": ("CHOMP", "STOMP", "TrajOpt"),
+    "Pilz's motions are steps: write `ptp`": ("PTP",),
+    "Pilz's motions are steps: write `lin`": ("LIN",),
+    "Pilz's motions are steps: write `circ`": ("CIRC",),
 }
+_REFUSED = {name: reason for reason, names in _REASONS.items() for name in names}
 
 
 def planner_names() -> tuple[str, ...]:

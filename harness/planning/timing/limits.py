@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.planning.efforts import InverseDynamics
 from harness.planning.timing.profiles import (
     GRID,
     SAMPLE_PERIOD,
@@ -46,29 +46,6 @@ class TimingError(Exception):
         self.details = details or Details.of(TrajectoryFailure("timing"))
 
 
-class Dynamics(Protocol):
-    """Efforts that a motion takes, and those that the joints have."""
-
-    limits: FloatArray
-    joint_names: tuple[str, ...]
-
-    def efforts(
-        self, positions: FloatArray, velocities: FloatArray, accelerations: FloatArray
-    ) -> FloatArray:
-        """Efforts of a motion, (N, dof) each."""
-        ...
-
-    def can_hold(self, positions: FloatArray) -> bool:
-        """Whether the joints can hold the arm still at all positions, shape (N, dof)."""
-        ...
-
-    def standing_overload(
-        self, positions: FloatArray, where: str = "on the way"
-    ) -> tuple[str, Details]:
-        """Message and details of a joint whose effort does not suffice to stand still, (N, dof)."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Limits:
     """Limits of the joints, scaling included; shape (dof,) each.
@@ -85,7 +62,7 @@ class Limits:
     velocity: FloatArray
     acceleration: FloatArray
     jerk: float = np.inf
-    dynamics: Dynamics | None = None
+    dynamics: InverseDynamics | None = None
     commanded: FloatArray | None = None
 
     @classmethod
