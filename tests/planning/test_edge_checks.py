@@ -98,9 +98,7 @@ ROBOTS = {
     ]
 )
 @pytest.mark.parametrize("name", ROBOTS)
-@pytest.mark.parametrize(
-    ("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 250)]
-)
+@pytest.mark.parametrize(("padding", "resolution"), [(0.0, 1 / 40), (0.01, 1 / 40), (0.0, 1 / 250)])
 def test_verdicts_and_counts_are_the_same_with_and_without_the_compiled_check(
     name, padding, resolution, stages, tmp_path
 ):
