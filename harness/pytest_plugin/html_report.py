@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import os
 from collections.abc import Sequence
 from importlib import import_module
@@ -14,9 +13,10 @@ import pytest
 
 from harness.core.amounts import amount
 from harness.pytest_plugin.session_options import MARGIN
+from harness.reporting.notebook import verdict_table
 from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.suite.record import SuiteCase
-from harness.reporting.terminal import failure_place, verdict_line
+from harness.reporting.terminal import failure_place
 
 LISTED_CASES = 3  # of samples, those that failed
 PICTURE_WIDTH = 480  # [pixels]
@@ -42,12 +42,7 @@ def add_to_html(
         if picture := deciding_picture(result, PICTURE_WIDTH):
             shown = base64.b64encode(picture).decode()
             extras.append(make.image(shown, result.name, "image/webp", "webp"))
-        rows = "".join(
-            f"<tr><td>{html.escape(each.status)}</td><td>{html.escape(each.expectation)}</td>"
-            f"<td>{html.escape(verdict_line(each))}</td></tr>"
-            for each in result.verdicts
-        )
-        extras.append(make.html(f"<table>{rows}</table>"))
+        extras.append(make.html(verdict_table(result.verdicts)))
     report.extras = extras  # pyright: ignore[reportAttributeAccessIssue] - pytest-html's own
     setattr(report, MARGIN, _worst(cases))
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
+from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.reporting.suite.failure_picture import deciding_picture
 from harness.reporting.terminal import causes, failure_place, verdict_line
@@ -24,16 +26,23 @@ def result_html(result: CaseResult) -> str:
         shown = base64.b64encode(picture).decode()
         parts.append(f'<img alt="{escape(result.name)}" src="data:image/webp;base64,{shown}">')
     if result.verdicts:
-        rows = "".join(
-            f'<tr><td style="color:{COLORS[each.status == "passed"]}">{escape(each.status)}</td>'
-            f'<td style="text-align:left">{escape(each.expectation)}</td>'
-            f'<td style="text-align:left">{escape(verdict_line(each))}</td></tr>'
-            for each in result.verdicts
-        )
-        parts.append(f"<table>{rows}</table>")
+        parts.append(verdict_table(result.verdicts))
     if result.outcome != "passed":
-        parts.append(f"<pre>{escape(chr(10).join(causes(result)))}</pre>")
+        parts.append(
+            f'<pre style="white-space:pre-wrap">{escape(chr(10).join(causes(result)))}</pre>'
+        )
     if result.page:
         address = Path(result.page).resolve().as_uri() + failure_place(result)
         parts.append(f'<p><a href="{escape(address)}">{escape(result.page)}</a></p>')
     return "".join(parts)
+
+
+def verdict_table(verdicts: Sequence[Verdict]) -> str:
+    """A table of verdicts, those that do not hold first."""
+    rows = "".join(
+        f'<tr><td style="color:{COLORS[each.status == "passed"]}">{escape(each.status)}</td>'
+        f'<td style="text-align:left">{escape(each.expectation)}</td>'
+        f'<td style="text-align:left">{escape(verdict_line(each))}</td></tr>'
+        for each in sorted(verdicts, key=lambda verdict: verdict.status == "passed")
+    )
+    return f"<table>{rows}</table>"

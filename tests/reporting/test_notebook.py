@@ -28,6 +28,14 @@ def test_a_failure_shows_its_causes_its_picture_and_its_page(tmp_path):
     assert "height: 30.0 mm (at least 50.0 mm)" in result_html(failed(1))
 
 
+def test_what_does_not_hold_stands_first_and_no_line_is_wider_than_the_cell():
+    first, second = passed(0), failed(1)
+    both = replace(second, verdicts=(*first.verdicts, *second.verdicts))
+    shown = result_html(both)
+    assert shown.index(">failed</td>") < shown.index(">passed</td>")
+    assert '<pre style="white-space:pre-wrap">' in shown
+
+
 def test_hostile_texts_stay_text():
     shown = result_html(BROKEN)
     assert HOSTILE not in shown
