@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from harness.core.spatial import SE3
+from harness.core.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,3 +35,27 @@ class WrenchSensor:
         """The frame of its messages: its link, where it has the link's frame."""
         is_link = self.pose.distance_to(SE3.identity()) == (0.0, 0.0)
         return self.link if is_link else f"{self.name}_wrench_frame"
+
+
+@dataclass(frozen=True, eq=False)
+class Payload:
+    """What a sensor carries, whose weight is subtracted from its readings.
+
+    Attributes:
+        mass: The mass of what it carries [kg].
+        center_of_mass: Its centre of mass in the axes of the sensor's link [m], shape (3,).
+    """
+
+    mass: float
+    center_of_mass: FloatArray
+
+    def weight(self, sensor: WrenchSensor, gravity: FloatArray) -> FloatArray:
+        """Force and torque of its weight, as the sensor reads them, shape (N, 6) [N, N m].
+
+        Args:
+            sensor: The sensor that carries it.
+            gravity: The gravitational acceleration in the sensor's axes, shape (N, 3).
+        """
+        force = self.mass * gravity
+        place = sensor.pose.inverse().apply(self.center_of_mass)
+        return np.hstack([force, np.cross(place, force)])

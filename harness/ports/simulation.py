@@ -10,6 +10,7 @@ from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.core.wrench_sensor import Payload
 from harness.ports.joint_control import JointController
 from harness.ports.scene import Touch
 from harness.recording.signals import Signals
@@ -158,11 +159,16 @@ class Simulator(Protocol):
         """
         ...
 
-    def tare(self, sensor: str, duration: float) -> FloatArray:
+    def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
         """Hold for some time [s], and take what a sensor reads meanwhile for zero from now on.
 
+        Args:
+            sensor: The name of the sensor.
+            duration: The time over which the mean is taken [s].
+            payload: What it carries: its weight is subtracted in every orientation.
+
         Returns:
-            The mean of its readings, without an earlier tare, shape (6,).
+            The mean of its readings, without an earlier tare and the payload's weight, shape (6,).
         """
         ...
 

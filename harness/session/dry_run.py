@@ -17,6 +17,7 @@ from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
+from harness.core.wrench_sensor import Payload
 from harness.ports.goals import JointGoal
 from harness.ports.joint_control import JointController
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionPlanner, MotionRequest
@@ -120,8 +121,8 @@ class DrySimulator:
         del sensor, span
         return np.full(6, np.inf)
 
-    def tare(self, sensor: str, duration: float) -> FloatArray:
-        del sensor, duration
+    def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
+        del sensor, duration, payload
         return np.zeros(6)
 
     def command_gripper(

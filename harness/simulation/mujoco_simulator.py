@@ -10,6 +10,7 @@ from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.types import FloatArray
+from harness.core.wrench_sensor import Payload
 from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import UnrestFailure
 from harness.recording.motion import Motion
@@ -21,6 +22,7 @@ from harness.simulation.snapshot import (
     saved_state,
 )
 from harness.simulation.trajectory_tracking import SETTLE_EVERY, TrajectoryTracking
+from harness.simulation.wrench_sensors import Tare
 
 SETTLE_FOR = 0.06
 """Time below the velocity limit that counts as rest; a swing's turning point is shorter [s]."""
@@ -54,18 +56,20 @@ class MujocoSimulator(TrajectoryTracking):
 
     def wrench(self, sensor: str, span: float) -> FloatArray:
         """What a sensor of force and torque reads, in its axes, mean over `span`, shape (6,)."""
-        return self._wrench(sensor, span)
+        first = max(0, self._recording.count - max(1, round(span / self._timestep)))
+        return self._recording.wrench(sensor, first).mean(axis=0)
 
-    def tare(self, sensor: str, duration: float) -> FloatArray:
+    def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
         """Hold, and take the mean of a sensor's readings meanwhile for zero; returns it, (6,)."""
         self.hold(duration)
-        zero = self._wrench(sensor, duration, tared=False)
-        self._recording.wrenches.tare(sensor, self._recording.count - 1, zero)
+        recording = self._recording
+        first = max(0, recording.count - max(1, round(duration / self._timestep)))
+        readings = recording.wrench(sensor, first, tared=False)
+        if payload is not None:
+            readings = readings - recording.weight(sensor, payload, first)
+        zero = readings.mean(axis=0)
+        recording.wrenches.tare(Tare(recording.count - 1, sensor, zero, payload))
         return zero
-
-    def _wrench(self, sensor: str, span: float, *, tared: bool = True) -> FloatArray:
-        first = max(0, self._recording.count - max(1, round(span / self._timestep)))
-        return self._recording.wrench(sensor, first, tared=tared).mean(axis=0)
 
     def command_gripper(
         self,

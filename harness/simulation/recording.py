@@ -5,14 +5,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from itertools import pairwise
 
 import mujoco
 import numpy as np
 
 from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.limits import LONGEST_RUN
+from harness.core.pose_arrays import conjugate, rotate
 from harness.core.types import FloatArray
+from harness.core.wrench_sensor import Payload
 from harness.recording.execution_failures import LengthFailure
+from harness.recording.link_poses import replayed_link_poses
 from harness.recording.signals import Signals
 from harness.simulation.adhesion import Adhesion
 from harness.simulation.contact_record import BYTES, ROWS, BodyPair, ContactRecord, doubled
@@ -233,7 +237,23 @@ class Recording:
     def wrench(self, name: str, first: int, *, tared: bool = True) -> FloatArray:
         """What a sensor of force and torque reads from a sample on, in its axes, shape (N, 6)."""
         measured = self._sensors[:, self._effort_columns.stop :]
-        return self.wrenches.readings(name, measured, first, self.count - first, tared=tared)
+        found = self.wrenches.readings(name, measured, first, self.count - first, tared=tared)
+        payloads = self.wrenches.payloads(name) if tared else []
+        for (since, payload), (until, _) in pairwise([*payloads, (self.count, None)]):
+            if payload is not None and until > first:
+                weight = self.weight(name, payload, max(since, first))
+                rows = slice(max(since, first) - first, until - first)
+                found[rows] -= weight[: rows.stop - rows.start]
+        return found
+
+    def weight(self, name: str, payload: Payload, first: int) -> FloatArray:
+        """The weight of a payload in a sensor's readings from a sample on, shape (N, 6)."""
+        sensor, physics = self.wrenches.sensors[name], self._physics
+        _, rows = self.wrenches.rows_read(name, first, self.count - first)
+        positions = self._qpos[rows][:, physics.qpos]
+        poses = replayed_link_poses(physics.description, positions, [sensor.link])[sensor.link]
+        gravity = rotate(conjugate(poses[:, 3:]), physics.model.opt.gravity)
+        return payload.weight(sensor, gravity @ sensor.pose.rotation)
 
     def contacts(self, first: int, last: int) -> Mapping[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""

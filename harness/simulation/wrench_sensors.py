@@ -5,17 +5,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from harness.core.types import FloatArray, IntArray
-from harness.core.wrench_sensor import WrenchSensor
+from harness.core.wrench_sensor import Payload, WrenchSensor
 
 BLOCK = 1024
 """Readings whose noise is drawn at once: one look draws no more than its own blocks."""
 
 KINDS = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE
+
+
+@dataclass(frozen=True, eq=False)
+class Tare:
+    """What a sensor takes for zero since a sample, shape (6,), besides the weight of a payload."""
+
+    row: int
+    sensor: str
+    zero: FloatArray
+    payload: Payload | None = None
 
 
 def add_wrench_sensors(spec: mujoco.MjSpec, sensors: Iterable[WrenchSensor]) -> None:
@@ -37,15 +48,27 @@ class WrenchSensors:
     def __init__(self, sensors: Iterable[WrenchSensor], timestep: float, seed: int) -> None:
         self.sensors = {sensor.name: sensor for sensor in sensors}
         self._timestep, self._seed = timestep, seed
-        self._tares: list[tuple[int, str, FloatArray]] = []  # since which sample, which sensor
+        self._tares: list[Tare] = []
 
     def rewind(self, count: int) -> None:
         """Forget the tares of all samples after the first `count`."""
-        self._tares = [tare for tare in self._tares if tare[0] < count]
+        self._tares = [tare for tare in self._tares if tare.row < count]
 
-    def tare(self, name: str, row: int, wrench: FloatArray) -> None:
-        """Take a wrench for zero from a sample on, without earlier tares, shape (6,)."""
-        self._tares.append((row, name, wrench))
+    def tare(self, tare: Tare) -> None:
+        """Take a wrench for zero from a sample on, without earlier tares."""
+        self._tares.append(tare)
+
+    def payloads(self, name: str) -> list[tuple[int, Payload | None]]:
+        """Since which samples which payload's weight is subtracted from a sensor's readings."""
+        return [(tare.row, tare.payload) for tare in self._tares if tare.sensor == name]
+
+    def rows_read(self, name: str, first: int, count: int) -> tuple[IntArray, IntArray]:
+        """Number and sample of the reading that a sensor has at samples, shape (count,) each."""
+        rows, steps = np.arange(first, first + count), self.sensors[name].rate * self._timestep
+        if steps >= 1:
+            return rows, rows
+        numbers = np.floor(rows * self._timestep * self.sensors[name].rate + 1e-9).astype(np.int64)
+        return numbers, np.ceil(numbers / steps - 1e-9).astype(np.int64)
 
     def readings(
         self, name: str, measured: FloatArray, first: int, count: int, *, tared: bool = True
@@ -61,19 +84,15 @@ class WrenchSensors:
         """
         sensor = self.sensors[name]
         column = 6 * list(self.sensors).index(name)
-        rows = np.arange(first, first + count)
-        numbers = rows
-        if sensor.rate * self._timestep < 1:
-            numbers = np.floor(rows * self._timestep * sensor.rate + 1e-9).astype(np.int64)
-            rows = np.ceil(numbers / (self._timestep * sensor.rate) - 1e-9).astype(np.int64)
+        numbers, rows = self.rows_read(name, first, count)
         wrenches = -measured[rows, column : column + 6]  # MuJoCo has the force of the link before
         deviations = np.repeat([sensor.force_noise, sensor.torque_noise], 3)
         if deviations.any():
             wrenches += deviations * self._noise(column, numbers)
         zero = np.zeros_like(wrenches)
-        for since, which, wrench in self._tares if tared else ():
-            if which == name:
-                zero[max(0, since - first) :] = wrench
+        for tare in self._tares if tared else ():
+            if tare.sensor == name:
+                zero[max(0, tare.row - first) :] = tare.zero
         return wrenches - zero
 
     def _noise(self, column: int, numbers: IntArray) -> FloatArray:

@@ -9,6 +9,7 @@ from harness.judging.expectations.in_contact import InContact
 from harness.judging.expectations.joints import Joints
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.named_target import NamedTarget
+from harness.judging.expectations.on import On
 from harness.judging.expectations.tcp_pose import TcpPose
 from harness.judging.expectations.upright import Upright
 from harness.judging.judge import judge
@@ -49,6 +50,8 @@ def from_sample(run, skipped):
         InContact(between=("left", "a")),
         InContact(between=("left", "a"), min_force=2.0, force_window=0.2),
         InContact(between=("a", "ground_plane"), force_window=0.0),
+        On(object="a", support="ground_plane"),
+        On(object="a", support="b"),
     ],
 )
 def test_the_verdict_of_a_late_step_needs_no_more(spec, run):

@@ -8,6 +8,7 @@ from pydantic import Field
 from harness.cell.possible_contacts import check_contact
 from harness.cell.scope import At
 from harness.core.amounts import amounts
+from harness.judging.contacts import DEBOUNCE
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import present
@@ -32,6 +33,9 @@ class On(ObjectPredicate):
         super().check(at)
         at.scope.check_body(self.support, at.key("support"), special=())
         check_contact(at.scope, self.object, self.support, at.key("support"))
+
+    def looks_back(self) -> float:
+        return DEBOUNCE
 
     def signal(self, window: Window) -> MarginSignal:
         """Touches the support, which is under it and carries half of its weight or more."""

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 import harness
+from harness.judging.judge import judge
+from harness.judging.placed import PlacedExpectation
 from harness.plugins.contact.expectations.inserted import Inserted
 from harness.recording.run import AttachmentRecord
+from tests.judging.test_looks_back import from_sample
 
 SCENARIO = """
 scenario: pegs
@@ -113,6 +116,15 @@ def test_a_peg_in_a_weld_passes_with_a_warning(inserted):
         replace(run, attachments=(released,)), ""
     )
     assert not verdict.warnings
+
+
+@pytest.mark.parametrize("depth", [0.039, 0.05])
+def test_a_look_reads_nothing_from_before_the_step(inserted, depth):
+    placed = [PlacedExpectation.of(Inserted(peg="peg", hole="block", depth=depth), "", 1)]
+    assert placed[0].spec.looks_back() == 0.0
+    [whole] = judge(inserted.run, placed)
+    [part] = judge(from_sample(inserted.run, 300), placed)
+    assert (part.status, part.margin) == (whole.status, whole.margin)
 
 
 def test_a_peg_that_was_in_its_hole_all_the_time_is_no_insertion(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 import harness
 from harness.core.spatial import SE3
-from harness.core.wrench_sensor import WrenchSensor
+from harness.core.wrench_sensor import Payload, WrenchSensor
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
 from harness.simulation.mujoco_simulator import MujocoSimulator
@@ -127,6 +127,39 @@ def test_a_formula_of_what_no_sensor_reads_is_a_located_error(tmp_path, formula,
     assert "press.scenario.yaml:20:" in str(result)
 
 
+@pytest.mark.parametrize("turned", [(0, 0, 0), (0.4, -0.3, 1.1)])
+@pytest.mark.parametrize("rate", [float("inf"), 300.0])
+def test_the_weight_of_a_payload_is_gone_in_every_orientation(ur5e, turned, rate):
+    """Of what the sensor carries the tool's weight is left, which the tare removes in one."""
+    pose = SE3.from_xyz_rpy((0.01, 0.02, -0.03), turned)
+    readings = {}
+    for payload in (None, Payload(2.0, OFFSET.translation)):
+        robot = with_sensor(ur5e, pose, rate=rate)
+        simulator = held_load(robot, OFFSET, loaded=payload is not None)
+        simulator.hold(0.3)
+        simulator.tare("wrist", 0.05, payload)
+        simulator.hold(0.1)
+        before = simulator.wrench("wrist", 0.05)
+        start = simulator.commanded_positions()[simulator.physics.actuated]
+        goal = start.copy()
+        goal[:6] = POSES[1]
+        share = (1 - np.cos(np.linspace(0, np.pi, 1501)))[:, None] / 2
+        rates = (
+            np.gradient(share, 0.001, axis=0),
+            np.gradient(np.gradient(share, 0.001, axis=0), 0.001, axis=0),
+        )
+        way = goal - start
+        simulator.stream(np.stack([start + share * way, rates[0] * way, rates[1] * way]))
+        simulator.command(goal)
+        simulator.hold(0.4)
+        readings[payload is not None] = np.stack([before, simulator.wrench("wrist", 0.05)])
+        recorded = simulator.finish().wrenches["wrist"]
+        assert recorded[-50:].mean(axis=0) == pytest.approx(readings[payload is not None][1])
+    assert np.abs(readings[True][0]).max() < 0.02
+    assert np.abs(readings[False][1]).max() > 3, "the tare alone leaves the tool's weight"
+    assert readings[True] == pytest.approx(readings[False], abs=0.05)
+
+
 def test_noise_is_the_same_however_the_time_is_divided_and_whenever_it_is_read(ur5e):
     robot = with_sensor(ur5e, rate=125.0, force_noise=0.5, torque_noise=0.02)
     whole, parts = (held_load(robot, SE3.identity(), loaded=False, seed=3) for _ in range(2))
@@ -205,6 +238,8 @@ TWO = ", wrench_sensors: {wrist: rh_p12_rn_base, elbow: forearm_link}"
         (", wrench_sensors: {wrist: {link: tool0, force_noise: -1}}", "", ["3:", "force_noise"]),
         (", wrench_sensors: {wrist: {link: tool0, torque_noise: 1 N}}", "", ["3:", "torque"]),
         ("", "  - tare: {}", ["6:", "no sensor of force and torque", "wrench_sensors"]),
+        (ONE, "  - tare: {payload: {mass: -1 kg}}", ["6:", "mass"]),
+        (ONE, "  - tare: {payload: {com: [0, 0, 0.1]}}", ["6:", "mass"]),
         (ONE, "  - tare: wirst", ["6:", "`wrist`"]),
         (TWO, "  - tare: {}", ["6:", "wrist, elbow", "`sensor`"]),
         ("", "expect: [{wrench: {below: 5}}]", ["6:", "no sensor of force and torque"]),

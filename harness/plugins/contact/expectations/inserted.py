@@ -78,6 +78,9 @@ class Inserted(Predicate):
                 needs=("world",),
             )
 
+    def looks_back(self) -> float:
+        return 0.0
+
     def signal(self, window: Window) -> MarginSignal:
         """Depth of the peg's end below the opening, and its distance from the axis [m]."""
         run = window.run

@@ -98,6 +98,9 @@ class Wrench(Predicate):
         frames = frozenset[str]() if self.direction is None else {self.direction.frame}
         return Observations(frames=frozenset(frames))
 
+    def looks_back(self) -> float:
+        return self.force_window
+
     def signal(self, window: Window) -> MarginSignal:
         """The force [N] and the torque [N m] at each sample, averaged.
 
