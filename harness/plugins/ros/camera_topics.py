@@ -16,14 +16,10 @@ from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.plugins.ros.bag.cameras import camera_info, compressed_image, image
 from harness.plugins.ros.bag.frames import optical_frames
-from harness.plugins.ros.bag.topics import topic_word
+from harness.plugins.ros.bag.topics import camera_topics
 from harness.plugins.ros.endpoints import Qos
 from harness.plugins.ros.interfaces import header
 from harness.plugins.ros.rtps.graph import Graph
-
-IMAGE, COMPRESSED, INFO = (
-    f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "CameraInfo")
-)
 
 Poses = Callable[[], Mapping[str, FloatArray]]  # T_world_object of those that are there
 
@@ -39,12 +35,14 @@ class _Topics:
     """
 
     def __init__(self, graph: Graph, camera: Camera, frame: str) -> None:
-        base, self.camera, self._frame, self.due = f"/{topic_word(camera.name)}", camera, frame, 0.0
+        topics, self.camera, self._frame, self.due = camera_topics(camera.name), camera, frame, 0.0
         self.requested, self.sent, self.late = 0, 0, 0.0
-        self._raw = graph.advertise(f"{base}/image", IMAGE, Qos(depth=1))
-        self._compressed = graph.advertise(f"{base}/image/compressed", COMPRESSED, Qos(depth=1))
-        names = f"{base}/camera_info", f"{base}/image/camera_info"
-        self._infos = [graph.advertise(name, INFO) for name in names]
+        self._raw, self._compressed = (
+            graph.advertise(each.name, each.msgtype, Qos(depth=1))
+            for each in (topics.image, topics.compressed)
+        )
+        names = topics.info.name, f"{topics.image.name}/camera_info"
+        self._infos = [graph.advertise(name, topics.info.msgtype) for name in names]
 
     @property
     def are_watched(self) -> bool:
