@@ -73,6 +73,8 @@ def test_a_client_solves_plans_and_moves_and_the_run_replays(tmp_path):
 
         moved = client.move_to(pose_goal(target))
         assert (moved.status, moved.result.error_code.val) == (Status.SUCCEEDED, SUCCESS)
+        node.wait(lambda: len(moved.feedback) == 3)
+        assert [each.state for each in moved.feedback] == ["PLANNING", "MONITOR", "IDLE"]
         here = client.call("compute_fk", "GetPositionFK").pose_stamped[0].pose.position
         assert (here.x, here.y, here.z) == pytest.approx((0.4, 0.1, 0.4), abs=2e-3)
         path = client.call(

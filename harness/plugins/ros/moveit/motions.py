@@ -117,11 +117,16 @@ class Motions:
     def _finish(self, goal: str, failure: StepFailed | None = None) -> None:
         known = self._goals.pop(goal)
         getattr(known.result, "response", known.result).error_code = error_code(failure)
-        known.server.finish(goal, failure is None, known.result)
+        self._end(goal, known, has_succeeded=failure is None)
+
+    def _end(self, goal: str, known: _Goal, *, has_succeeded: bool) -> None:
+        _publish_state(goal, known, "IDLE")
+        known.server.finish(goal, has_succeeded, known.result)
 
     def _plan(self, goal: str) -> None:
         """Plan a goal, and follow the plan unless it is requested alone."""
         known, requests = self._goals[goal], self._requests
+        _publish_state(goal, known, "PLANNING")
         options, cell = known.content.planning_options, requests.here.cell
         try:
             diff = [*changes_of_scene(cell, options.planning_scene_diff)]
@@ -138,8 +143,7 @@ class Motions:
                 fields = {"error_code": code, "planning_time": seconds, **planned_fields}
             known.result = message(f"{kind}_Result", **fields)
             if planned is None or options.plan_only:
-                self._goals.pop(goal)
-                known.server.finish(goal, planned is not None, known.result)
+                self._end(goal, self._goals.pop(goal), has_succeeded=planned is not None)
                 return
             trajectory = planned_fields["planned_trajectory"]
             if kind == MOVE:
@@ -165,6 +169,7 @@ class Motions:
             self._finish(goal, failure)
             return
         self._goals[goal].is_followed = True
+        _publish_state(goal, self._goals[goal], "MONITOR")
         content = trajectory_content(joints)
         parts = {name: f"{goal}:{place}" if place else goal for place, name in enumerate(names)}
         self._parts |= dict.fromkeys(parts.values(), goal)
@@ -214,3 +219,8 @@ def _share(content: Content, joints: Sequence[str]) -> Content:
         for point in content["points"]
     ]
     return {**content, "joint_names": list(joints), "points": points}
+
+
+def _publish_state(goal: str, known: _Goal, word: str) -> None:
+    """Send a goal's feedback, in MoveIt's words."""
+    known.server.feedback(goal, message(f"{known.server.kind}_Feedback", state=word))
