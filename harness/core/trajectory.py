@@ -1,4 +1,4 @@
-"""Joint paths without time, and joint trajectories with time."""
+"""Joint trajectories."""
 
 from __future__ import annotations
 
@@ -13,23 +13,6 @@ from harness.core.types import FloatArray
 def path_length(waypoints: FloatArray) -> float:
     """Sum of the L2 norms of the segments between waypoints, shape (N, dof) [rad]."""
     return float(np.linalg.norm(np.diff(waypoints, axis=0), axis=1).sum())
-
-
-@dataclass(frozen=True, eq=False)
-class JointPath:
-    """Waypoints joined by straight joint-space segments, without time.
-
-    Attributes:
-        joint_names: The planning group's joints, in order.
-        waypoints: The joint positions, shape (N, dof), rad or m.
-    """
-
-    joint_names: tuple[str, ...]
-    waypoints: FloatArray
-
-    def length(self) -> float:
-        """Sum of the segments' joint-space L2 norms [rad]."""
-        return path_length(self.waypoints)
 
 
 @dataclass(frozen=True, eq=False)

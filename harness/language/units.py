@@ -161,26 +161,6 @@ def _unknown_unit(text: str, number: str, unit: str, units: tuple[str, ...]) -> 
     return MistakeError(message, f"{start}units: {written(units)}")
 
 
-def conversion_factor(unit: str, target: str) -> float | None:
-    """The factor from one unit to another; None where they measure different things.
-
-    Args:
-        unit: A unit, or empty text for the SI unit of what `target` measures.
-        target: A unit, or empty text for the SI unit of what `unit` measures.
-    """
-    if unit == target:
-        return 1.0
-    for si_unit in MEANINGS:
-        try:
-            factors = [
-                1.0 if not each else in_si(f"1 {each}", (si_unit,)) for each in (unit, target)
-            ]
-        except MistakeError:
-            continue
-        return factors[0] / factors[1]
-    return None
-
-
 def _measures(unit: str, units: tuple[str, ...]) -> bool:
     """Whether a unit has the dimension of one of the SI units."""
     given = _parsed(unit)

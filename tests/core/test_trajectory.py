@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from harness.core.trajectory import JointPath, JointTrajectory
+from harness.core.trajectory import JointTrajectory
+from harness.plugins.iktest.strategies.paths import JointPath
 
 
 def test_a_paths_length_is_the_sum_of_its_segments():

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from harness.core.registry import OWN_PACKAGE, registry
-from harness.ports.motion_planning import DEFAULT_PIPELINE, PlanningOptions
+from harness.ports.motion_planning import DEFAULT_PIPELINE
 from harness.ports.path_planning import PathPlanner
 
 
@@ -40,20 +39,6 @@ def planner_names() -> tuple[str, ...]:
         for each in planner.planner_ids or ("",)
     ]
     return (*find_pipeline(DEFAULT_PIPELINE).planner_ids, *others)
-
-
-def with_planner(options: PlanningOptions, name: str) -> PlanningOptions:
-    """Options with another planner: a planner of `ompl`, `PIPELINE`, or `PIPELINE/PLANNER`.
-
-    Raises:
-        ValueError: There is no such planner; says which there are.
-    """
-    first, _, rest = name.partition("/")
-    is_pipeline = first in registry(PathPlanner.plugin_kind)
-    pipeline, planner = (first, rest) if is_pipeline else (DEFAULT_PIPELINE, name)
-    parameters = options.parameters if pipeline == options.pipeline else {}
-    planner_id = check_planner(pipeline, planner, {})
-    return replace(options, pipeline=pipeline, planner_id=planner_id, parameters=parameters)
 
 
 def is_built_in(pipeline: str) -> bool:

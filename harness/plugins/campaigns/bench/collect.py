@@ -11,7 +11,7 @@ from harness.cell.program import ProgramStep, step_seed
 from harness.core.activity import Activity, unobserved
 from harness.core.errors import HarnessError
 from harness.planning.collision.scene import CoalScene
-from harness.planning.search.find_pipeline import with_planner
+from harness.plugins.campaigns.bench.planner_choice import with_planner
 from harness.plugins.campaigns.bench.trial import Trial, try_plan
 from harness.ports.motion_planning import MotionPlan, MotionRequest
 from harness.ports.motions import FreeMotion

@@ -36,7 +36,8 @@ class BenchCommand(Command):
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Plan every free motion with every planner and seed; print, plot, and keep the numbers."""
-        from harness.planning.search.find_pipeline import planner_names, with_planner
+        from harness.planning.search.find_pipeline import planner_names
+        from harness.plugins.campaigns.bench.planner_choice import with_planner
         from harness.ports.motion_planning import PlanningOptions
 
         planners = arguments.planners or list(planner_names())

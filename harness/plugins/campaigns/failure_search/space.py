@@ -12,7 +12,7 @@ from typing import Any
 from harness.core.quantity import split_quantity
 from harness.language.reading.load import load_scenario
 from harness.language.reading.overrides import value_at
-from harness.language.units import conversion_factor
+from harness.plugins.campaigns.conversion import conversion_factor
 from harness.suite.distribution import Choice, Distribution, Uniform
 from harness.suite.variation import Variation
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from harness.core.quantity import split_quantity
 from harness.core.suggestion import did_you_mean
-from harness.language.units import conversion_factor
+from harness.plugins.campaigns.conversion import conversion_factor
 from harness.suite.discovery import UsageError
 
 CONDITION = re.compile(r"\s*(.+?)\s*(<=|>=|!=|<|>|=)\s*(.+?)\s*")

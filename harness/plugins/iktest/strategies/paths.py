@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from harness.core.spatial import SE3
-from harness.core.trajectory import JointPath
+from harness.core.trajectory import path_length
 from harness.core.types import FloatArray
 from harness.plugins.iktest.chain import Chain
 from harness.plugins.iktest.strategies.positions import Positions, joint_positions
@@ -30,6 +30,23 @@ MARGIN = 0.02  # share of the ranges that lines keep from the limits
 LARGEST_STEP = 0.1  # [rad or m] of a joint from point to point
 CONVERGED = 1e-7  # largest task error of a point on a line, lengths as shares of the reach
 LEAST_MANIPULABILITY = 0.02  # where lines end before a singularity
+
+
+@dataclass(frozen=True, eq=False)
+class JointPath:
+    """Waypoints joined by straight joint-space segments, without time.
+
+    Attributes:
+        joint_names: The planning group's joints, in order.
+        waypoints: The joint positions, shape (N, dof), rad or m.
+    """
+
+    joint_names: tuple[str, ...]
+    waypoints: FloatArray
+
+    def length(self) -> float:
+        """Sum of the segments' joint-space L2 norms [rad]."""
+        return path_length(self.waypoints)
 
 
 @dataclass(frozen=True, eq=False)
