@@ -18,7 +18,6 @@ from harness.cell.grasp_choice import (
     ChosenApproach,
     GraspSearch,
     choose_approach,
-    with_arm,
 )
 from harness.cell.grasping import (
     check_opening,
@@ -32,48 +31,38 @@ from harness.cell.grasping import (
 )
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
-from harness.core.details import Detail, Details
+from harness.core.details import Detail
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.language.base import Angle, Flag, Name, PositiveLength, SpecModel
+from harness.language.base import Angle, Flag, Name
 from harness.language.poses import Direction, Pose, Position
 from harness.language.step import Step
-from harness.ports.goals import PoseGoal
-from harness.recording.explanation import ApproachFailure, Explanation, NearestState
+from harness.recording.explanation import ApproachFailure
+from harness.steps._approach import (
+    Travel,
+    approach_steps,
+    as_reached,
+    check_travel,
+    millimetres,
+    nearest_state,
+    relative_step,
+    start_advice,
+    travel_lengths,
+    turning_axis,
+    with_advice,
+    world_pose_spec,
+)
 from harness.steps._tracker import check_track, tracker
 from harness.steps.grasp import Grasp, GripperAction, HoldingEffort, check_graspable
 from harness.steps.gripper import Gripper
-from harness.steps.lin import Lin
 from harness.steps.move_relative import MoveRelative
-from harness.steps.move_to import MoveTo
 
-DEFAULT_TRAVEL = 0.1  # [m]
-SHORTEST_TRAVEL = 0.03  # [m]
-TRAVELS = 3  # lengths of an approach that are tried where the file leaves a choice
 PITCHES = [math.radians(degrees) for degrees in (0, 15, 30, 45, 60, 75, 90)]
 """Of the gripper of an arm of fewer than six joints, in the order in which they are tried."""
-MAX_TURN = math.radians(15)  # [rad], off the direction to an object, for an arm of few joints
 
 
 STRAIGHT = 89.5  # [degrees], with the horizontal, from which an approach is straight down, or up
-
-
-class Travel(SpecModel):
-    """A straight move of a pick or place."""
-
-    direction: Direction | None = Field(
-        default=None, description="The direction of the move; the default depends on the step."
-    )
-    min_distance: PositiveLength | None = Field(
-        default=None, description="The move has at least this length, or the step fails [m]."
-    )
-    max_distance: PositiveLength | None = Field(
-        default=None, description="The move has at most this length [m]."
-    )
-    distance: PositiveLength | None = Field(
-        default=None, description="The move has exactly this length [m]."
-    )
 
 
 APPROACH_IN_MOTION = Travel(min_distance=0.03, max_distance=0.05)  # shorter: the object moves on
@@ -198,32 +187,13 @@ class Pick(Step):
     def parts(self, cell: Cell) -> Generator[ProgramStep]:
         lift = self._lift()
         open_hand = Gripper(position=cell.gripper.open_position, max_effort=cell.gripper.max_effort)
+        words = f"move_to before {self.object}", "approach", f"lin to {self.object}"
         with cell.unpadded_gripper(self.object):
-            opening, approach = (
-                cell.child("open", open_hand, "gripper open"),
-                _approach(self, lift, cell),
-            )
-            yield opening
-            yield from approach
+            opening = cell.child("open", open_hand, "gripper open")
+            approach = approach_steps(chosen_approach(self, lift, cell), self.group, words, cell)
+            yield from (opening, *approach)
             yield cell.child("grasp", self._grasp(), f"grasp {self.object}")
             yield cell.child("lift", lift, f"move_relative lift {self.object}")
-
-
-def check_travel(travel: Travel | None, at: At, key: str) -> None:
-    """Report a travel's frame that does not exist."""
-    if travel is not None and travel.direction is not None:
-        at.scope.check_frame(travel.direction.frame, at.key(key, "direction", "frame"))
-
-
-def _approach(step: Pick, lift: MoveRelative, cell: Cell) -> list[ProgramStep]:
-    """The free motion to where the approach begins, and the straight one to the grasp."""
-    chosen = chosen_approach(step, lift, cell)
-    reach = MoveTo(**chosen.reach_keys, group=step.group)
-    lin = Lin(**chosen.approach.at.keys, group=step.group)
-    return [
-        cell.child("reach", reach, f"move_to before {step.object}"),
-        cell.child("approach", lin, f"lin to {step.object}"),
-    ]
 
 
 def chosen_approach(step: Pick, lift: MoveRelative, cell: Cell) -> ChosenApproach:
@@ -276,10 +246,8 @@ def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) ->
         return ""  # the planner's advice is about the start
     if failure.code == "GOAL_IN_COLLISION":
         return _collision_advice(step, failure, grasps, cell)
-    if fails_at_start_of_approach(failure):
-        return "the grasp can be reached, the start of its approach cannot: " + (
-            "give `approach` a shorter `distance`, or another `direction`"
-        )
+    if advice := start_advice(failure, "the grasp"):
+        return advice
     if failure.code == "GOAL_CONSTRAINTS_VIOLATED":
         joints = len(cell.description.groups[group_of(cell, step.group)].joint_names)
         return (
@@ -341,23 +309,6 @@ def _moves_with_object(step: Pick) -> bool:
     return step.grasp_pose is None or step.grasp_pose.frame == step.object
 
 
-def millimetres(metres: float) -> str:
-    """`58.1 mm`."""
-    return f"{1000 * metres:.1f} mm"
-
-
-def with_advice(failure: PlanningFailed, advice: str, more: str = "") -> PlanningFailed:
-    """The failure with advice that can be followed in the step that it is reported for.
-
-    Args:
-        failure: The failure of the planner.
-        advice: What to do; empty where nothing is known.
-        more: What is added to the message.
-    """
-    added = Details.of(Explanation(advice=advice) if advice else None)
-    return PlanningFailed(failure.code, failure.message + more, *failure.details, *added)
-
-
 def approach_words(failure: PlanningFailed) -> str:
     """`, approached 30° below the horizontal`; empty for a failure without an approach."""
     approach = failure.details.find(ApproachFailure)
@@ -369,18 +320,6 @@ def approach_words(failure: PlanningFailed) -> str:
     if abs(down) < 90 - STRAIGHT:
         return ", approached horizontally"
     return f", approached {abs(down):.0f}° {'below' if down > 0 else 'above'} the horizontal"
-
-
-def nearest_state(failure: PlanningFailed) -> NearestState | None:
-    """The state that the planner explains a failure by."""
-    explained = (part.nearest for part in failure.details if isinstance(part, Explanation))
-    return next((nearest for nearest in explained if nearest is not None), None)
-
-
-def fails_at_start_of_approach(failure: PlanningFailed) -> bool:
-    """Whether the end of the straight approach can be reached and its start cannot."""
-    approach = failure.details.find(ApproachFailure)
-    return approach is not None and approach.is_start_of_approach
 
 
 def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
@@ -415,18 +354,6 @@ def grasp_goals(step: Pick, cell: Cell) -> list[TcpGoal]:
     ]
 
 
-def as_reached(goal: TcpGoal, group: str, cell: Cell) -> TcpGoal:
-    """A pose goal with the heading that an arm of few joints has there; other goals as they are."""
-    if not isinstance(goal.target, Pose) or task_space_of(cell.description, group).holds_pose:
-        return goal
-    link, pose = cell.description.tcp_link, goal.target.se3()
-    start, near = cell.planning_start(), PoseGoal(link, pose, orientation_tolerance=MAX_TURN)
-    for positions in cell.kinematics.solve(group, near, start, cell.current.options.seed, enough=1):
-        reached = cell.kinematics.link_pose(with_arm(positions, start, group, cell), link)
-        return TcpGoal(world_pose_spec(SE3(reached.rotation, pose.translation)))
-    return goal
-
-
 def back_off(target: TcpGoal, distance: float, step: Pick, axis: FloatArray, cell: Cell) -> TcpGoal:
     """The goal moved back against the approach direction [m]; `axis` is the gripper's, (3,)."""
     along = None
@@ -445,41 +372,3 @@ def back_off(target: TcpGoal, distance: float, step: Pick, axis: FloatArray, cel
         along = np.array([level * math.cos(heading), level * math.sin(heading), -math.sin(pitch)])
     x, y, z = (float(value) for value in point - distance * along)
     return TcpGoal(Position(xyz=(x, y, z)), pitch)
-
-
-def turning_axis(cell: Cell, group: str | None) -> FloatArray:
-    """A point on the axis about which the arm turns to a heading: its first joint's, shape (3,)."""
-    first = cell.description.groups[group_of(cell, group)].joint_names[0]
-    return cell.frame(cell.description.joint_by_name[first].child).translation
-
-
-def travel_lengths(travel: Travel | None) -> list[float]:
-    """Lengths of an approach to try, longest first [m]: the stated one, or several of a range."""
-    if travel is not None and travel.distance is not None:
-        return [travel.distance]
-    most = (travel and travel.max_distance) or DEFAULT_TRAVEL
-    least = (travel and travel.min_distance) or min(SHORTEST_TRAVEL, most)
-    most = max(most, least)
-    return [float(length) for length in np.linspace(most, least, TRAVELS)]
-
-
-def relative_step(travel: Travel | None, default: Direction, group: str | None) -> MoveRelative:
-    """The straight move of a travel."""
-    if travel is None:
-        return MoveRelative(direction=default, distance=DEFAULT_TRAVEL, group=group)
-    direction = travel.direction or default
-    if travel.distance is not None or (travel.min_distance, travel.max_distance) == (None, None):
-        return MoveRelative(
-            direction=direction, distance=travel.distance or DEFAULT_TRAVEL, group=group
-        )
-    most = travel.max_distance or travel.min_distance
-    return MoveRelative(
-        direction=direction, min_distance=travel.min_distance, max_distance=most, group=group
-    )
-
-
-def world_pose_spec(pose: SE3) -> Pose:
-    """A pose in the world as a file would write it."""
-    x, y, z = (float(value) for value in pose.translation)
-    qw, qx, qy, qz = (float(value) for value in pose.quat_wxyz)
-    return Pose(xyz=(x, y, z), quat_wxyz=(qw, qx, qy, qz))

@@ -33,23 +33,22 @@ from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.recording.explanation import Explanation
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
-from harness.steps._tracker import check_track, tracker
-from harness.steps.lin import Lin
-from harness.steps.move_to import MoveTo
-from harness.steps.pick import (
+from harness.steps._approach import (
     MAX_TURN,
     Travel,
+    approach_steps,
     as_reached,
     check_travel,
-    fails_at_start_of_approach,
     millimetres,
     nearest_state,
     relative_step,
+    start_advice,
     travel_lengths,
     turning_axis,
     with_advice,
     world_pose_spec,
 )
+from harness.steps._tracker import check_track, tracker
 from harness.steps.release import Release, refuse_other_holder
 
 REFINEMENTS = 4
@@ -235,12 +234,9 @@ def _lowering(name: str, step: Place, cell: Cell) -> list[ProgramStep]:
     if least is not None and least.distance < -DEEPEST_OPENING:
         raise _no_room(name, least)
     cell.report(TurnChoice(len(targets), chosen.approach.number + 1))
-    reach = MoveTo(**chosen.reach_keys, group=step.group)
-    lower = Lin(**chosen.approach.at.keys, group=step.group)
-    return [
-        cell.child("reach", reach, f"move_to above the place of {name}"),
-        _touching(cell.child("lower", lower, f"lin {name}")),
-    ]
+    words = f"move_to above the place of {name}", "lower", f"lin {name}"
+    reach, lower = approach_steps(chosen, step.group, words, cell)
+    return [reach, replace(lower, options=replace(lower.options, padding=0.0))]
 
 
 def _targets(name: str, step: Place, cell: Cell) -> list[SE3]:
@@ -282,11 +278,8 @@ def place_advice(name: str, stated: SE3, failure: PlanningFailed, cell: Cell) ->
     """What to do in the keys of a place, at `stated`."""
     if failure.code.startswith("START_STATE"):
         return ""  # the planner's advice is about the start
-    if fails_at_start_of_approach(failure):
-        return (
-            "the place can be reached, the start of the approach cannot: give `approach` a shorter"
-            " `distance`, or another `direction`"
-        )
+    if advice := start_advice(failure, "the place"):
+        return advice
     nearest = nearest_state(failure)
     if failure.code == "GOAL_IN_COLLISION":
         if nearest is None or nearest.nearest_free is None:
@@ -335,11 +328,6 @@ def _equal_poses(name: str, stated: SE3, step: Place, cell: Cell) -> list[SE3]:
         SE3(rotations_about(UP, 2 * math.pi * turn / count) @ stated.rotation, stated.translation)
         for turn in turns
     ]
-
-
-def _touching(step: ProgramStep) -> ProgramStep:
-    """The step without padding: what is put down comes as near to its support as it will stand."""
-    return replace(step, options=replace(step.options, padding=0.0))
 
 
 def _retreat_direction(cell: Cell) -> Direction:
