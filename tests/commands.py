@@ -2,13 +2,18 @@
 
 import atexit
 import os
+import signal
+import socket
 import subprocess
 import sys
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from harness.suite import warm
 from harness.suite.cases import read_ahead
+from harness.suite.environment import server_environment
+from harness.suite.server import Server, send
 from harness.suite.warm import REPORT_MODULES, RUN_MODULES, Ended, WarmServer
 
 ROBOTS = frozenset({"open_manipulator_x"})
@@ -43,9 +48,56 @@ def harness(*words, cwd, **environment) -> subprocess.CompletedProcess[str]:
     return subprocess.CompletedProcess(words, end.code or 0, *text)
 
 
+class _Process:
+    """The process of a fork server, as far as `WarmServer` uses the one that it starts."""
+
+    def __init__(self, pid):
+        self.pid = pid
+
+    def wait(self, _timeout=None):
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
+    def kill(self):
+        os.kill(self.pid, signal.SIGKILL)
+
+
+class _ForkedServer(WarmServer):
+    """The server of a command: forked from this process, which has its modules, not started."""
+
+    def open(self):
+        if self._process is not None:
+            return
+        self._control, theirs = socket.socketpair()
+        if pid := os.fork():
+            theirs.close()
+            self._process = _Process(pid)
+            return
+        try:
+            self._control.close()
+            _serve(theirs)
+        finally:
+            os._exit(1)
+
+
+def _serve(control):
+    os.setsid()
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in range(3):
+        os.dup2(nothing, number)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    environment = server_environment()
+    os.environ.clear()
+    os.environ.update(environment)
+    send(control, ("ready",))
+    Server(control).serve()
+
+
 def _command(words, cwd, environment, out, err, _notify):
     from harness.cli.main import entry
 
+    warm.WarmServer = _ForkedServer
     for file, number in ((out, 1), (err, 2)):
         with file.open("wb") as stream:
             os.dup2(stream.fileno(), number)

@@ -59,6 +59,7 @@ def test_a_crash_is_an_error_that_names_the_file(folder, name):
     assert f"a native library crashed ({name}); it read '{folder / 'thing.stl'}' last" in said
 
 
+@pytest.mark.nightly(but=["15"])
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_to_the_command_ends_both_processes(folder, number):
     process = command(folder, WAIT, "check", "a.scenario.yaml")

@@ -113,7 +113,7 @@ def outputs(page):
             yield tuple(shlex.split(command)[2:]), printed
 
 
-@pytest.mark.nightly(but=["docs/reference/commands.md", "docs/guides/reports.md"])
+@pytest.mark.nightly(but=["docs/reference/commands.md"])
 @pytest.mark.parametrize("page", GUIDES, ids=page_id)
 def test_the_commands_of_a_guide_run(page, tmp_path, recorded_run):
     files_of(page, tmp_path, recorded_run)

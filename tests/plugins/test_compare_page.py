@@ -88,6 +88,7 @@ def test_both_robots_are_drawn_over_and_next_to_each_other(page):
     assert abs(picture(page) - both).max() == 0
 
 
+@pytest.mark.nightly
 def test_aligned_steps_begin_at_the_same_place_of_the_clock(page):
     places = """[0, 1].map(row => [...document.querySelectorAll('.band')]
       .filter(band => band.style.getPropertyValue('--row') === String(row))
@@ -103,6 +104,7 @@ def test_aligned_steps_begin_at_the_same_place_of_the_clock(page):
     assert page.evaluate(places) == apart
 
 
+@pytest.mark.nightly
 def test_plots_show_both_runs(page):
     assert page.locator(".legend button").count() == 4, "one entry for both lines of a joint"
     canvas = page.locator(".plot canvas").first

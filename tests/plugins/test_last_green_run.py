@@ -29,7 +29,7 @@ def elsewhere(tmp_path, monkeypatch):
 
 
 def run(*options):
-    return main(["run", str(FILE), "--in-process", *options])
+    return main(["run", str(FILE), "--in-process", "--no-page", *options])
 
 
 def pages():

@@ -283,7 +283,7 @@ def test_junit_of_samples_has_the_smallest_margin_and_every_seed_and_digest(pyte
     assert results["rates"][0]["rate"]["passed"] == 3
 
 
-@pytest.mark.nightly(but=["xdist"])
+@pytest.mark.nightly(but=["alone"])
 @pytest.mark.parametrize("options", [[], ["-n2"]], ids=["alone", "xdist"])
 def test_a_session_leaves_the_files_of_a_suite_in_file_order(pytester, write, options):
     write(a_fails=FAILS, b_holds=HOLDS, c_invalid=INVALID)

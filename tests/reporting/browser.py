@@ -51,8 +51,11 @@ def browser():
 
 
 def new_context(browser, **options):
-    """A context whose pages wait as long as nothing but a hang takes."""
-    context = browser.new_context(**options)
+    """A context whose pages wait as long as nothing but a hang takes.
+
+    Pages are drawn with a quarter of their pixels, unless a test states `device_scale_factor`.
+    """
+    context = browser.new_context(**{"device_scale_factor": 0.5} | options)
     context.set_default_timeout(1000 * HANG)
     return context
 

@@ -61,24 +61,25 @@ def page_of(name, folder):
     return file
 
 
+@pytest.mark.nightly(but=["attack-1100", "long-390"])
+@pytest.mark.parametrize("width", [390, 1100])
 @pytest.mark.parametrize("name", NAMES.values(), ids=NAMES)
-def test_no_name_becomes_markup_or_breaks_the_page(visit, tmp_path, name):
+def test_no_name_becomes_markup_or_breaks_the_page(visit, tmp_path, name, width):
     file = page_of(name, tmp_path)
     assert file.read_text(encoding="utf-8").count("<script") == 3, "only the page's own"
-    for width in (390, 1100):
-        opened = visit(file, width=width)
-        page = opened.page
-        for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
-            page.click(f"#tab-{tab}")
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, tab
-        page.click(".step >> nth=0")
-        page.click("#tab-expect")
-        page.click(".verdict >> nth=0")
-        assert opened.time() == pytest.approx(0.5, abs=2e-3)
-        assert page.title() != "taken"
-        assert page.locator("#app img, #app script, #app svg, #app style").count() == 0
-        shown = page.locator(".step b").first.text_content()
-        assert shown == name.replace("\udcff", "?")
+    opened = visit(file, width=width)
+    page = opened.page
+    for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
+        page.click(f"#tab-{tab}")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width, tab
+    page.click(".step >> nth=0")
+    page.click("#tab-expect")
+    page.click(".verdict >> nth=0")
+    assert opened.time() == pytest.approx(0.5, abs=2e-3)
+    assert page.title() != "taken"
+    assert page.locator("#app img, #app script, #app svg, #app style").count() == 0
+    shown = page.locator(".step b").first.text_content()
+    assert shown == name.replace("\udcff", "?")
 
 
 def test_an_attack_is_harmless_without_scripts_too(visit, tmp_path):

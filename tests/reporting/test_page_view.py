@@ -67,6 +67,7 @@ def test_the_first_view_is_filled_by_the_arm(page):
     assert page.evaluate(FILLED) > 0.5
 
 
+@pytest.mark.nightly
 def test_sides_show_the_arm_from_elsewhere(page):
     seen = []
     for side in ("iso", "front", "side", "top", "follow TCP"):
@@ -142,6 +143,7 @@ def test_collision_shapes_and_the_commanded_robot_can_be_shown(page):
     page.click("#tools summary")
 
 
+@pytest.mark.nightly
 def test_steps_that_passed_are_folded_and_open_on_a_click(page):
     shown = page.locator("#steps li:visible")
     assert shown.count() == 2
@@ -195,6 +197,7 @@ def test_the_address_follows_the_clock(page):
     assert "step=" in page.url, "the selection stays"
 
 
+@pytest.mark.nightly
 def test_plots_and_pictures_are_saved_as_files(page, tmp_path):
     for selector, head in (
         (".plot button:text-is('SVG') >> nth=0", b"<svg"),
@@ -212,6 +215,7 @@ def test_plots_and_pictures_are_saved_as_files(page, tmp_path):
             assert "t [s]" in text
 
 
+@pytest.mark.nightly
 def test_values_are_shown_under_the_pointer(page):
     canvas = page.locator(".plot canvas").first
     page.mouse.move(2, 2)

@@ -214,7 +214,7 @@ steps: [{wait: 0.01}]
 """
 
 
-@pytest.mark.nightly(but=["a package", "a model"])
+@pytest.mark.nightly(but=["a package"])
 @pytest.mark.parametrize(
     ("scenario", "appears", "text"),
     [

@@ -52,7 +52,7 @@ def sampled(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sampled")
     path = folder / "varied.scenario.yaml"
     path.write_text(VARIED)
-    said = harness("run", path, "-j", 2, cwd=folder).stdout
+    said = harness("run", path, "-j", 2, "--no-page", cwd=folder).stdout
     return folder, path, said, json.loads((folder / "reports/results.json").read_text())
 
 

@@ -54,7 +54,7 @@ def test_it_passes_and_its_record_is_judged_alike_where_nothing_can_draw(case):
     assert [{**verdict, "line": 0} for verdict in json.loads(done.stdout)] == expected
 
 
-@pytest.mark.nightly(but=["markers"])
+@pytest.mark.nightly
 def test_the_report_names_who_drew_each_picture(case):
     _, folder, _ = case
     document = json.loads((folder / "run.json").read_text())

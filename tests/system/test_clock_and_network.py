@@ -47,6 +47,7 @@ def command(folder, site, *words):
     )  # fmt: skip
 
 
+@pytest.mark.nightly(but=["clock"])
 @pytest.mark.parametrize("site", SITE.values(), ids=SITE)
 def test_a_run_has_the_digest_that_it_always_has(site, tmp_path):
     file = tmp_path / "a.scenario.yaml"

@@ -100,7 +100,7 @@ def test_the_page_of_a_long_recording_opens(seconds, tmp_path, visit):
     assert not seen.complaints
 
 
-@pytest.mark.nightly(but=["3"])
+@pytest.mark.nightly
 @pytest.mark.parametrize("parts", [3, 100])
 def test_many_shards_are_merged(parts, tmp_path):
     count = 100 * parts

@@ -63,6 +63,7 @@ def pressed_on(run, row, name="block"):
 START = "  - move_to: {joints: {x: 0.1, y: 0, z: 0}}"
 
 
+@pytest.mark.nightly(but=["2000"])
 @pytest.mark.parametrize("stiffness", [200, 2000])
 def test_a_spring_presses_with_its_stiffness_times_the_distance(tmp_path, stiffness):
     result = run_of(tmp_path, START + ONTO % f"{stiffness} N/m")
@@ -105,6 +106,7 @@ def test_a_free_motion_follows_its_path(tmp_path):
     assert np.array(yielded.largest_deviation[:3]) == pytest.approx(lag.max(axis=0), abs=1e-4)
 
 
+@pytest.mark.nightly(but=["x: 1000, z: 3000"])
 @pytest.mark.parametrize("axes", ["x: 1000", "x: 1000, z: 3000"])
 def test_the_axes_of_an_object_are_those_in_which_springs_act(tmp_path, axes):
     """A wall that is turned by 30 degrees: the spring along its normal alone gives way."""

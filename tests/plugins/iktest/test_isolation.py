@@ -45,6 +45,7 @@ def test_a_function_that_hangs_is_stopped_and_the_rest_is_not_tried(tmp_path):
     assert not report.has_passed
 
 
+@pytest.mark.nightly(but=[1])
 @pytest.mark.parametrize("where", ["True", "z < 9"])
 def test_a_function_that_always_hangs_costs_a_few_calls(tmp_path, where):
     report = report_of(tmp_path, f"    while {where}: pass\n", patience=0.1)
@@ -53,6 +54,7 @@ def test_a_function_that_always_hangs_costs_a_few_calls(tmp_path, where):
     assert [each.note for each in report.properties[2:]] == ["not tried: it does not come back"] * 5
 
 
+@pytest.mark.nightly(but=[0])
 @pytest.mark.parametrize("end", ["os.abort()", "os._exit(0)", "os.kill(os.getpid(), 9)"])
 def test_a_function_that_always_ends_its_process_costs_a_few_calls(tmp_path, end):
     body = f"    with open({str(tmp_path / 'calls')!r}, 'a') as file:\n        file.write('1')\n"

@@ -210,6 +210,7 @@ def test_a_value_beyond_the_limit_is_refused(opened):
     opened.wait_text("#log", "joint1 goes from -180.0 to 180.0°, not to 600.0°")
 
 
+@pytest.mark.nightly
 def test_the_pick_of_the_guide_becomes_a_scenario_with_the_same_digest(picked):
     opened, served = picked
     shown = opened.page.get_attribute(".outcome", "data-digest")
@@ -303,6 +304,7 @@ REACHED = "reached.add(document.activeElement) && document.activeElement.tagName
 COLORS = "(({color, backgroundColor}) => [color, backgroundColor])(getComputedStyle(document.body))"
 
 
+@pytest.mark.nightly(but=["objects"])
 @pytest.mark.parametrize("tab", ["arm", "objects", "sensors"])
 def test_every_control_is_reached_with_the_tab_key_and_has_a_name(opened, tab):
     page = opened.page

@@ -191,6 +191,7 @@ def test_there_is_a_sky_above_a_floor(browser, serve, scheme):
 LATEST = "(async () => (await import('/studio/plots.js')).latest())()"
 
 
+@pytest.mark.nightly
 def test_plots_go_on_while_the_arm_moves(view):
     view.served.studio.session.at_once["play"]({"on": True})
     view.page.evaluate("document.getElementById('plots').classList.remove('folded')")
