@@ -7,7 +7,7 @@ import numpy as np
 
 from harness.core.printable import printable
 
-MOST_CHARACTERS = 130
+MOST_CHARACTERS = 130  # of a caption, which is one line
 RED, DARK = (50, 40, 200), (50, 45, 40)  # BGR
 FONT, SIZE, MARGIN = cv2.FONT_HERSHEY_SIMPLEX, 0.45, 10
 

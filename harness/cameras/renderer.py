@@ -17,7 +17,7 @@ from harness.cameras.ray_renderer import RayRenderer
 from harness.cameras.viewpoint import View, fit_viewpoint
 from harness.core.types import FloatArray
 
-MAX_GEOMS = 4000
+MAX_GEOMS = 4000  # of a picture; MuJoCo allocates them in advance
 
 
 def gl_contexts() -> tuple[tuple[str, Callable[[int, int], Any]], ...]:

@@ -19,7 +19,7 @@ from harness.core.world import WorldObject
 from harness.recording.run import Run
 from harness.robot.description import RobotDescription
 
-WIDTH, HEIGHT = 640, 480
+WIDTH, HEIGHT = 640, 480  # [pixels]
 SHADOW_SIZE = 1024  # [pixels]
 MOST_STEPS = 400  # that are drawn, at 20 to 100 ms each: the first and the last ones
 FARTHEST_IN_VIEW = 1.3  # [m]; objects farther from the base may be outside the view

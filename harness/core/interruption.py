@@ -6,7 +6,7 @@ import signal
 from types import FrameType
 
 IMPORT_SYSTEM = "<frozen importlib._bootstrap>"
-RETRY_SECONDS = 0.01
+RETRY_SECONDS = 0.01  # [s] until it is tried again, where a module is being imported
 
 _signals: list[int] = []
 

@@ -19,7 +19,7 @@ SYNONYMS = {
 }
 """Keys of this language, and what other programs call them; verbs and predicates state theirs."""
 
-LONGEST_LIST = 40
+LONGEST_LIST = 40  # words that a message lists
 SURELY_MISSPELT = 0.8  # similarity, from 0 to 1, above which a word is a slip of the pen
 
 

@@ -22,7 +22,7 @@ from harness.language.base import (
 if TYPE_CHECKING:
     from harness.core.spatial import SE3
 
-QUATERNION_NORM_TOLERANCE = 1e-2
+QUATERNION_NORM_TOLERANCE = 1e-2  # of the length of a written quaternion, whose digits are rounded
 
 
 def _in_frame(text: str, frame: str) -> str:

@@ -90,7 +90,7 @@ FACTOR = r"[A-Za-zµμ°_]++(?:\s*+(?:\*\*|\^)?+\s*+-?[1-4])?+"
 UNIT = re.compile(rf"{FACTOR}(?:\s*+[*/·]?+\s*+{FACTOR})*+")
 """A product of units; each has one power at most, because pint computes powers of powers."""
 
-LONGEST = 60
+LONGEST = 60  # characters of a number with its unit
 
 
 def quantity(*units: str) -> Callable[[Any], float]:

@@ -36,9 +36,9 @@ RESOLUTIONS = (FINAL_RESOLUTION, FINAL_RESOLUTION / 2, VERIFIED_RESOLUTION)
 CHECKS_PER_VALUE = 20
 """State checks that take as long as evaluating the constraints at one state does."""
 
-_LEAST_STEP = 0.01
-_SHORTCUTS = 10
-_SMOOTHINGS = 4
+_LEAST_STEP = 0.01  # [rad] shortest chord that is tried
+_SHORTCUTS = 10  # random chords that are tried in one pass
+_SMOOTHINGS = 4  # passes over all points
 
 WORTH = 0.01  # Share of the path that a shortcut must be able to save
 

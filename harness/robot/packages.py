@@ -19,13 +19,13 @@ SEARCH_VARIABLE = "HARNESS_PACKAGE_PATH"
 """Environment variable with additional folders to search, separated as in PATH."""
 
 MANIFEST = "package.xml"
-DEEPEST = 4
+DEEPEST = 4  # levels of folders in which packages are sought
 HIGHEST = 3
 """Levels above a robot's file at which a folder of a package's name is taken as the package."""
 MOST_FOLDERS = 5_000
 DESCRIPTIONS = ("urdf", "xacro", "robots")  # Usual folders of the descriptions in a package
 
-LARGEST_MANIFEST = 200_000
+LARGEST_MANIFEST = 200_000  # [bytes] of a package.xml that is read
 NAME = re.compile(rb"<name>\s*([\w.-]+)\s*</name>")
 SCHEMES = ("package://", "model://")
 

@@ -22,7 +22,7 @@ from harness.language.reading.paths import paths_from
 
 INCLUDE = "include"
 KEYS = ("description", PARAMS, "steps")
-DEEPEST = 10
+DEEPEST = 10  # levels of files that include each other
 PROJECT_MARKS = (".git", "pyproject.toml", "package.xml")  # what a project's folder has one of
 
 

@@ -20,7 +20,7 @@ from harness.planning.timing.profiles import resting
 from harness.planning.timing.toppra_passes import Bounds
 from harness.planning.timing.toppra_solver import fastest
 
-_TINY = 1e-9
+_TINY = 1e-9  # [rad, m per rad] stands for zero, so that nothing is divided by it
 
 
 @dataclass(frozen=True, eq=False)

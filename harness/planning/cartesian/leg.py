@@ -26,7 +26,7 @@ from harness.recording.motion_failures import BlendFailure
 
 JOINT_STEP = 0.03  # Between the samples of a joint motion [rad]
 BLEND_STEP = 0.002  # Between the poses that are solved in a transition [m], about
-_FEWEST = 8
+_FEWEST = 8  # samples of a part, however short: a spline needs some
 _SEARCHED = 400  # points of a leg looked at for where it enters a sphere
 _SAME = 1e-5  # [rad] a transition that ends farther from the next leg is on another branch
 

@@ -40,7 +40,7 @@ STRIDES = (1, 2, 4, 8)
 """How many poses are tried for one step, until a curve through them stays on the way."""
 
 OFF_BETWEEN = 3e-5  # How far the curve may leave it in the middle between two poses [m]
-_FEWEST_STEPS = 8
+_FEWEST_STEPS = 8  # of a path, however short: a spline needs some
 SOLVED = 1e-8  # Error of a solved state at most [m, rad]
 
 

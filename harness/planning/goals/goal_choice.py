@@ -30,7 +30,7 @@ ROOM = (0.005, 0.05)
 """Smallest tolerances of a goal region [m], [rad]; below them only the centre is solved."""
 
 WIDE = 0.2  # Angle tolerance from which all poses of a region are equivalent to its centre [rad]
-MOST_CANDIDATES = 16
+MOST_CANDIDATES = 16  # goals of one search: those of least effort
 
 PROJECTIONS = 64  # Number of random positions that are projected to a goal and to path constraints
 

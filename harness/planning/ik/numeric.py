@@ -26,7 +26,7 @@ Success rates of every bundled arm are in docs/reference/inverse_kinematics.md."
 
 _EXACT = 1e-13  # [m, rad] error at which Newton steps stop
 _CONVERGED = 1e-9  # [m, rad] error at which least squares stop
-_MOST_ITERATIONS = 100
+_MOST_ITERATIONS = 100  # steps of one search; most end long before, by `_CONVERGES`
 _HELD = 1e12  # damping with which a joint does not move
 _WINDOW = 4  # iterations over which progress is measured
 _CONVERGES, _CONVERGES_FAST = 0.8, 0.5

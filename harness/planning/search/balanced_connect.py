@@ -39,7 +39,7 @@ Extend = Callable[[FloatArray, FloatArray, float], Sequence[FloatArray]]
 """Returns states on the way from a state towards another one, at most a distance away [rad]: each
 is joined to the one before it, and the last one is the other one where that is reached."""
 
-_BLOCK = 256
+_BLOCK = 256  # samples that are computed at once
 
 PARAMETERS = ("range",)
 

@@ -30,7 +30,7 @@ LIMIT_MARGIN = 0.01
 """Distance of projected states from joint limits, so that a smooth curve through them keeps these
 [rad or m]."""
 
-_ITERATIONS = 20
+_ITERATIONS = 20  # Newton steps of a projection
 _ROUNDING = 1e-9  # [rad or m] of values at their bounds
 _DAMPING = 1e-12  # of steps at singular positions
 

@@ -18,7 +18,7 @@ from harness.reporting.sampled import missed, rate_text
 from harness.reporting.suite.cause import cause_of
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 
-MOST_ROWS = 100
+MOST_ROWS = 100  # of the table in a summary
 SIGNS = {"passed": "✅", "failed": "❌", "invalid": "⛔", "error": "💥"}
 
 

@@ -11,7 +11,7 @@ from harness.core.limits import RESULTS_DOCUMENT
 from harness.core.untrusted_json import parse_json
 from harness.reporting.suite.record import FORMAT
 
-MOST_RUNS = 30
+MOST_RUNS = 30  # earlier runs that count
 
 Key = tuple[str, str]  # file and name of a case
 History = Mapping[Key, Sequence[float | None]]

@@ -17,7 +17,7 @@ from harness.reporting.suite.section import sections
 from harness.reporting.terminal import OUTCOMES, failure_place
 
 FOLDER = Path(__file__).with_name("page")
-MOST_ROWS = 10_000
+MOST_ROWS = 10_000  # cases that the page lists
 MOST_PLAIN_ROWS = 200  # where scripts are blocked
 REPLAY_WIDTH = 480  # [pixels]
 

@@ -12,7 +12,7 @@ from harness.reporting.terminal import PLAIN, Style
 
 BINS = 4  # parts of equal size into which numbers are cut for a table
 
-MOST_ROWS = 12
+MOST_ROWS = 12  # of a table on a terminal
 
 
 def table_lines(columns: Columns, style: Style = PLAIN) -> Iterator[str]:

@@ -26,7 +26,7 @@ from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
 from harness.robot.xacro.file import xacro_parts
 
-MOST_LINKS = 500
+MOST_LINKS = 500  # pairs of links grow with its square
 SDF_HINT = "a robot is read from URDF, xacro or MJCF; SDF is read as a world, by `world`"
 OF_SRDF = ("group", "group_state", "end_effector", "virtual_joint", "disable_collisions")
 READ = {

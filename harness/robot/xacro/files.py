@@ -16,7 +16,7 @@ from harness.language.files.yaml_file import parse_ros_yaml, read_text
 from harness.robot.packages import PackagePath
 from harness.robot.xacro.values import Budget, ExpressionError, YamlDict
 
-DEEPEST_INCLUDE = 40
+DEEPEST_INCLUDE = 40  # levels of files that include each other
 STEPS_OF_VALUE = 5
 """Steps that a value of a YAML file counts as; reading it takes as long as so many."""
 

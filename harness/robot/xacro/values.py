@@ -11,7 +11,7 @@ from harness.core.limits import XACRO_STEPS
 LONGEST_TEXT = 100_000  # characters that an expression may make
 MOST_ITEMS = 10_000  # of a list that an expression makes
 MOST_BITS = 4096  # of an integer; the largest float has 1024
-CHARACTERS_PER_STEP = 10
+CHARACTERS_PER_STEP = 10  # of a text, that count as one step of an expression
 
 LARGEST_KEY = 2**61 - 1
 """Integers from here on may share their hash with others, which makes dictionaries slow."""
