@@ -379,6 +379,7 @@ def test_a_plan_ends_with_its_allowed_time_and_other_requests_are_answered_meanw
     assert replay(folder).digest == results[0].case.digest
 
 
+@pytest.mark.nightly
 def test_the_budget_of_the_scenario_is_the_most_that_a_request_may_use(tmp_path):
     own = "planning: {max_state_checks: 300}\nexpect: [{always: within_limits}]"
     with bridge(scenario(tmp_path, HOLD, own, robot=UR)) as (node, _):
