@@ -5,6 +5,7 @@ import inspect
 import re
 import subprocess
 import sys
+import zipfile
 from contextlib import closing
 from html.parser import HTMLParser
 from pathlib import Path
@@ -111,6 +112,25 @@ def test_every_page_of_the_documentation_is_on_the_site(site, pages):
     assert named <= {path.relative_to(site) for path in pages}
     listed = (site / "llms.txt").read_text(encoding="utf-8")
     assert all(f"({path.as_posix()})" in listed for path in named)
+    with zipfile.ZipFile(site / "armharness-site.zip") as archive:
+        kept = {Path(name) for name in archive.namelist()}
+    files = {path.relative_to(site) for path in site.rglob("*") if path.is_file()}
+    assert files - kept == {Path("armharness-site.zip")}
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_no_page_of_the_site_is_wider_than_a_phone(site, pages, browser, scheme):
+    size = {"width": 390, "height": 844}
+    with closing(new_context(browser, viewport=size, color_scheme=scheme)) as context:
+        context.set_offline(True)
+        opened, errors = context.new_page(), []
+        opened.on("pageerror", lambda error: errors.append(str(error)))
+        for path in sorted(pages.keys() - {site / "index.html"}):  # which leads to another page
+            opened.goto(path.as_uri())
+            wide = opened.evaluate("document.documentElement.scrollWidth - innerWidth")
+            assert wide <= 0, path.relative_to(site)
+        assert errors == []
 
 
 @pytest.mark.nightly

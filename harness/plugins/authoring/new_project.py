@@ -12,6 +12,7 @@ from pathlib import Path
 from harness.cli.files import refusing_unwritable
 from harness.core.extras import DISTRIBUTION
 from harness.core.resources import data_folder
+from harness.language.reading.load import load_scenario
 from harness.suite.discovery import UsageError
 
 TEMPLATES = Path(__file__).parent / "templates" / "project"
@@ -58,6 +59,21 @@ def write_project(folder: Path, write_scenario: Callable[[Path], None]) -> None:
             part.rename(folder)
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def files_outside(folder: Path) -> list[str]:
+    """The robot's files that are not in the project, as the first scenario names them."""
+    robot = load_scenario(folder / SCENARIO).scenario.robot
+    if robot is None:
+        return []
+    files = (robot.model, robot.urdf, robot.xacro, robot.mjcf, robot.srdf, robot.gripper)
+    named = [name for name in (*files, *robot.packages) if name]
+    places = [(folder / SCENARIO).parent / name for name in named]
+    return [
+        name
+        for name, place in zip(named, places, strict=True)
+        if place.exists() and not place.resolve().is_relative_to(folder.resolve())
+    ]
 
 
 def requirement_lines() -> str:

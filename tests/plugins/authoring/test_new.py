@@ -232,6 +232,22 @@ def test_a_project_of_a_robot_names_its_files_from_the_scenario(tmp_path, capsys
     assert main(["check", str(tmp_path / "work/cell")]) == 0
 
 
+@pytest.mark.nightly(but=[0])
+@pytest.mark.parametrize(
+    ("robot", "said"),
+    [
+        (["arm.urdf", "--srdf", "arm.srdf"], "../../arm.urdf, ../../arm.srdf are outside; "),
+        (["arm.urdf", "--package-path", "."], "../../arm.urdf, ../.. are outside; "),
+        (["open_manipulator_x"], ""),
+    ],
+)
+def test_a_project_names_the_robots_files_that_a_pipeline_would_lack(capsys, robot, said):
+    assert main(["new", "--project", "cell", "--robot", *robot]) == 0
+    printed = capsys.readouterr().out
+    assert said in printed
+    assert bool(said) == ("copy the robot into it" in printed)
+
+
 def test_the_requirements_name_the_repository_that_the_program_was_installed_from(monkeypatch):
     origin = {"url": "https://host/x.git", "vcs_info": {"vcs": "git", "commit_id": "ab12"}}
     monkeypatch.setattr(PathDistribution, "read_text", lambda _self, _name: json.dumps(origin))

@@ -12,7 +12,7 @@ from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
 from harness.core.registry import registry
 from harness.core.resources import data_folder
-from harness.plugins.authoring.new_project import SCHEMA, write_project
+from harness.plugins.authoring.new_project import SCENARIO, SCHEMA, files_outside, write_project
 from harness.suite.discovery import SUFFIX, UsageError
 
 TEMPLATE = Path(__file__).parents[1] / "templates" / "new.scenario.yaml"
@@ -74,6 +74,10 @@ def _new_project(arguments: argparse.Namespace) -> int:
     say(f"wrote {folder}: README.md describes its files")
     for line in lines:
         say_text(line)
+    outside = files_outside(folder)
+    if outside:
+        robot = f"a pipeline has this folder alone: copy the robot into it, and correct {SCENARIO}"
+        say_text(f"{', '.join(outside)} {'is' if len(outside) == 1 else 'are'} outside; {robot}")
     again = "harness run scenarios --baseline margins.json"
     say(f"run it:   cd {shlex.quote(str(folder))} && {again}")
     say(f"then keep its margins: {again} --update-baseline")
