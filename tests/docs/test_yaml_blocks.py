@@ -32,14 +32,32 @@ steps:
   - move_to: {pose: {xyz: [0.5, 0.1, 0.173], rpy: [180 deg, 0, 0]}}
   - tare: wrist
 """
+CABINET = """\
+robot: {model: ur5e, gripper: rh_p12_rn_a}
+seed: 2
+objects:
+  - name: cabinet
+    static: true
+    pose: {xyz: [0.85, 0.1, 0.35]}
+    box: {size: [30 cm, 40 cm, 40 cm]}
+    joints:
+      - name: door
+        hinge: {axis: [0, 0, -1], at: [-0.16, 0.2, 0], range: [0, 110 deg], friction: 0.1}
+        shapes:
+          - {box: {size: [2 cm, 40 cm, 38 cm]}, pose: {xyz: [-0.162, 0, 0]}}
+          - {name: handle, cylinder: {radius: 1 cm, length: 14 cm},
+             pose: {xyz: [-0.22, -0.16, 0.1]}}
+"""
 BEFORE = {
     "docs/guides/belts.md": [
         "robot: ur5e\nsteps: [{wait: 0.5}]\n",
         f"{UR3E}objects:\n{BELT % 0}",
         f"{UR3E}objects:\n{BELT % 0.1}expect: [{{lifted: {{object: can, above: 5 cm}}}}]\n",
+        f"{UR3E}objects:\n{BELT % 0.1}",
     ],
     "docs/guides/cells.md": [
         "robot: {model: ur5e, gripper: rh_p12_rn_a}\nseed: 2\n",
+        CABINET,
         UR3E
         + """\
 objects:
