@@ -308,6 +308,17 @@ def test_a_wheel_of_the_motor_next_to_the_fingers_is_not_part_of_the_arm(tmp_pat
     )
 
 
+@pytest.mark.parametrize("names", [("slider", "gripper_screw"), ("spindle", "finger_screw")])
+def test_a_screw_on_a_slider_next_to_the_fingers_is_not_part_of_the_arm(names, tmp_path):
+    """As of the PR2, whose model shows how the gripper's motor turns its screw."""
+    slider, screw = (FINGER.format(name=name, y=0, side=1, mimic="") for name in names)
+    screw = screw.replace("prismatic", "continuous").replace('link="palm"', f'link="{names[0]}"')
+    (tmp_path / "arm.urdf").write_text(SIX.replace("</robot>", slider + screw + "</robot>"))
+    arm = load_robot(RobotSpec(urdf="arm.urdf"), tmp_path)
+    assert arm.groups["arm"].joint_names[-1] == "tool_joint"
+    assert arm.gripper.joint == "left_joint"
+
+
 def test_a_wrist_that_ends_an_arm_is_no_jaw(tmp_path):
     write_arm(tmp_path)
     assert load_arm(tmp_path, srdf=None).groups["arm"].joint_names == ("turn", "bend", "reach")

@@ -107,15 +107,19 @@ def _without_fingers(chain: Sequence[Joint], urdf: Urdf) -> Sequence[Joint]:
     if len(movable) > LEAST_ARM:
         *others, last = (chain[number] for number in movable)
         is_finger = all(FINGER_NAMES.search(f"{each.name} {each.child}") for each in others)
-        if (not is_finger and _is_jaw(last, urdf)) or _is_next_to_fingers(last, inside, urdf):
+        if not is_finger and _is_jaw(last, urdf):
             end = movable[-1]
+        for number in movable[LEAST_ARM:][-MOST_FINGER_JOINTS:]:
+            if _is_next_to_fingers(chain[number], inside, urdf):
+                return chain[: min(number, end)]
     return chain[:end]
 
 
 def _is_next_to_fingers(joint: Joint, chain: set[str], urdf: Urdf) -> bool:
     """Whether a joint hangs on a rigid body on which fingers that follow each other hang too.
 
-    Such a joint is part of the hand, as the wheel that shows how the gripper's motor turns.
+    Such a joint and what it carries are parts of the hand, as the wheel that shows how the
+    gripper's motor turns, or a slider with its screw.
     """
     carrier = carriers(urdf.joints, urdf.root)
     joints = {each.name: each for each in urdf.joints}
