@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 from harness.core.geometry import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from harness.planning.collision.certificates import MotionArrays
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.collision.native import library
 from harness.planning.collision.rigid_shapes import RigidShapes
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.model.robot_model import GroupSpace
+from harness.ports.goals import JointGoal
+from harness.ports.motion_planning import MotionRequest, PlanningOptions
+from harness.ports.motions import FreeMotion
 from tests.planning.lesson import ARM, FIRST_BOXES, Cell, at, boxes, open_manipulator, thing, ur
 from tests.planning.problem import HOMES, description_of
 from tests.second_opinion.runs import SRDF, URDF
@@ -20,12 +23,14 @@ from tests.session.front_door import run
 
 @pytest.fixture
 def stages(monkeypatch):
-    """Switches the compiled check on and off."""
-    compiled = library.certify
-    assert compiled is not None, f"compile it: python {library.BUILD}"
+    """Switches the compiled check on and off: without it, all states are left to Coal."""
+    compiled = MotionArrays.certify
+
+    def nothing(_arrays, _check, _motion, low, high):
+        return -1, np.array([[low, high]])
 
     def choose(when):
-        monkeypatch.setattr(library, "certify", compiled if when == "always" else None)
+        monkeypatch.setattr(MotionArrays, "certify", compiled if when == "always" else nothing)
 
     return choose
 
@@ -164,6 +169,25 @@ def test_a_motion_that_ends_exactly_at_its_margin_is_judged_as_its_last_state(
     robot = "{urdf: gantry.urdf, srdf: gantry.srdf, start_state: {named_target: ready}}"
     result, _ = run(tmp_path, "- ptp: {joints: {slide: 0.0, lift: 0.072}}", robot=robot)
     assert result.outcome == "passed"
+
+
+@pytest.mark.nightly  # Coal checks each of the finest states: two minutes
+def test_plans_are_the_same_with_and_without_the_compiled_check(stages):
+    plans = []
+    for when in ("never", "always"):
+        stages(when)
+        cell = Cell(open_manipulator(), with_tables=False)
+        cell.state = cell.with_arm([-0.6, 0.6, -0.3, 0.4])
+        cell.add(thing("wall", at(0.3, 0.0, 1.1), Shape(Box((0.1, 0.02, 0.2)))))
+        goal = JointGoal(np.array([0.6, 0.6, -0.3, 0.4]))
+        plans.append(
+            cell.planner.plan(
+                MotionRequest("arm", cell.state, FreeMotion(goal), PlanningOptions(seed=3))
+            )
+        )
+    assert plans[0].statistics.parts[0].waypoints > 2
+    assert plans[0].statistics == plans[1].statistics
+    assert np.array_equal(plans[0].trajectory.positions, plans[1].trajectory.positions)
 
 
 @pytest.mark.nightly(but=["ur3e-arm", "open_manipulator_x-gripper"])

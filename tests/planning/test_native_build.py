@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from harness.core.errors import HarnessError
 from harness.planning.collision.native import build, library, sources
 
 NATIVE = sources.FOLDER
@@ -26,8 +27,10 @@ def compiled(folder: Path) -> Path:
     return Path(done.stdout.strip())
 
 
-def test_this_tree_has_the_compiled_check():
-    assert library.certify is not None
+def test_a_tree_that_was_never_compiled_names_the_command(copy, monkeypatch):
+    monkeypatch.setattr(sources, "FOLDER", copy)
+    with pytest.raises(HarnessError, match="run `python harness/planning/collision/native/build"):
+        library.certify.__wrapped__()
 
 
 @pytest.mark.nightly

@@ -18,7 +18,7 @@ from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.approximation import approximation_note
 from harness.planning.collision.certificates import MotionArrays, motion_arrays
-from harness.planning.collision.native import library
+from harness.planning.collision.native.library import certify
 from harness.planning.collision.sampled_motion import SampledMotion
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
@@ -47,8 +47,7 @@ class MotionChecker:
     A motion is free when all its states at the requested spacing are free. The compiled check does
     not look at most of them one by one: where every pair is farther apart than a stretch of the
     motion can bring it nearer, the whole stretch is free (conservative advancement). Coal decides
-    the states that are left, and all of them in a source tree without the compiled check. Results,
-    counts and plans do not depend on which of them decides.
+    the states that are left. Results, counts and plans do not depend on which of them decides.
 
     Attributes:
         checks: The number of states checked, as `SampledMotion.counted` has it.
@@ -152,9 +151,7 @@ class MotionChecker:
         The compiled check decides all states but those within `ROUNDING` of a margin and those in
         contact, which Coal checks.
         """
-        if library.certify is None:
-            return self._blocked_by_coal(motion, low, high)
-        blocked, undecided = self._arrays.certify(library.certify, motion, low, high)
+        blocked, undecided = self._arrays.certify(certify(), motion, low, high)
         if blocked >= 0:
             return blocked
         found = (self._blocked_by_coal(motion, *stretch) for stretch in undecided.tolist())

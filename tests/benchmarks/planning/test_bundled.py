@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from harness.planning.collision.checker import MotionChecker
-from harness.planning.collision.native import library
 from harness.planning.model.robot_model import GroupSpace
 from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
@@ -26,15 +25,10 @@ OPTIONS = PlanningOptions(seed=1, padding=0.002)
 FEW = GOALS // 4
 """This share may not be solved within the budget: the problems are random."""
 
-WHEN = ("never", "always")
-
 
 @pytest.mark.benchmark
-@pytest.mark.parametrize("when", WHEN)
 @pytest.mark.parametrize("model", list(HOMES))
-def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, print_row, monkeypatch):
-    if when == "never":
-        monkeypatch.setattr(library, "certify", None)
+def test_bundled_arms_plan_and_shorten_in_milliseconds(model, print_row):
     cell = Cell(description_of(model))
     cell.add(boxes(*FIRST_BOXES))
     ends = list(_free_positions(cell, np.array(HOMES[model])))
@@ -46,11 +40,11 @@ def test_bundled_arms_plan_and_shorten_in_milliseconds(model, when, print_row, m
     every = [seconds for part in spent.values() for seconds in part]
     heading = (
         "bundled arms on the lesson's tables: number of motions, median ms to plan and shorten "
-        "(goal: 10 ms compiled)"
+        "(goal: 10 ms)"
     )
-    if (model, when) == (next(iter(HOMES)), WHEN[0]):
-        print_row(heading, "arm", "compiled", "all", *spent)
-    print_row(heading, model, when, *(_cell(part) for part in (every, *spent.values())))
+    if model == next(iter(HOMES)):
+        print_row(heading, "arm", "all", *spent)
+    print_row(heading, model, *(_cell(part) for part in (every, *spent.values())))
     assert len(spent["not solved"]) <= FEW
 
 

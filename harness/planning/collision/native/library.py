@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from functools import cache
 
+from harness.core.errors import HarnessError
 from harness.planning.collision.native.sources import library_path
 
 Certify = Callable[[int, int, int], int]
@@ -16,15 +18,20 @@ BUILD = "harness/planning/collision/native/build.py"
 FULL = -(2**62)  # The result of `certify` when the memory for intervals is full
 
 
-def _loaded() -> Certify | None:
-    """The compiled check; None in a source tree in which it was not compiled."""
-    try:
-        function = ctypes.CDLL(str(library_path())).certify
-    except OSError:
-        return None
+@cache
+def certify() -> Certify:
+    """Load the compiled check.
+
+    Raises:
+        HarnessError: This source tree was never compiled.
+    """
+    path = library_path()
+    if not path.exists():
+        raise HarnessError(
+            "the check of motions is not compiled in this source tree: install the package "
+            f"with pip, or run `python {BUILD}` there"
+        )
+    function = ctypes.CDLL(str(path)).certify
     function.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64]
     function.restype = ctypes.c_int64
     return function
-
-
-certify = _loaded()
