@@ -58,9 +58,13 @@ def _clean(parent: Path, only: str | None = None) -> None:
         shutil.rmtree(sibling, ignore_errors=True)
 
 
-def remove_abandoned(prefix: str) -> None:
-    """Remove temporary folders, named by a prefix and a process ID, of processes that are gone."""
-    for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
+def remove_abandoned(prefix: str, parent: Path | None = None) -> None:
+    """Remove temporary folders, named by a prefix and a process ID, of processes that are gone.
+
+    Args:
+        parent: The folder that they are in; that of temporary folders, if none is given.
+    """
+    for folder in (parent or Path(tempfile.gettempdir())).glob(f"{prefix}*"):
         pid = folder.name.removeprefix(prefix).partition("-")[0]
         if pid.isdigit() and not is_alive(int(pid)):
             shutil.rmtree(folder, ignore_errors=True)

@@ -6,12 +6,12 @@ import os
 import re
 import signal
 import socket
-import tempfile
 from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Protocol
 
+from harness.core.socket_folder import socket_folder, socket_parent
 from harness.plugins.iktest.calls import CallOutcome, call
 from harness.plugins.iktest.contract import UnusableSolver, Value, parameter_words
 from harness.plugins.iktest.worker import serve
@@ -85,8 +85,8 @@ class Isolated:
         self._job = 0
         self._arguments = (name, robot, tip, dof)
         self._patience = patience
-        remove_abandoned(PREFIX)
-        self._folder = tempfile.TemporaryDirectory(prefix=f"{PREFIX}{os.getpid()}-")
+        remove_abandoned(PREFIX, socket_parent())
+        self._folder = socket_folder(f"{PREFIX}{os.getpid()}-")
         address = Path(self._folder.name) / "socket"
         self._socket = socket.socket(socket.AF_UNIX)
         self._socket.bind(str(address))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import tempfile
 import threading
 import time
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from multiprocessing.connection import Connection, Listener
 from pathlib import Path
 
 from harness.core.printable import printable
+from harness.core.socket_folder import socket_folder
 from harness.plugins.studio.guard import LOOPBACK, Guard
 from harness.plugins.studio.live_stream import LiveCase, LiveFrame
 from harness.plugins.studio.scene_view import SceneView
@@ -74,7 +74,7 @@ class Watch:
     """The page of a suite that runs, and the socket at which its cases report."""
 
     def __init__(self) -> None:
-        self._folder = tempfile.TemporaryDirectory(prefix="harness-live-")  # for this user alone
+        self._folder = socket_folder("harness-live-")  # for this user alone
         self.address = str(Path(self._folder.name) / "cases")
         self._listener = Listener(self.address, "AF_UNIX", backlog=64)
         self._cases: list[WatchedCase] = []

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from docs import ROOT
+from harness.core.socket_folder import socket_parent
 from harness.plugins.iktest import IkTest, run_ik_test
 from harness.plugins.iktest.contract import UnusableSolver
-from harness.plugins.iktest.solver import Isolated
+from harness.plugins.iktest.solver import PREFIX, Isolated
 from harness.robot.robot_source import RobotSource
 from tests.plugins.iktest.arms import EXAMPLES, OM
 from tests.waiting import wait_for
@@ -117,25 +118,33 @@ def test_a_file_that_ends_its_process_while_imported_is_refused(tmp_path):
         run_ik_test(IkTest(f"{tmp_path / 'mine.py'}:ik", OM))
 
 
-def test_nothing_outlives_a_test_that_is_killed(tmp_path, monkeypatch):
-    temporary = tmp_path / "temporary"
-    temporary.mkdir()
+def test_nothing_outlives_a_test_that_is_killed(tmp_path):
     (tmp_path / "mine.py").write_text("import time\ndef ik(x, y, z): time.sleep(1000)\n")
     arguments = ["ik-test", "mine.py:ik", "--robot", OM, "--call-limit", "500", "--no-report"]
     command = f"from harness.cli.main import main; main({arguments})"
     child = subprocess.Popen(
         [sys.executable, "-c", command],
         cwd=tmp_path,
-        env={"PYTHONPATH": str(ROOT), "TMPDIR": str(temporary)},
+        env={"PYTHONPATH": str(ROOT)},
     )
     wait_for(lambda: len(processes_in(tmp_path)) >= 3)  # command, fork server, the function's
     child.kill()
     child.wait()
     wait_for(lambda: not processes_in(tmp_path))
-    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    left = [*socket_parent().glob(f"{PREFIX}{child.pid}-*")]
+    assert len(left) == 1
     with pytest.raises(UnusableSolver):  # the next test removes the folder of the killed one
         run_ik_test(IkTest("no_such_module:ik", OM))
-    assert not [*temporary.iterdir()]
+    assert not left[0].exists()
+
+
+def test_a_function_is_called_where_paths_of_temporary_files_are_long(tmp_path, monkeypatch):
+    deep = tmp_path / ("d" * 90)
+    deep.mkdir()
+    (tmp_path / "mine.py").write_text("import os\nos._exit(4)\n")
+    monkeypatch.setattr(tempfile, "tempdir", str(deep))
+    with pytest.raises(UnusableSolver, match="ended while"):
+        run_ik_test(IkTest(f"{tmp_path / 'mine.py'}:ik", OM))
 
 
 def processes_in(folder):
