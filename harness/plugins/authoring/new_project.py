@@ -12,7 +12,6 @@ from pathlib import Path
 from harness.cli.files import refusing_unwritable
 from harness.core.extras import DISTRIBUTION
 from harness.core.resources import data_folder
-from harness.language.reading.load import load_scenario
 from harness.suite.discovery import UsageError
 
 TEMPLATES = Path(__file__).parent / "templates" / "project"
@@ -63,6 +62,8 @@ def write_project(folder: Path, write_scenario: Callable[[Path], None]) -> None:
 
 def files_outside(folder: Path) -> list[str]:
     """The robot's files that are not in the project, as the first scenario names them."""
+    from harness.language.reading.load import load_scenario  # not for `harness --help`
+
     robot = load_scenario(folder / SCENARIO).scenario.robot
     if robot is None:
         return []
