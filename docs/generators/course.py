@@ -24,7 +24,7 @@ from harness.plugins.grading.course import Exercise, exercises
 FOLDER = ROOT / "docs/course"
 REGION = re.compile(r"(?ms)^<!-- (\w+) -->\n.*?^<!-- end -->$")
 LEFT_OUT = re.compile(
-    r"✓ .*|  +warning: .*|report: .*|  speed .*|     picture .*|\d+ findings? in .*"
+    r"✓ .*|  +warning: .*|report: .*|  speed .*| +picture:? .*|\d+ findings? in .*"
     r"|note: \d+ commands; .*|this machine is too slow .*"
 )
 """Lines that pages leave out: rows that hold, times of the wall clock, names of files."""

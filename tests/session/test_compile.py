@@ -63,7 +63,10 @@ SPECK = "v 0 0 0\nv 1e-5 0 0\nv 0 1e-5 0\nv 0 0 1e-5\nf 1 3 2\nf 1 2 4\nf 1 4 3\
         ),
         ("- detach_object: red_box", "'red_box' is not attached at this step"),
         ("- add_object: {name: red_box, box: {size: [1, 1, 1]}}", "another object is called"),
-        ("- gripper: {position: 3}", "'rh_r1_joint' goes from -0.1 to 1.1, not to 3"),
+        (
+            "- gripper: {position: 3}",
+            "'rh_r1_joint' goes from -5.73 deg to 63.03 deg, not to 171.89 deg",
+        ),
         (
             "- gripper: {width: 20 cm}",
             "the gap between the pads goes from 13.6 to 106.9 mm, not to 200.0 mm",
