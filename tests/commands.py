@@ -6,10 +6,12 @@ import signal
 import socket
 import subprocess
 import sys
+from contextlib import chdir
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from docs import ROOT
 from harness.suite import warm
 from harness.suite.cases import read_ahead
 from harness.suite.environment import server_environment
@@ -23,7 +25,8 @@ ROBOTS = frozenset({"open_manipulator_x"})
 @cache
 def server() -> WarmServer:
     made = WarmServer(["harness.cli.main", *RUN_MODULES, *REPORT_MODULES, "tests.commands"])
-    made.prepare(read_ahead, ROBOTS)
+    with chdir(ROOT):  # the folder of the test that comes first is removed at its end
+        made.prepare(read_ahead, ROBOTS)
     atexit.register(made.close)
     return made
 
