@@ -88,7 +88,7 @@ def test_what_does_not_come_is_missed_by_so_much_at_a_time(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "messages"),
     [
-        ({"velocity": "40 cm/s", "x": 0.1}, ["'can' cannot be met on 'belt' (0.4 m/s), which it"]),
+        ({"velocity": "40 cm/s", "x": 0.1}, ["'can' cannot be met on 'belt' (400 mm/s), which it"]),
         ({"x": 0.38}, ["which it leaves in 0.55 s", "takes", "from the begin of the approach"]),
         ({"more": "  - {name: x, box: {size: [1, 1, 1]}, static: true}"}, ["START_STATE"]),
     ],
