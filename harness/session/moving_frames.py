@@ -85,7 +85,7 @@ def _rides(spec: Step, cell: Cell) -> Mapping[str, Carried]:
     """What carries the objects in whose frames a step has something, where that moves."""
     if not spec.moves_arm:
         return {}
-    found = {name: carried(name, cell) for name in {*_frames(spec)} & cell.presence.keys()}
+    found = {name: carried(name, cell) for name in sorted({*_frames(spec)} & cell.presence.keys())}
     return {name: ride for name, ride in found.items() if ride is not None}
 
 
