@@ -6,7 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
-from contextlib import chdir
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,8 +25,14 @@ ROBOTS = frozenset({"open_manipulator_x"})
 @cache
 def server() -> WarmServer:
     made = WarmServer(["harness.cli.main", *RUN_MODULES, *REPORT_MODULES, "tests.commands"])
-    with chdir(ROOT):  # the folder of the test that comes first is removed at its end
+    here = ROOT  # a test may have removed the folder it stands in
+    with suppress(FileNotFoundError):
+        here = Path.cwd()
+    os.chdir(ROOT)  # the folder of the test that comes first is removed at its end
+    try:
         made.prepare(read_ahead, ROBOTS)
+    finally:
+        os.chdir(here)
     atexit.register(made.close)
     return made
 
