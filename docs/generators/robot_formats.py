@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from harness.language.files.yaml_file import UNITS
-from harness.robot.xacro.functions import BUILTINS, MATH, METHODS, PYTHON
+from harness.plugins.formats.xacro.functions import BUILTINS, MATH, METHODS, PYTHON
 from tests.robot.format_rows import Row
 from tests.robot.format_tables import TABLES
 

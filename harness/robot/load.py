@@ -35,13 +35,12 @@ from harness.robot.mount import mounted
 from harness.robot.options import with_moveit_files, with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
-from harness.robot.robot_format import FORMATS, read_robot_file
+from harness.robot.robot_format import FORMATS, read_robot_file, render_xacro
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
 from harness.robot.several_arms import joined_arms
 from harness.robot.srdf.read import read_srdf
 from harness.robot.urdf.urdf import SDF_HINT, parse_urdf
-from harness.robot.xacro.file import arguments_of
-from harness.robot.xacro.render import render
+from harness.robot.xacro_file import arguments_of
 
 SDF_SUFFIXES = (".sdf", ".world")
 OF_FILES = ("srdf", "packages", "group", "tcp_link", "flange_link")
@@ -321,7 +320,7 @@ def _rendered(
             importlib.util.find_spec(xacro_file.mesh_package or "") is not None
         )
         mappings[xacro_file.mesh_arg] = str(has_meshes).lower()
-    return render(path, mappings, PackagePath.of_file(path))
+    return render_xacro(path, mappings, PackagePath.of_file(path))
 
 
 def _with_facts(joint: Joint, facts: RobotYaml) -> Joint:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from harness.core.errors import RobotOptionError
 from harness.core.geometry import CollisionMode
 from harness.core.registry import Plugin, absent_plugins, registry
+from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.scenario import RobotSpec
 from harness.robot.compose import RobotPart
+from harness.robot.packages import PackagePath
 
 FORMATS = ("urdf", "xacro", "mjcf")
 """Keys of `robot:` that name a file."""
@@ -52,3 +55,20 @@ def read_robot_file(
     if key not in formats:
         raise RobotOptionError(key, "; ".join(["no plug-in reads such a file", *absent_plugins()]))
     return formats[key]().read(spec, base_dir, collision)
+
+
+def render_xacro(path: Path, args: Mapping[str, Any], packages: PackagePath) -> XmlElement:
+    """The URDF or SRDF that a xacro file computes, each element with its place in the file.
+
+    Args:
+        path: The path of the file.
+        args: The values of its arguments.
+        packages: Search path for `$(find ...)`, and the folders that may be read.
+
+    Raises:
+        SpecError: The file, or one that it includes, cannot be rendered; or no plug-in renders it.
+    """
+    formats = registry(RobotFormat.plugin_kind)
+    if "xacro" not in formats:
+        read_xml(path).refuse("no plug-in renders xacro", "; ".join(absent_plugins()))
+    return formats["xacro"]().render(path, args, packages)

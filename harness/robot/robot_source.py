@@ -19,7 +19,7 @@ from harness.language.scenario import RobotSpec
 from harness.robot.description import RobotDescription
 from harness.robot.find_file import find_file
 from harness.robot.load import load_robot, load_scenario_robot
-from harness.robot.xacro.file import is_xacro
+from harness.robot.xacro_file import is_xacro
 
 ROBOT_YAML = "robot.yaml"
 KINDS = {".urdf": "urdf", ".srdf": "urdf", ".xacro": "xacro", ".xml": "mjcf", ".mjcf": "mjcf"}

@@ -59,18 +59,38 @@ def test_the_core_lists_no_packages_of_plug_ins(core):
     assert "Traceback" not in done.stderr
 
 
-def test_the_core_checks_all_lessons_and_runs_one(core):
-    done = core("check", "scenarios/lessons")
+def test_the_core_checks_the_lessons_of_urdf_robots_and_runs_one(core):
+    lessons = sorted((ROOT / "scenarios/lessons").glob("*.scenario.yaml"))
+    of_urdf = [f"scenarios/lessons/{file.name}" for file in lessons if "ur3e" not in file.read_text()]
+    assert len(of_urdf) == 3
+    done = core("check", *of_urdf)
     assert done.returncode == 0, done.stdout + done.stderr
     lesson = "scenarios/lessons/04_gripper_alone.scenario.yaml"
     done = core("run", lesson, "--no-report", "--in-process")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_a_robot_in_xacro_is_refused_by_the_core(core, tmp_path):
+    done = core("check", "scenarios/lessons/03_ur_sixteen_steps.scenario.yaml")
+    assert done.returncode == 2
+    assert "ur.urdf.xacro:6:2" in done.stdout + done.stderr
+    assert "no plug-in renders xacro" in done.stdout + done.stderr
+    assert "lacks the built-in plug-ins" in done.stdout + done.stderr
+    shutil.copytree(ROOT / "robots/open_manipulator_x", tmp_path / "arm")
+    srdf = next((tmp_path / "arm").glob("*.srdf"))
+    srdf.write_text(srdf.read_text().replace("</robot>", "<xacro:nothing/></robot>"))
+    file = tmp_path / "t.scenario.yaml"
+    file.write_text("scenario: t\nrobot: {model: arm}\nsteps: [{wait: 1}]\n")
+    done = core("check", file)
+    assert done.returncode == 2
+    assert f"{srdf.name}:" in done.stdout + done.stderr
+    assert "no plug-in renders xacro" in done.stdout + done.stderr
+
+
 def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     file = tmp_path / "formula.scenario.yaml"
     file.write_text(
-        "robot: {model: ur3e}\nsteps: [{move_to: home}]\n"
+        "robot: {model: open_manipulator_x}\nsteps: [{move_to: home}]\n"
         "expect: [{formula: 'always speed(tcp) < 2 m/s'}]\n"
     )
     done = core("check", file)
@@ -93,7 +113,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert "formula.scenario.yaml:2:8" in done.stdout + done.stderr
     assert "no plug-in holds by `cups` here" in done.stdout + done.stderr
     file.write_text(
-        "scenario: t\nrobot: {model: ur3e, gripper: rh_p12_rn_a, base: {xyz: [0, 0, 1.02]}}\n"
+        "scenario: t\nrobot: {model: open_manipulator_x, base: {xyz: [0, 0, 1.02]}}\n"
         "world: lesson_ur\nsteps: [{pick: {object: green_cylinder, track: true}}]\n"
     )
     done = core("check", file)
@@ -101,7 +121,7 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert "formula.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
     (tmp_path / "box.obj").write_text(OBJ)
     file.write_text(
-        "scenario: t\nrobot: ur3e\nsteps: [{wait: 1}]\n"
+        "scenario: t\nrobot: open_manipulator_x\nsteps: [{wait: 1}]\n"
         "objects: [{name: box, mesh: {file: box.obj}, mass: 1, pose: {xyz: [1, 0, 1]}}]\n"
     )
     done = core("check", file)

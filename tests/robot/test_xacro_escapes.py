@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from harness.core.errors import SpecError
+from harness.plugins.formats.xacro.render import render
 from harness.robot.packages import PackagePath
 from harness.robot.robot_yaml import read_robot_yaml
-from harness.robot.xacro.render import render
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 

@@ -9,9 +9,15 @@ from types import SimpleNamespace
 import pytest
 from hypothesis import strategies as st
 
-from harness.robot.xacro.expression import Namespace, evaluate
-from harness.robot.xacro.functions import BUILTINS, MATH, PYTHON
-from harness.robot.xacro.values import Budget, Exhausted, ExpressionError, Function, YamlDict
+from harness.plugins.formats.xacro.expression import Namespace, evaluate
+from harness.plugins.formats.xacro.functions import BUILTINS, MATH, PYTHON
+from harness.plugins.formats.xacro.values import (
+    Budget,
+    Exhausted,
+    ExpressionError,
+    Function,
+    YamlDict,
+)
 from tests.lanes import property_test
 
 VALUES = {

@@ -7,9 +7,9 @@ import xacro
 
 from harness.core.errors import SpecError
 from harness.core.resources import data_folder
+from harness.plugins.formats.xacro.render import render
 from harness.robot.load import robot_names
 from harness.robot.packages import PackagePath
-from harness.robot.xacro.render import render
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 FILES = {

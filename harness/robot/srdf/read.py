@@ -9,9 +9,9 @@ from typing import Any
 
 from harness.language.files.xml_file import parse_xml
 from harness.robot.packages import PackagePath
+from harness.robot.robot_format import render_xacro
 from harness.robot.srdf.srdf import Srdf, parse_srdf
-from harness.robot.xacro.file import is_xacro
-from harness.robot.xacro.render import render
+from harness.robot.xacro_file import is_xacro
 
 
 def read_srdf(
@@ -31,7 +31,7 @@ def read_srdf(
     root = parse_xml(text, str(path))
     if not is_xacro(root):
         return parse_srdf(text, str(path))
-    srdf = parse_srdf(render(path, args, packages), str(path))
+    srdf = parse_srdf(render_xacro(path, args, packages), str(path))
     macros = [item.get("name") for item in root.walk() if item.tag == "xacro:macro"]
     if srdf.groups or not macros:
         return srdf

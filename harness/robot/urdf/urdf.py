@@ -24,7 +24,7 @@ from harness.robot.urdf.joints import (
 from harness.robot.urdf.links import LinkReader
 from harness.robot.urdf.ros2_control import with_interfaces
 from harness.robot.urdf.values import rgba
-from harness.robot.xacro.file import xacro_parts
+from harness.robot.xacro_file import xacro_parts
 
 MOST_LINKS = 500  # pairs of links grow with its square
 SDF_HINT = "a robot is read from URDF, xacro or MJCF; SDF is read as a world, by `world`"

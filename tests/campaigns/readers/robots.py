@@ -183,8 +183,8 @@ EXPRESSIONS = (
 
 
 def _begin_expressions(_: Path) -> Read:
-    from harness.robot.xacro.expression import evaluate
-    from harness.robot.xacro.values import Budget, Exhausted, ExpressionError
+    from harness.plugins.formats.xacro.expression import evaluate
+    from harness.plugins.formats.xacro.values import Budget, Exhausted, ExpressionError
     from tests.robot.test_xacro_expressions import NAMES
 
     def read(_: Path, data: bytes) -> None:

@@ -16,6 +16,7 @@ from harness.plugins.formats.robot_files.imported_files import (
     refuse_unknown_arguments,
 )
 from harness.plugins.formats.robot_files.imported_part import imported_part, refuse_unknown_links
+from harness.plugins.formats.xacro.render import render
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
 from harness.robot.decomposed_meshes import decompose_meshes
@@ -29,7 +30,6 @@ from harness.robot.robot_format import FORMATS
 from harness.robot.srdf.read import read_srdf
 from harness.robot.srdf.srdf import Srdf
 from harness.robot.urdf.urdf import Urdf, parse_urdf
-from harness.robot.xacro.render import render
 
 
 def read_robot(

@@ -9,7 +9,7 @@ from typing import Any
 from harness.core.errors import RobotOptionError
 from harness.language.files.xml_file import read_xml
 from harness.robot.packages import PackagePath
-from harness.robot.xacro.file import arguments_of, is_xacro
+from harness.robot.xacro_file import arguments_of, is_xacro
 
 
 def files_around(name: str, path: Path, given: Sequence[Path]) -> PackagePath:

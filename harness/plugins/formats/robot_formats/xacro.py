@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from harness.core.geometry import CollisionMode
+from harness.language.files.xml_file import XmlElement
 from harness.language.scenario import RobotSpec
 from harness.robot.compose import RobotPart
+from harness.robot.packages import PackagePath
 from harness.robot.robot_format import RobotFormat
 
 
@@ -23,3 +26,9 @@ class XacroRobot(RobotFormat):
         from harness.plugins.formats.robot_files.import_robot import read_robot
 
         return read_robot(spec, base_dir, collision)
+
+    def render(self, path: Path, args: Mapping[str, Any], packages: PackagePath) -> XmlElement:
+        """Replace properties, macros, conditions and includes."""
+        from harness.plugins.formats.xacro.render import render
+
+        return render(path, args, packages)

@@ -6,10 +6,12 @@ import re
 from collections.abc import Iterator
 
 from harness.language.files.xml_file import XmlElement
-from harness.robot.xacro.render import OTHERS, PREFIX
-from harness.robot.xacro.substitution import ARG
 
-XACRO_ARG = "xacro:arg"
+PREFIX = "xacro:"
+ARG = re.compile(r"\$\(arg +([^ )]+) *\)")
+OTHERS = ("gazebo", "ros2_control", "transmission")
+"""Elements of a robot that are for other programs."""
+
 SUBSTITUTION = re.compile(r"\$\([^)]*\)|\$\{[^}]*\}")
 
 
@@ -36,5 +38,5 @@ def arguments_of(root: XmlElement) -> frozenset[str]:
     """Names that a xacro document declares or uses as arguments."""
     texts = [text for item in root.walk() for text in (*item.attributes.values(), item.text)]
     used = {found[1] for text in texts for found in ARG.finditer(text)}
-    declared = {item.get("name") for item in root.walk() if item.tag == XACRO_ARG}
+    declared = {item.get("name") for item in root.walk() if item.tag == f"{PREFIX}arg"}
     return frozenset(declared | used)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
-from harness.robot.xacro.values import (
+from harness.plugins.formats.xacro.values import (
     LONGEST_TEXT,
     MOST_BITS,
     MOST_ITEMS,

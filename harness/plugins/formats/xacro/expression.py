@@ -15,8 +15,15 @@ from functools import lru_cache
 from typing import Any, Protocol, runtime_checkable
 
 from harness.core.suggestion import did_you_mean
-from harness.robot.xacro.functions import METHODS, method_of, power, product, remainder, shifted
-from harness.robot.xacro.values import (
+from harness.plugins.formats.xacro.functions import (
+    METHODS,
+    method_of,
+    power,
+    product,
+    remainder,
+    shifted,
+)
+from harness.plugins.formats.xacro.values import (
     Budget,
     ExpressionError,
     Function,

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.language.files.source import Place
-from harness.robot.xacro.expression import Names
-from harness.robot.xacro.values import ExpressionError
+from harness.plugins.formats.xacro.expression import Names
+from harness.plugins.formats.xacro.values import ExpressionError
 
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 

@@ -14,20 +14,16 @@ from harness.language.files.xml_file import (
     XmlElement,
     in_elements,
 )
+from harness.plugins.formats.xacro.files import Files, MissingFile
+from harness.plugins.formats.xacro.macro import Macro, Parameter, read_macro
+from harness.plugins.formats.xacro.names import xacro_names
+from harness.plugins.formats.xacro.substitution import Substitution
+from harness.plugins.formats.xacro.symbols import Table, Text, is_property_name, truth
+from harness.plugins.formats.xacro.values import Budget, Exhausted, ExpressionError
 from harness.robot.packages import PackagePath
-from harness.robot.xacro.files import Files, MissingFile
-from harness.robot.xacro.macro import Macro, Parameter, read_macro
-from harness.robot.xacro.names import xacro_names
-from harness.robot.xacro.substitution import Substitution
-from harness.robot.xacro.symbols import Table, Text, is_property_name, truth
-from harness.robot.xacro.values import Budget, Exhausted, ExpressionError
+from harness.robot.xacro_file import OTHERS, PREFIX
 
-PREFIX = "xacro:"
 STEPS_OF_ELEMENT = 20  # Steps that an element counts as
-
-OTHERS = ("gazebo", "ros2_control", "transmission")
-"""Elements of a robot that are for other programs."""
-
 
 ENDLESS = "it takes more steps to render than any robot does"
 

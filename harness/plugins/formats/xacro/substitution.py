@@ -8,18 +8,17 @@ from typing import Any
 
 from harness.core.errors import SpecError
 from harness.language.files.source import Place
+from harness.plugins.formats.xacro.expression import Names, Namespace, evaluate
+from harness.plugins.formats.xacro.functions import BUILTINS, MATH
+from harness.plugins.formats.xacro.symbols import BOOLEANS
+from harness.plugins.formats.xacro.values import LONGEST_TEXT, Budget, ExpressionError, Function
 from harness.robot.packages import NotFoundError, PackagePath
-from harness.robot.xacro.expression import Names, Namespace, evaluate
-from harness.robot.xacro.functions import BUILTINS, MATH
-from harness.robot.xacro.symbols import BOOLEANS
-from harness.robot.xacro.values import LONGEST_TEXT, Budget, ExpressionError, Function
 
 PIECE = re.compile(
     r"(?P<escaped>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<command>[^)]*)\)"
     r"|(?P<plain>[^$]+|\$[^{($]+|\$$)"
 )
 FIND = re.compile(r"\$\(find +([^ )]+) *\)")
-ARG = re.compile(r"\$\(arg +([^ )]+) *\)")
 COMMANDS = "$(arg NAME), $(find PACKAGE), $(optenv NAME DEFAULT) and $(eval EXPRESSION)"
 EVAL = ("list", "dict", "map", "str", "float", "int")
 

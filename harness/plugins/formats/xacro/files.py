@@ -13,8 +13,8 @@ from harness.core.limits import XACRO_FILES
 from harness.language.files.source import Located, Source
 from harness.language.files.xml_file import XmlElement, parse_xml, read_bounded
 from harness.language.files.yaml_file import parse_ros_yaml, read_text
+from harness.plugins.formats.xacro.values import Budget, ExpressionError, YamlDict
 from harness.robot.packages import PackagePath
-from harness.robot.xacro.values import Budget, ExpressionError, YamlDict
 
 DEEPEST_INCLUDE = 40  # levels of files that include each other
 STEPS_OF_VALUE = 5

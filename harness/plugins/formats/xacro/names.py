@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any, NoReturn
 
-from harness.robot.xacro.expression import Namespace, evaluate
-from harness.robot.xacro.files import Files
-from harness.robot.xacro.functions import BUILTINS, MATH, PYTHON, TEXT_TOOLS
-from harness.robot.xacro.substitution import Substitution
-from harness.robot.xacro.values import Budget, ExpressionError, Function
+from harness.plugins.formats.xacro.expression import Namespace, evaluate
+from harness.plugins.formats.xacro.files import Files
+from harness.plugins.formats.xacro.functions import BUILTINS, MATH, PYTHON, TEXT_TOOLS
+from harness.plugins.formats.xacro.substitution import Substitution
+from harness.plugins.formats.xacro.values import Budget, ExpressionError, Function
 
 
 def xacro_names(texts: Substitution, files: Files, budget: Budget) -> Namespace:
