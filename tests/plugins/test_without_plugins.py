@@ -61,7 +61,9 @@ def test_the_core_lists_no_packages_of_plug_ins(core):
 
 def test_the_core_checks_the_lessons_of_urdf_robots_and_runs_one(core):
     lessons = sorted((ROOT / "scenarios/lessons").glob("*.scenario.yaml"))
-    of_urdf = [f"scenarios/lessons/{file.name}" for file in lessons if "ur3e" not in file.read_text()]
+    of_urdf = [
+        f"scenarios/lessons/{file.name}" for file in lessons if "ur3e" not in file.read_text()
+    ]
     assert len(of_urdf) == 3
     done = core("check", *of_urdf)
     assert done.returncode == 0, done.stdout + done.stderr
