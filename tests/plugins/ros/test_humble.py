@@ -100,7 +100,11 @@ def test_a_client_of_humble_is_answered_in_its_own_messages(tmp_path, monkeypatc
 def test_nodes_are_introduced_by_identifiers_of_the_length_that_a_distribution_reads(
     is_humble, monkeypatch
 ):
-    """With 16 bytes for 24, Humble reads lengths of lists from identifiers."""
+    """With 16 bytes for 24, Humble reads lengths of lists from identifiers.
+
+    RMW_GID_STORAGE_SIZE of rmw's branches humble and iron; rmw_fastrtps of Humble copies its GUID
+    of 16 bytes to the beginning of one that is zero (create_rmw_gid.cpp).
+    """
     introductions, size = [], 24 if is_humble else 16
     kind = f"rmw_dds_common{'_of_humble' * is_humble}/msg/ParticipantEntitiesInfo"
     with free_domain() as domain, closing(Graph(domain, node="bridge")) as graph:

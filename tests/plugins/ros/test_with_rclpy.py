@@ -181,6 +181,23 @@ def test_rviz_s_requests_are_answered_and_the_run_replays(tmp_path):
     assert replay(tmp_path / "run").digest == read_run(tmp_path / "run").digest
 
 
+def test_the_buttons_of_robotis_gui_are_answered_and_the_run_replays(tmp_path):
+    """Motions at the tenth of the speed that MoveGroupInterface requests where none is set."""
+    require_control_msgs("moveit_msgs.srv", "std_srvs.srv")
+    assert run_node(tmp_path, "gui.py") == {
+        "home": [1, 1, True],
+        "init": [1, 1, True],
+        "open": [1, 1, 0.019],  # within the two seconds after which the GUI stops the gripper
+        "close": [1, 1, -0.01],
+        "angles": [1, 1, True],
+        "position": [1, 1],
+        "pose": [1, 1],
+        "stopped": [1, -7, False],
+        "torque": False,
+    }
+    assert replay(tmp_path / "run").digest == read_run(tmp_path / "run").digest
+
+
 LIBRARIES = (
     *("rcl", "rcl_action", "rcutils", "rmw", "rosidl_runtime_c"),
     *(

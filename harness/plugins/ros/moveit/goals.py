@@ -87,18 +87,27 @@ def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
 
 
 def _joint_goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> JointGoal:
-    names = cell.description.groups[group].joint_names
-    index = cell.description.joint_index
-    requested = {name: float(start[index[name]]) for name in names}
+    """A joint that follows another one, as a finger may, must be where it follows to."""
+    robot, names = cell.description, cell.description.groups[group].joint_names
+    goal, index = start.copy(), robot.joint_index
+    masters = {joint.name: joint.mimic.joint for joint in robot.movable_joints if joint.mimic}
     for each in constraints:
         name = str(each.joint_name)
-        if name not in requested:
+        if masters.get(name, name) not in names:
             reason = f"'{name[:80]}' is no joint of '{group}', which has {', '.join(names)}"
             _refuse("INVALID_GOAL_CONSTRAINTS", reason)
         if not np.isfinite(each.position):
             _refuse("INVALID_GOAL_CONSTRAINTS", f"the position of '{name}' is not finite")
-        requested[name] = float(each.position)
-    return JointGoal(np.array(list(requested.values())))
+        goal[index[name]] = each.position
+    goal = robot.with_mimics(goal)
+    for each in constraints:
+        name = str(each.joint_name)
+        off = goal[index[name]] - each.position
+        if not -max(TIGHTEST, each.tolerance_below) <= off <= max(TIGHTEST, each.tolerance_above):
+            why = f"follows '{masters[name]}'" if name in masters else "has another constraint"
+            reason = f"'{name}' {why}: {goal[index[name]]:.5g}, not {each.position:.5g}"
+            _refuse("INVALID_GOAL_CONSTRAINTS", reason)
+    return JointGoal(goal[[index[name] for name in names]])
 
 
 def path_constraints_of(cell: Cell, constraints: Any) -> PathConstraints | None:

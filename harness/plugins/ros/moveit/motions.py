@@ -12,7 +12,8 @@ from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.control.cell import CANCELED, PREEMPTED
 from harness.plugins.ros.control.controller import Outcome
-from harness.plugins.ros.control.goals import MOTION
+from harness.plugins.ros.control.goals import MOTION, Code
+from harness.plugins.ros.control.trajectory import follow_result
 from harness.plugins.ros.interfaces import EXECUTE, MOVE, SEQUENCE
 from harness.plugins.ros.moveit.planning import Planned, plan_fields, sequence_response
 from harness.plugins.ros.moveit.requests import Requests
@@ -77,7 +78,10 @@ class Motions:
         if goal not in self._goals:
             return
         others = [part for part, whole in self._parts.items() if whole == goal]
-        reason = str(outcome.result.error_string)
+        # the result of a GripperCommand has no reason; without success it was interrupted
+        reason = str(
+            getattr(outcome.result, "error_string", "" if outcome.has_succeeded else PREEMPTED)
+        )
         if outcome.has_succeeded and reason != CANCELED:
             if not others:
                 self._finish(goal)
@@ -161,8 +165,10 @@ class Motions:
 
     def _follow(self, goal: str, trajectory: Any) -> None:
         """Give a trajectory to the controller that has its joints, or to several that have."""
-        joints = trajectory.joint_trajectory
-        names = self._controllers_of({str(each) for each in joints.joint_names})
+        joints, description = trajectory.joint_trajectory, self._control.description
+        named = {str(each) for each in joints.joint_names}
+        followers = {each.name for each in description.movable_joints if each.mimic}
+        names = self._controllers_of(named - followers)
         if reason := self._start_error(joints) if names else "no controllers have these joints":
             failure = StepFailed("CONTROL_FAILED", reason)
             self._requests.report(failure)
@@ -177,9 +183,21 @@ class Motions:
             if goal not in self._goals:  # another part was refused
                 del self._parts[part]
                 continue
-            own = [joint.name for joint in self._control.controllers[name].joints]
-            share = content if len(names) == 1 else _share(content, own)
-            self._requests.note(self._control.receive("trajectory", name, part, **share))
+            self._begin_part(name, part, content)
+
+    def _begin_part(self, name: str, part: str, content: Content) -> None:
+        """Give a controller its share: a gripper the last position, as MoveIt's manager does."""
+        controller = self._control.controllers[name]
+        own = [joint.name for joint in controller.joints]
+        share = content if {*content["joint_names"]} == {*own} else _share(content, own)
+        if controller.gripper is None:
+            record = self._control.receive("trajectory", name, part, **share)
+        else:
+            last = {"position": share["points"][-1]["positions"][0], "max_effort": 0.0}
+            record = self._control.receive("gripper", name, part, **last)
+            if record.has_failed:
+                self.finish(Outcome(part, False, follow_result(Code.INVALID_GOAL, record.answer)))
+        self._requests.note(record)
 
     def _controllers_of(self, joints: set[str]) -> list[str]:
         """Controllers that have some joints, and no others; none where a joint is left over."""
@@ -197,9 +215,12 @@ class Motions:
             return "the trajectory has no points"
         cell = self._requests.here.cell
         now, index = cell.planning_start(), cell.description.joint_index
-        first = trajectory.points[0]
-        if len(first.positions) != len(trajectory.joint_names):
-            return "the first point has another number of positions than there are joints"
+        first, count = trajectory.points[0], len(trajectory.joint_names)
+        for place, point in enumerate(trajectory.points):
+            if any(len(getattr(point, key)) not in (0, count) for key in MOTION):
+                return f"point {place} has not one number for each of {count} joints"
+        if len(first.positions) != count or not len(trajectory.points[-1].positions):
+            return "the first or the last point has no positions"
         for name, value in zip(trajectory.joint_names, first.positions, strict=True):
             off = abs(float(value) - now[index[str(name)]])
             if not off <= FARTHEST_START:
