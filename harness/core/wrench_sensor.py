@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from harness.core.pose_arrays import conjugate, rotate
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 
@@ -49,13 +50,16 @@ class Payload:
     mass: float
     center_of_mass: FloatArray
 
-    def weight(self, sensor: WrenchSensor, gravity: FloatArray) -> FloatArray:
+    def weight(
+        self, sensor: WrenchSensor, link_poses: FloatArray, gravity: FloatArray
+    ) -> FloatArray:
         """Force and torque of its weight, as the sensor reads them, shape (N, 6) [N, N m].
 
         Args:
             sensor: The sensor that carries it.
-            gravity: The gravitational acceleration in the sensor's axes, shape (N, 3).
+            link_poses: T_world_link of the sensor's link (xyz, quat wxyz), shape (N, 7).
+            gravity: The gravitational acceleration in the world, shape (3,).
         """
-        force = self.mass * gravity
+        force = self.mass * rotate(conjugate(link_poses[:, 3:]), gravity) @ sensor.pose.rotation
         place = sensor.pose.inverse().apply(self.center_of_mass)
         return np.hstack([force, np.cross(place, force)])

@@ -160,7 +160,7 @@ class Simulator(Protocol):
         ...
 
     def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
-        """Hold for some time [s], and take what a sensor reads meanwhile for zero from now on.
+        """Hold for some time [s], and take what a sensor reads meanwhile for zero from then on.
 
         Args:
             sensor: The name of the sensor.

@@ -60,7 +60,10 @@ class MujocoSimulator(TrajectoryTracking):
         return self._recording.wrench(sensor, first).mean(axis=0)
 
     def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
-        """Hold, and take the mean of a sensor's readings meanwhile for zero; returns it, (6,)."""
+        """Hold, and take the mean of a sensor's readings meanwhile for zero; returns it, (6,).
+
+        It holds for these readings, too: a mean over the time before the end mixes none of both.
+        """
         self.hold(duration)
         recording = self._recording
         first = max(0, recording.count - max(1, round(duration / self._timestep)))
@@ -68,7 +71,7 @@ class MujocoSimulator(TrajectoryTracking):
         if payload is not None:
             readings = readings - recording.weight(sensor, payload, first)
         zero = readings.mean(axis=0)
-        recording.wrenches.tare(Tare(recording.count - 1, sensor, zero, payload))
+        recording.wrenches.tare(Tare(first, sensor, zero, payload))
         return zero
 
     def command_gripper(

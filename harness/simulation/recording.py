@@ -12,7 +12,6 @@ import numpy as np
 
 from harness.core.errors import SimulationDiverged, StepFailed
 from harness.core.limits import LONGEST_RUN
-from harness.core.pose_arrays import conjugate, rotate
 from harness.core.types import FloatArray
 from harness.core.wrench_sensor import Payload
 from harness.recording.execution_failures import LengthFailure
@@ -252,8 +251,7 @@ class Recording:
         _, rows = self.wrenches.rows_read(name, first, self.count - first)
         positions = self._qpos[rows][:, physics.qpos]
         poses = replayed_link_poses(physics.description, positions, [sensor.link])[sensor.link]
-        gravity = rotate(conjugate(poses[:, 3:]), physics.model.opt.gravity)
-        return payload.weight(sensor, gravity @ sensor.pose.rotation)
+        return payload.weight(sensor, poses, physics.model.opt.gravity)
 
     def contacts(self, first: int, last: int) -> Mapping[BodyPair, FloatArray]:
         """Normal force [N] of pairs that touch in samples first to last - 1, (samples,) each."""

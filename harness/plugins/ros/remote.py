@@ -13,17 +13,20 @@ from harness.core.spatial import SE3
 from harness.core.surface_motion import SurfaceMotion
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.plugins.ros.actions import ActionClient, ClientGoal, Status
-from harness.plugins.ros.bag.messages import message, trajectory_message
-from harness.plugins.ros.control.goals import Code
-from harness.plugins.ros.interfaces import COMMAND, FOLLOW, GRIPPER
+from harness.core.wrench_sensor import Payload
+from harness.plugins.ros.bag.messages import message
+from harness.plugins.ros.interfaces import COMMAND, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
-from harness.plugins.ros.names import actions
-from harness.plugins.ros.one_arm import refuse_several_arms
 from harness.plugins.ros.prefix import Prefix
+from harness.plugins.ros.remote_controllers import (
+    PATIENCE,
+    SILENCE,
+    RemoteControllers,
+    unreachable,
+)
 from harness.plugins.ros.rtps.graph import Graph
+from harness.plugins.ros.wrench_readings import WrenchReadings
 from harness.ports.simulation import ExpectedGrasp, Faults, GripperResult
-from harness.recording.execution_failures import ControlFailure
 from harness.recording.signals import UNPUBLISHED, Signals
 from harness.reporting.result import CaseResult
 from harness.session.prepare import Prepared, prepare
@@ -34,12 +37,10 @@ from harness.session.start import Start
 from harness.session.timing import Clock
 
 MEASURED = ("position", "effort", "stalled", "reached_goal")  # what GripperCommand's result says
-PATIENCE = 10.0  # wall time in which servers must be found, and joint states must come [s]
-SILENCE = 3.0  # wall time without joint states after which a robot in motion counts as lost [s]
 UNKNOWN = np.full(7, np.nan)  # the pose of an object that is not measured
-REASON = 1.0  # [s], in which the result of a rejected goal, with its reason, must come
 Confirm = Callable[[JointTrajectory], bool]  # before it is sent: whether the arm may move
 START_TOLERANCE = 0.01  # [rad or m], of the arm from a trajectory's begin, as MoveIt allows
+AT_REST = 1e-9  # [rad/s or m/s]; a trajectory that ends faster is continued by another at once
 
 
 def run_on_robot(
@@ -58,7 +59,6 @@ def run_on_robot(
 
     def start(request: RunRequest, _: Clock) -> Start[RemoteArm]:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
-        refuse_several_arms(prepared)
         return Start(prepared, connect(prepared))
 
     return run_case(request, notify, start=start)
@@ -72,7 +72,7 @@ def _refuses(why: str) -> Callable[..., NoReturn]:
 
 
 class RemoteArm:
-    """Sends trajectories to the servers of a robot's controllers, one after the other."""
+    """Sends trajectories to the servers of a robot's controllers, each arm its share."""
 
     overlaps_at_start = ()
     unrecorded = ("joint_commands", "joint_command_velocities", *UNPUBLISHED)
@@ -87,28 +87,26 @@ class RemoteArm:
             velocity_scaling: Share of the planned speed, (0, 1].
 
         Raises:
-            StepFailed: COMMUNICATION_FAILURE; a server or a joint is missing.
+            StepFailed: COMMUNICATION_FAILURE; a server, a joint or a sensor is missing.
         """
         self._graph, self._share, self._confirm = graph, velocity_scaling, confirm
         self._kinematics, self._program = prepared.ports.kinematics, prepared.program
         self.description = self._program.description
         self._frames = tuple(dict.fromkeys((self.description.tcp_link, *prepared.observed_links)))
         names = self._program.controllers
-        own = names.by_arm[""]
         prefix = Prefix(names.prefix, self.description)
         graph.outward, graph.inward = prefix.outward, prefix.inward
         self._states = JointStates(graph, self.description)
-        arms = [ActionClient(graph, f"/{arm}/follow_joint_trajectory", FOLLOW) for arm in own.arm]
-        finger = f"/{own.gripper}/gripper_cmd"
-        self._gripper = ActionClient(graph, finger, GRIPPER) if own.gripper else None
-        if not self._wait(lambda: any(arm.is_ready for arm in arms), PATIENCE):
-            served = ", ".join(actions(graph.uses()[1])) or "no action"
-            required = " or ".join(arm.name for arm in arms)
-            _unreachable(f"{required} is not served in this domain; served are: {served}")
-        self._arm = next(arm for arm in arms if arm.is_ready)
+        self._sensors = self.description.wrench_sensors
+        self._readings = WrenchReadings(graph, self._sensors)
+        self._tares: list[tuple[int, str, FloatArray, Payload | None]] = []
+        self._controllers = RemoteControllers(graph, self.description, names, self._states)
+        self._controllers.connect()
         if not self._wait(lambda: self._states.time >= 0, PATIENCE):
-            joints = ", ".join(names.prefix + each for each in self.description.joint_names)
-            _unreachable(f"/joint_states brings no message with all joints: {joints}")
+            missing = ", ".join(names.prefix + each for each in self._states.missing)
+            unreachable(f"/joint_states brings no message with the joints {missing}")
+        if not self._wait(lambda: self._readings.is_complete, PATIENCE):
+            unreachable(self._readings.lack(SILENCE))
 
     @property
     def time(self) -> float:
@@ -136,17 +134,17 @@ class RemoteArm:
         """Send a trajectory and watch the arm on its way.
 
         Raises:
-            StepFailed: CONTROL_FAILED, when the server ends the goal with an error, or a joint
-                strays from its tolerance, upon which the goal is canceled; PREEMPTED, when the user
-                does not confirm.
+            StepFailed: CONTROL_FAILED, when a server ends its goal with an error, or a joint
+                strays from its tolerance, upon which the goals are canceled; PREEMPTED, when the
+                user does not confirm; ABORT, of a trajectory that another continues at once.
         """
+        if np.abs(trajectory.velocities[-1]).max() > AT_REST:
+            why = "motions of a ROS 2 robot end at rest: it is not stopped at a force, or on a belt"
+            raise StepFailed("ABORT", why)
         if not self._confirm(trajectory):
             raise StepFailed("PREEMPTED", "the motion was not confirmed, so nothing moved")
         self._refuse_other_start(trajectory)
-        client, slowed = self._arm, _slowed(trajectory, self._share)
-        goal = client.send(message(f"{FOLLOW}_Goal", trajectory=trajectory_message(slowed)))
-        self._follow(client, goal, 10.0 * slowed.duration + PATIENCE)
-        self._refuse_failure(goal, client)
+        self._controllers.follow(_slowed(trajectory, self._share))
 
     def command_gripper(
         self,
@@ -158,15 +156,15 @@ class RemoteArm:
         joint: str = "",
     ) -> GripperResult:
         """Send a GripperCommand; what it holds is not measured, a stall is taken for an object."""
-        del expected, joint  # robots of several arms are refused
-        client, gripper = self._gripper, self.description.gripper
+        del expected
+        grippers = {each.joint: each for each in self.description.grippers}
+        gripper = grippers[joint] if joint else self.description.gripper
+        client = self._controllers.grippers.get(gripper.joint) if gripper else None
         if client is None or gripper is None or not self._wait(lambda: client.is_ready, PATIENCE):
-            _unreachable("no server of GripperCommand answers in this domain")
+            unreachable("no server of GripperCommand answers in this domain")
         command = message(COMMAND, position=position, max_effort=max_effort)
         goal = client.send(message(f"{GRIPPER}_Goal", command=command))
-        self._follow(client, goal, 3.0 * timeout + PATIENCE)
-        if goal.is_accepted is False:
-            raise StepFailed("CONTROL_FAILED", f"{client.name} rejected the goal")
+        self._controllers.watch([(client, goal)], 3.0 * timeout + PATIENCE)
         loose = [o for o in self._program.all_objects() if o.in_simulation and not o.is_static]
         held = tuple(each.name for each in loose) if goal.result.stalled else ()
         measured = {key: getattr(goal.result, key) for key in MEASURED}
@@ -176,7 +174,7 @@ class RemoteArm:
         """Let the robot's time pass [s]."""
         end = self._states.time + duration
         if not self._wait(lambda: self._states.time >= end, 10.0 * duration + PATIENCE):
-            _unreachable("/joint_states has stopped")
+            unreachable("/joint_states has stopped")
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
         """Wait until every joint is slower than a limit.
@@ -203,9 +201,32 @@ class RemoteArm:
     drive_surface = _refuses("a belt of the real cell is not driven by a scenario")
     force_on_robot = _refuses("the forces on a ROS 2 robot are not known here")
     use_controller = _refuses("a robot of ROS 2 keeps the joint controller that it has")
-    wrench = _refuses("the sensors of a ROS 2 robot are not read here")
-    tare = _refuses("the sensors of a ROS 2 robot are not set to zero here")
     weld = _refuses("an object cannot be welded to the gripper of a real robot")
+
+    def wrench(self, sensor: str, span: float) -> FloatArray:
+        """What a sensor reads, mean over the last `span` seconds of its messages, shape (6,).
+
+        Raises:
+            StepFailed: COMMUNICATION_FAILURE; it has stopped.
+        """
+        self._graph.spin(wall.monotonic())
+        if lack := self._readings.lack(SILENCE):
+            unreachable(lack)
+        read, now = self._readings.mean(sensor, span), self._states.positions[None]
+        return self._tared(sensor, read[None], now, self.sample_count)[0]
+
+    def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
+        """Hold, and take the mean of a sensor's readings meanwhile for zero; returns it, (6,).
+
+        The driver's own zero stays as it is.
+        """
+        first = self.sample_count
+        self.hold(duration)
+        zero = self._readings.mean(sensor, duration)
+        if payload is not None:
+            zero = zero - self._weight(sensor, payload, self._states.positions[None])[0]
+        self._tares.append((first, sensor, zero, payload))
+        return zero
 
     def surface_motion(self, name: str) -> SurfaceMotion:
         """A surface as the scenario has it; it is not measured."""
@@ -219,7 +240,7 @@ class RemoteArm:
         """What `/joint_states` brought, on an even grid; poses follow from the joints."""
         whole, measured = self._states.record()
         times, (positions, velocities, efforts) = whole[first:], (each[first:] for each in measured)
-        nothing = np.full_like(positions, np.nan)
+        nothing, origin = np.full_like(positions, np.nan), self._states.origin
         poses = self._kinematics.link_poses(positions, self._frames)
         objects = [each for each in self._program.all_objects() if each.in_simulation]
         known = {o.name: o.pose.as_vector() if o.is_static else UNKNOWN for o in objects}
@@ -233,35 +254,33 @@ class RemoteArm:
             tcp_pose=poses[:, 0],
             frames={link: poses[:, place] for place, link in enumerate(self._frames)},
             object_poses={name: np.tile(pose, (len(times), 1)) for name, pose in known.items()},
+            wrenches={
+                name: self._tared(name, self._readings.at(name, times + origin), positions, first)
+                for name in self._sensors
+            },
         )
 
+    def _tared(
+        self, sensor: str, readings: FloatArray, positions: FloatArray, first: int
+    ) -> FloatArray:
+        """Readings from a sample on, less the tare that holds at each, shape (N, 6)."""
+        tared = readings.copy()
+        for sample, name, zero, payload in self._tares:
+            if name == sensor:
+                rest = slice(max(0, sample - first), None)
+                tared[rest] = readings[rest] - zero
+                if payload is not None:
+                    tared[rest] -= self._weight(sensor, payload, positions[rest])
+        return tared
+
+    def _weight(self, sensor: str, payload: Payload, positions: FloatArray) -> FloatArray:
+        """A payload's weight in a sensor's readings at joint positions (N, n), shape (N, 6)."""
+        known = self._sensors[sensor]
+        poses = self._kinematics.link_poses(positions, [known.link])[:, 0]
+        return payload.weight(known, poses, np.array(self._program.world.gravity))
+
     def _wait(self, holds: Callable[[], bool], timeout: float) -> bool:
-        return self._graph.spin_until(holds, timeout)
-
-    def _follow(self, client: ActionClient, goal: ClientGoal, timeout: float) -> None:
-        """Watch a goal until it is over, at most some wall time [s].
-
-        Whatever ends the watch before, such as Ctrl-C, cancels the goal: the robot stops.
-        """
-        try:
-            if not self._wait(lambda: goal.is_accepted is not None, PATIENCE):
-                _unreachable(f"{client.name} does not answer")
-            limit = wall.monotonic() + timeout
-            while not goal.is_over:
-                self._graph.spin(wall.monotonic() + GRID)
-                if client is self._arm:
-                    self._refuse_stray(goal)
-                if self._states.silence > SILENCE:
-                    _unreachable(
-                        f"/joint_states has stopped for {SILENCE:g} s; cancellation was requested,"
-                        " but the goal may go on: see that the robot stands, and restart its driver"
-                    )
-                if wall.monotonic() > limit:
-                    _unreachable(f"{client.name} does not end its goal")
-        except BaseException:
-            client.cancel(goal)
-            self._wait(lambda: goal.is_over, REASON)
-            raise
+        return self._controllers.wait(holds, timeout)
 
     def _refuse_other_start(self, trajectory: JointTrajectory) -> None:
         now, index = self.joint_positions(), self.description.joint_index
@@ -271,37 +290,6 @@ class RemoteArm:
             text = f"'{name}' stands {off:.3g} from where the trajectory begins"
             raise StepFailed("START_STATE_INVALID", f"{text} (tolerance {START_TOLERANCE:g})")
 
-    def _refuse_stray(self, goal: ClientGoal) -> None:
-        """Refuse to go on when the feedback shows a joint beyond its tolerance."""
-        tolerance, joints = self.description.tracking.trajectory, self.description.joint_by_name
-        for feedback in goal.feedback:
-            errors = map(abs, feedback.error.positions.tolist())
-            named = zip(errors, map(str, feedback.joint_names), strict=False)
-            known = [(error, name) for error, name in named if name in joints]
-            error, name = max(known, default=(0.0, ""))
-            if error > tolerance:
-                unit = joints[name].position_unit
-                raise StepFailed(
-                    "CONTROL_FAILED",
-                    f"{name} is {error:.3g} {unit} off its trajectory (tolerance"
-                    f" {tolerance:g} {unit}); the goal was canceled",
-                    ControlFailure(name, error, tolerance, unit, self.time, ()),
-                )
-        goal.feedback.clear()
-
-    def _refuse_failure(self, goal: ClientGoal, client: ActionClient) -> None:
-        if goal.is_accepted is False:
-            self._wait(lambda: goal.result is not None, REASON)
-        code = goal.result.error_code if goal.result else Code.SUCCESSFUL
-        if goal.is_accepted and goal.status is Status.SUCCEEDED and code == Code.SUCCESSFUL:
-            return
-        reason = f"ended with {goal.status.name}" if goal.is_accepted else "rejected the trajectory"
-        if code or goal.is_accepted:
-            reason += f", {Code(code).name if code in list(Code) else code}"
-        if goal.result and goal.result.error_string:
-            reason += f": {goal.result.error_string}"
-        raise StepFailed("CONTROL_FAILED", f"{client.name} {reason}")
-
 
 def _slowed(plan: JointTrajectory, share: float) -> JointTrajectory:
     """A trajectory at a share of its speed, which ends at rest."""
@@ -309,7 +297,3 @@ def _slowed(plan: JointTrajectory, share: float) -> JointTrajectory:
     velocities[-1] = 0.0
     times = plan.times / share
     return JointTrajectory(plan.joint_names, times, plan.positions, velocities, accelerations)
-
-
-def _unreachable(why: str) -> NoReturn:
-    raise StepFailed("COMMUNICATION_FAILURE", why)

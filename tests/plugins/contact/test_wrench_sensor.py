@@ -203,6 +203,15 @@ def test_a_rate_that_does_not_divide_the_step_reads_the_last_sample_that_was_due
         assert (held[row] == every[due]).all()
 
 
+@pytest.mark.parametrize("span", [0.001, 0.004, 0.05])
+def test_a_mean_right_after_a_tare_has_no_reading_from_before_it(ur5e, span):
+    simulator = held_load(with_sensor(ur5e), OFFSET)
+    simulator.hold(0.3)
+    assert np.abs(simulator.wrench("wrist", span)).max() > 20
+    simulator.tare("wrist", 0.05)
+    assert np.abs(simulator.wrench("wrist", span)).max() < 0.2
+
+
 def test_a_tare_is_forgotten_with_the_samples_after_a_snapshot(ur5e):
     simulator = held_load(with_sensor(ur5e), OFFSET)
     simulator.hold(0.3)

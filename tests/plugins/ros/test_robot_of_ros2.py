@@ -10,7 +10,7 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-import harness.plugins.ros.remote
+import harness.plugins.ros.remote_controllers
 from harness.cli.main import main
 from harness.plugins.ros.actions import ActionServer
 from harness.plugins.ros.bag.messages import message
@@ -111,7 +111,7 @@ def test_ctrl_c_stops_the_robot(tmp_path, plan):
 
 
 def test_a_robot_that_falls_silent_ends_the_run(plan, capsys, monkeypatch):
-    monkeypatch.setattr(harness.plugins.ros.remote, "SILENCE", 2.0)
+    monkeypatch.setattr(harness.plugins.ros.remote_controllers, "SILENCE", 2.0)
     with free_domain() as domain:
         driver, goals, is_over = Graph(domain, node="driver"), [], Event()
         states = driver.advertise("/joint_states", "sensor_msgs/msg/JointState")
