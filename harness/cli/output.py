@@ -83,7 +83,7 @@ class Output:
             return
         with self._lock:
             text = self._status() if self._status else f"  working, {self._elapsed:.0f} s"
-            self._write(f"{CLEAR_LINE}{cropped(printable(text), self._columns - 1)}")
+            self._write(f"{CLEAR_LINE}{cropped(printable(text), self.columns - 1)}")
             self._is_drawn, self._last_tick = True, time.monotonic()
 
     def clear(self) -> None:
@@ -125,14 +125,15 @@ class Output:
         return time.monotonic() - self._begin
 
     @property
-    def _columns(self) -> int:
+    def columns(self) -> int:
+        """The width of the terminal [characters]."""
         return shutil.get_terminal_size().columns
 
     def _write_line(self, shown: Callable[[str], str], text: str) -> None:
         parts = [printable(text)]
         if self._is_terminal:
             end = " \\" if text.lstrip().startswith(AGAIN) else ""
-            parts = fitted(parts[0], self._columns, end)
+            parts = fitted(parts[0], self.columns, end)
         with self._lock:
             self.clear()
             self._write("".join(f"{shown(part)}\n" for part in parts))

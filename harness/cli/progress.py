@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from harness.cli.output import Output, complain
 from harness.cli.work_bar import pace, remaining
+from harness.core.printable import columns_of, cropped, printable
 from harness.reporting.progress_events import (
     Judged,
     ProgressEvent,
@@ -18,6 +19,8 @@ from harness.reporting.progress_events import (
 )
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import Style, case_line, step_done, step_head, step_running
+
+NARROWEST = 20  # characters that are left for what a case is doing, else it is not shown
 
 
 @dataclass
@@ -142,7 +145,10 @@ class ProgressLines:
             begin = self._activities[index][1]
 
         def text() -> str:
-            return f"{self._suite_status()}{self._case_status(event, index, begin, now)}"
+            suite = self._suite_status()[: self._output.columns - 1]  # the rate, at the end, is cut
+            room = self._output.columns - 1 - columns_of(suite)
+            case = printable(self._case_status(event, index, begin, now))
+            return suite + (cropped(case, room) if room >= NARROWEST else "")
 
         return text
 
@@ -151,7 +157,7 @@ class ProgressLines:
         if total < 2:
             return ""
         times = self._start, self._last_end, self._clock()
-        return f"  {pace(*times, done, total, has_signs=self._style.has_signs)};"
+        return f"  {pace(*times, done, total, has_signs=self._style.has_signs)}"
 
     def _case_status(
         self, event: StepStarted | Working | None, index: int, begin: float, now: float

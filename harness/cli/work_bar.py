@@ -8,7 +8,7 @@ import time
 from harness.cli.output import output
 
 ENOUGH_FOR_AN_ESTIMATE = 3.0  # [s], before pace and remaining time are known from what is done
-BAR_WIDTH = 16  # characters
+BAR_WIDTH = 10  # characters: with counts and remaining time it fits into 40 columns
 
 
 class WorkBar:
@@ -52,7 +52,7 @@ def pace(
     known: int = 0,
     has_signs: bool,
 ) -> str:
-    """`######---------- 3 of 8, 12 a minute, about 25 s left`.
+    """`####------ 3 of 8, about 25 s left, 12 a minute`.
 
     Args:
         begin: When the first part began [s].
@@ -63,10 +63,14 @@ def pace(
     full, empty = "█░" if has_signs else "#-"
     filled = BAR_WIDTH * min(done, total) // max(1, total)
     text = f"{full * filled}{empty * (BAR_WIDTH - filled)} {done} of {total}"
+    text += remaining(begin, last, now, done - known, total - known)
     if done > known and last - begin >= ENOUGH_FOR_AN_ESTIMATE:
         rate = (done - known) / (last - begin)
-        text += f", {rate:.0f} a second" if rate >= 2 else f", {60 * rate:.3g} a minute"
-    return text + remaining(begin, last, now, done - known, total - known)
+        if rate >= 2:
+            text += f", {rate:.0f} a second"
+        elif 60 * rate >= 1:
+            text += f", {60 * rate:.0f} a minute"
+    return text
 
 
 def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:

@@ -88,11 +88,13 @@ def test_speeds_are_shown_where_they_are_requested():
 
 def test_work_in_parts_has_a_bar_a_rate_and_the_time_that_remains():
     assert pace(0.0, 60.0, 60.0, 20, 80, has_signs=False) == (
-        "####------------ 20 of 80, 20 a minute, about 3 min left"
+        "##-------- 20 of 80, about 3 min left, 20 a minute"
     )
-    assert pace(0.0, 1.0, 1.0, 1, 2, has_signs=True) == "████████░░░░░░░░ 1 of 2"
+    assert pace(0.0, 1.0, 1.0, 1, 2, has_signs=True) == "█████░░░░░ 1 of 2"
     resumed = pace(0.0, 10.0, 10.0, 60, 80, known=40, has_signs=False)
-    assert resumed.endswith("60 of 80, 2 a second, about 10 s left")
+    assert resumed.endswith("60 of 80, about 10 s left, 2 a second")
+    slow = pace(0.0, 600.0, 600.0, 2, 3, has_signs=False)
+    assert slow.endswith("2 of 3, about 5 min left"), "a rate below one a minute says nothing more"
 
 
 def test_the_outcome_is_shown_before_the_report_is_written_and_once():
@@ -208,3 +210,24 @@ def test_the_time_left_is_estimated_at_the_pace_so_far():
     assert remaining(0.0, 2.0, 2.0, 1, 5) == "", "too early to say"
     assert remaining(0.0, 10.0, 10.0, 0, 5) == ""
     assert remaining(0.0, 10.0, 99.0, 5, 5) == ""
+
+
+@pytest.mark.parametrize(("columns", "is_named"), [(40, False), (80, True), (200, True)])
+def test_the_remaining_time_of_a_suite_is_not_cut_on_a_narrow_terminal(
+    columns, is_named, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    now = [0.0]
+    stream = Terminal()
+    names = [f"rates [sample{number}]" for number in range(60)]
+    output = Output(stream)
+    lines = ProgressLines(output, names, is_side_by_side=True, style=Style(), clock=lambda: now[0])
+    now[0] = 100.0
+    for index in range(20):
+        lines.result(index, CaseResult("a", "", "Pick", "passed"))
+    lines.step(20, Working("measuring distances"))
+    output.tick()
+    status = stream.getvalue().rpartition("\x1b[2K")[2]
+    assert "20 of 60, about 3 min left" in status
+    assert ("rates" in status) is is_named
+    assert len(status) < columns
