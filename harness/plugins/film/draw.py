@@ -21,7 +21,7 @@ from harness.recording.stored_run import StoredRun
 
 SIZE = 960, 540  # [pixels]: slides and phones show it whole
 RATE = 15.0  # frames per second of simulated time
-MOST_FRAMES = 3000  # three minutes; of longer runs fewer a second
+MOST_FRAMES = 900  # a minute, drawn in two minutes of processor time; of longer runs fewer a second
 
 
 def draw_film(
