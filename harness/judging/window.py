@@ -73,7 +73,7 @@ class Window:
         elif self.step not in failed or self.step.error_code == "TIMED_OUT":
             return ""
         root = failed[-1]  # steps nested in others are recorded after them
-        return f"step '{root.id}' failed before then: {root.error_code}"
+        return f"step '{root.title}' failed before then: {root.error_code}"
 
 
 def lasting(mask: BoolArray) -> BoolArray:
@@ -101,7 +101,7 @@ def window_of(run: Run, step_id: str) -> Window:
         if step is None:
             raise NotReached(f"there is no step '{step_id}' in this run")
         if step.status == "not reached":
-            raise NotReached(f"the run ended before step '{step_id}'")
+            raise NotReached(f"the run ended before step '{step.title}'")
         window = Window(run, *_samples(run, step), step)
     if window.stop <= window.start:
         raise NotReached("nothing was recorded in the time it is judged over")
@@ -153,8 +153,8 @@ def refuse_changed_later(run: Run, step_id: str, names: Collection[str]) -> None
         for name in change.names:
             if name in names:
                 raise NotObservable(
-                    f"step '{other.id}' changed '{name}' at the same moment, before a sample"
-                    f" showed what '{step.id}' did: put `wait: 10 ms` between them"
+                    f"step '{other.title}' changed '{name}' at the same moment, before a sample"
+                    f" showed what '{step.title}' did: put `wait: 10 ms` between them"
                 )
 
 

@@ -31,7 +31,7 @@ class FirstDifference:
     """Where two recordings part: the first sample, and the signal that differs most there.
 
     Attributes:
-        step: Id of the step it happened in; empty when the runs part before the first.
+        step: Title of the step it happened in; empty when the runs part before the first.
         signal: Its name, with the column's where it is a joint's or a part of a pose.
         time: The time of the sample [s].
         unit: The unit of the values; empty where none is known.
@@ -101,7 +101,7 @@ def _longer(one: Run, two: Run, count: int) -> FirstDifference | None:
 
 def _step_at(run: Run, row: int) -> str:
     """The innermost step that a sample belongs to."""
-    inside = [step.id for step in run.steps if step.start_index <= row < step.end_index]
+    inside = [step.title for step in run.steps if step.start_index <= row < step.end_index]
     return inside[-1] if inside else ""
 
 

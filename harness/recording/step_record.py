@@ -56,9 +56,19 @@ class StepRecord:
     arm: str = ""
 
     @property
+    def title(self) -> str:
+        """What people call it: the id that the file gives, else its summary."""
+        return step_title(self.id, self.path, self.summary or self.verb)
+
+    @property
     def slug(self) -> str:
         """The id as part of a file name."""
         return re.sub(r"[^a-z0-9]+", "-", self.id.lower()).strip("-")[:48] or "step"
+
+
+def step_title(step_id: str, path: str, summary: str) -> str:
+    """The id that the file gives; where it gives none, the id is the path."""
+    return summary if step_id in ("", path) else step_id
 
 
 def is_nested(inner: str, outer: str) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 
 from harness.core.errors import Problem
 from harness.recording.run import Outcome
-from harness.recording.step_record import StepRecord, StepStatus
+from harness.recording.step_record import StepRecord, StepStatus, step_title
 from harness.recording.stored_run import PAGE
 from harness.recording.verdict import Verdict
 from harness.reporting.explanation import explanation_lines
@@ -36,6 +36,11 @@ class StepLine:
     line: int = 0
     explanation: tuple[str, ...] = ()
     path: str = ""
+
+    @property
+    def title(self) -> str:
+        """What people call it: the id that the file gives, else its summary."""
+        return step_title(self.id, self.path, self.summary or self.verb)
 
     @classmethod
     def of(cls, step: StepRecord) -> StepLine:

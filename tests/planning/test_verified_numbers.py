@@ -24,6 +24,7 @@ TIMES = np.arange(N) * 0.1
 START, END = np.array([0.0, 1.0]), np.array([0.5, 1.0])
 LIMITS = Limits(np.array([2.0, 1.0]), np.array([4.0, 3.0]))
 SPACE = SimpleNamespace(
+    wraps=np.array([True, True]),
     lower=np.array([-1.0, -2.0]), upper=np.array([0.5, 2.0]), joint_names=("one", "two"),
     metric=np.array([1.0, 3.0]),
 )  # fmt: skip
@@ -113,7 +114,7 @@ def test_ends_may_be_a_millionth_off_and_must_be_at_rest(place):
             found = defect(checker=bounds, positions=((place, joint), shifted[1]))
             assert found.details.plain()["broken"] == name
             assert found.details.plain()["distance"] == pytest.approx(1.1e-6)
-            assert f"trajectory's {name} is 1.1e-06 rad" in found.message
+            assert f"trajectory's {name} is 0.0000630 deg of " in found.message
             assert defect(velocities=((place, joint), sign * 0.9e-9)) is None
             found = defect(velocities=((place, joint), sign * 1.1e-9))
             assert found.details.plain()["broken"] == f"rest at {name}"

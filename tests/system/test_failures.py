@@ -63,7 +63,7 @@ MESSAGES = {
         r"no free path to the goal was found in at most 300 state checks",
         r"path: PLANNING_FAILED",
         r"    what blocks: after \d+ % of the direct joint motion, \w+ and plate",
-        r"    gap between the search trees: \d+\.\d\d rad",
+        r"    gap between the search trees: \d+\.\d°",
         r"    budget: \d+ state checks used in 1 search of 300",
         r"what to do: raise `max_state_checks`",
     ],

@@ -43,7 +43,7 @@ class DurationCheck(Predicate):
         run, step = window.run, window.step
         if step is not None:
             if step.status == "failed":
-                raise NotReached(f"step '{step.id}' failed before its end")
+                raise NotReached(f"step '{step.title}' failed before its end")
             seconds = step.end_time - step.start_time
         else:
             if run.ended_early:

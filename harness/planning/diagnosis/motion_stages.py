@@ -6,7 +6,14 @@ import numpy as np
 
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import touch_records
-from harness.planning.collision.wording import counted_noun, padding_advice, touch, touches, way_out
+from harness.planning.collision.wording import (
+    angle,
+    counted_noun,
+    padding_advice,
+    touch,
+    touches,
+    way_out,
+)
 from harness.planning.diagnosis.stage_request import StageFinding, StageRequest
 from harness.planning.verification.verify import FINAL_RESOLUTION
 from harness.recording.explanation import NearestState, Stage
@@ -160,7 +167,7 @@ def _blocked(
     search = failure.find(SearchFailure)
     if search is not None and search.gap is not None:
         details.append(
-            f"gap between the search trees: {search.gap:.2f} rad of joint space remain between "
+            f"gap between the search trees: {angle(search.gap)} of joint space remain between "
             "the states reached from the start and the goal"
         )
     if search is not None:

@@ -8,6 +8,7 @@ from typing import Any, ParamSpec
 
 import numpy as np
 
+from harness.core.amounts import amount
 from harness.core.errors import PlanningFailed
 from harness.core.registry import described, raised
 from harness.core.types import FloatArray
@@ -87,12 +88,21 @@ def _waypoints(found: Any, request: PathRequest) -> tuple[str, FloatArray | None
         return f"returned waypoints of shape ({shape}), not (N, {dof}) with N of at least 2", None
     if not np.all(np.isfinite(waypoints)):
         return "returned waypoints that are not finite", None
-    away = float(np.max(np.abs(waypoints[0] - request.start)))
-    if away > END_DISTANCE:
-        return f"returned a path that begins {away:.3g} rad (or m) away from the start", None
-    distances = [float(np.max(np.abs(waypoints[-1] - goal))) for goal in request.goals]
-    if min(distances) > END_DISTANCE:
-        return f"returned a path that ends {min(distances):.3g} rad (or m) away from a goal", None
+    away = waypoints[0] - request.start
+    if np.max(np.abs(away)) > END_DISTANCE:
+        return f"returned a path that begins away from the start: {_farthest(away, request)}", None
+    gaps = [waypoints[-1] - goal for goal in request.goals]
+    nearest = int(np.argmin([np.max(np.abs(gap)) for gap in gaps]))
+    if np.max(np.abs(gaps[nearest])) > END_DISTANCE:
+        farthest = _farthest(gaps[nearest], request)
+        return f"returned a path that ends away from a goal: {farthest}", None
     waypoints[0] = request.start
-    waypoints[-1] = request.goals[int(np.argmin(distances))]
+    waypoints[-1] = request.goals[nearest]
     return "", waypoints
+
+
+def _farthest(away: FloatArray, request: PathRequest) -> str:
+    """The joint that is farthest off: `elbow by 4.0 deg`."""
+    joint = int(np.argmax(np.abs(away)))
+    unit = "rad" if request.space.wraps[joint] else "m"
+    return f"{request.space.joint_names[joint]} by {amount(abs(float(away[joint])), unit)}"

@@ -7,9 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from harness.core.amounts import amounts
 from harness.core.details import Details
 from harness.core.trajectory import JointTrajectory
-from harness.core.types import FloatArray
+from harness.core.types import BoolArray, FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.timing.limits import Limits
@@ -63,7 +64,7 @@ def find_defect(
     """
     return (
         _stamps(trajectory)
-        or _ends(trajectory, start, end)
+        or _ends(trajectory, start, end, checker.space.wraps)
         or _limits(trajectory, checker, limits)
         or _jerks(trajectory, limits)
         or _efforts(trajectory, limits)
@@ -87,9 +88,10 @@ def find_departure(
     if away[row] <= deviation + END_TOLERANCE:
         return None
     time = float(trajectory.times[row])
+    off, allowed = amounts(float(away[row]), deviation, "rad")
     return Defect(
-        f"at {time:.3f} s it would be {away[row]:.3g} rad off the path that was checked, "
-        f"{deviation:.3g} rad are allowed",
+        f"at {time:.3f} s it would be {off} of joint space off the path that was checked, "
+        f"{allowed} are allowed",
         Details.of(TrajectoryFailure("path", time=time, path_deviation=float(away[row]))),
     )
 
@@ -137,16 +139,22 @@ def _stamps(trajectory: JointTrajectory) -> Defect | None:
     return Defect("the time stamps do not rise from zero", Details.of(TrajectoryFailure("stamps")))
 
 
-def _ends(trajectory: JointTrajectory, start: FloatArray, end: FloatArray) -> Defect | None:
+def _ends(
+    trajectory: JointTrajectory, start: FloatArray, end: FloatArray, wraps: BoolArray
+) -> Defect | None:
     ends: tuple[tuple[BrokenRule, BrokenRule, int, FloatArray], ...] = (
         ("start", "rest at start", 0, start),
         ("end", "rest at end", -1, end),
     )
     for place, rest, row, expected in ends:
-        off = float(np.max(np.abs(trajectory.positions[row] - expected)))
+        away = np.abs(trajectory.positions[row] - expected)
+        joint = int(np.argmax(away))
+        off = float(away[joint])
         if not off <= END_TOLERANCE:
+            shown, tolerance = amounts(off, END_TOLERANCE, "rad" if wraps[joint] else "m")
             return Defect(
-                f"the trajectory's {place} is {off:.2g} rad away from where it should be",
+                f"the trajectory's {place} is {shown} of {trajectory.joint_names[joint]} away from"
+                f" where it should be, at most {tolerance}",
                 Details.of(TrajectoryFailure(place, distance=off)),
             )
         speed = float(np.max(np.abs(trajectory.velocities[row])))

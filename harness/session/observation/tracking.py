@@ -229,5 +229,5 @@ def _allowances(run: Run, pair: Pair) -> list[tuple[str, np.ndarray]]:
             )
             if both:
                 during = (times >= step.start_time) & (times <= step.end_time)
-                allowances.append((f"step {step.id}", during))
+                allowances.append((f"step {step.title}", during))
     return allowances

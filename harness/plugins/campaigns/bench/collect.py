@@ -30,7 +30,7 @@ class MotionTrials:
     Attributes:
         step: The step's id, or its path if it has no id.
         trials: One trial for each planner and seed, planners outermost; a single trial when the
-            straight line is free.
+            direct joint motion is free.
     """
 
     file: str

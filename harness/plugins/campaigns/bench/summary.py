@@ -98,6 +98,6 @@ def motion_line(motion: MotionTrials) -> str:
     """A motion in one line: its place in the file and how many of its trials succeeded."""
     place = f"{motion.file}:{motion.line}"
     if not motion.is_searched:
-        return f"{place}: {motion.summary}: the straight line is free, no search is needed"
+        return f"{place}: {motion.summary}: the direct joint motion is free, no search is needed"
     solved = sum(trial.is_solved for trial in motion.trials)
     return f"{place}: {motion.summary}: {solved} of {len(motion.trials)} plans found"

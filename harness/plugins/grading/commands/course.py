@@ -135,7 +135,7 @@ def _show_case(case: CaseResult, file: Path, arguments: argparse.Namespace) -> i
     place = file if Path(case.file).name == file.name else Path(case.file).name
     for step in case.steps:
         if step.status == "failed":
-            say(f"{place}:{step.line}: step `{step.id or step.verb}` failed, {step.error_code}:")
+            say(f"{place}:{step.line}: step `{step.title}` failed, {step.error_code}:")
             say(f"    {step.message}", *(f"    {line}" for line in step.explanation))
     if case.message:
         say(case.message)

@@ -175,7 +175,7 @@ def _graded_node(arguments: argparse.Namespace) -> tuple[int, object]:
     if not arguments.json:
         for step in case.steps:
             if step.status == "failed":
-                say(f"{step.id} failed, {step.error_code}: {step.message}")
+                say(f"{step.title} failed, {step.error_code}: {step.message}")
         print_grade(grade)
         if code != _code(grade):
             say("not passed: every point is earned, but a step failed")

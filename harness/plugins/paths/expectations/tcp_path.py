@@ -229,7 +229,7 @@ def _motion_of(window: Window, step: StepRecord) -> JointTrajectory:
     if step.trajectory is None:
         if window.cut_short:
             raise NotReached(window.cut_short)
-        raise NotObservable(f"step '{step.id}' has no path of its own: give a line or an arc")
+        raise NotObservable(f"step '{step.title}' has no path of its own: give a line or an arc")
     return step.trajectory
 
 
