@@ -81,13 +81,21 @@ class Formula(Expectation):
             if problem := _beyond_range(comparison, robot) or _unbreakable(comparison, robot):
                 at.scope.problems.add_in_text(at.key("formula"), comparison.start, *problem)
         sensors = tuple(robot.wrench_sensors)
-        known = {"joint": robot.joint_names, "frame": frames, "body": bodies, "sensor": sensors}
+        belts = tuple(n for n, each in at.scope.objects.items() if each.surface_motion is not None)
+        known = {
+            "joint": robot.joint_names,
+            "frame": frames,
+            "body": bodies,
+            "sensor": sensors,
+            "belt": belts,
+        }
         measured = (*MEASURED_WORDS, *robot.of_arm, *at.scope.objects)
         kind_names = {
             "joint": "joint",
             "frame": "link or object",
             "body": "object or link",
             "sensor": "wrench sensor",
+            "belt": "belt or turntable",
         }
         for signal in signals_of(root):
             kinds, _, _ = SIGNALS[signal.name]
