@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.cell.scope import At
 from harness.core.types import FloatArray, IntArray
@@ -90,6 +90,7 @@ class Sees(Predicate):
 
     subject = "object"
     one_of = ("object", "color", "marker")
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"min_visible": ("object",)}
     sentence = "camera {camera} sees[ {object}][ {color}][ {marker}]"
     quantities = (PIXELS, VISIBLE)
 
@@ -117,12 +118,6 @@ class Sees(Predicate):
         description="The smallest share of the object's outline that nothing hides and that is in"
         " the picture.",
     )
-
-    @model_validator(mode="after")
-    def _one(self) -> Sees:
-        if "min_visible" in self.model_fields_set and self.object is None:
-            raise ValueError("`min_visible` goes with `object`; write `min_area` here")
-        return self
 
     def check(self, at: At) -> None:
         at.scope.check_camera(self.camera, at.key("camera"))
