@@ -23,7 +23,7 @@ class Kept:
 
     Attributes:
         what: What is constrained, for people.
-        excess: By how much the value that is worst exceeds its bound [rad or m]; negative inside.
+        excess: The most by which a value exceeds its bound [rad or m]; negative inside.
     """
 
     what: str
