@@ -51,6 +51,7 @@ BUILT_IN = {
     "controller": "harness.simulation.controllers",
     "robot": "",
     "robot_format": "",
+    "robot_option": "",
     "world_format": "",
     "decomposer": "",
     "reporter": "harness.reporting.reporters",
