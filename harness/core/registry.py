@@ -60,6 +60,7 @@ BUILT_IN = {
     "grip": "",
     "adhesion": "",
     "tracker": "",
+    "coordinator": "",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 
