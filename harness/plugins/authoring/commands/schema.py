@@ -26,14 +26,18 @@ class SchemaCommand(Command):
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Print the JSON Schema of scenario files, or write it."""
-        from harness.language.schema import schema_text
-
         file = arguments.write
         if file is None:
-            output().document(schema_text())
+            output().document(self.text())
             return 0
         with refusing_unwritable():
-            Path(file).write_text(schema_text(), encoding="utf-8")
+            Path(file).write_text(self.text(), encoding="utf-8")
         say(f"wrote {file}; the first line of a scenario can name it:")
         say(f"# yaml-language-server: $schema={file}")
         return 0
+
+    def text(self) -> str:
+        """The schema, as JSON."""
+        from harness.plugins.authoring.scenario_schema import schema_text
+
+        return schema_text()
