@@ -48,7 +48,7 @@ class RobotFormat(Plugin, ABC):
         """Apply the options of `robot:`; a format may first assume limits that its file lacks.
 
         Args:
-            robot: The composed robot.
+            robot: The robot with its gripper, fixed in the world.
             spec: The `robot:` of the scenario.
             known: Joints whose acceleration another file states.
 
