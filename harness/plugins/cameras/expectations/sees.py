@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.extras import absent_package
 from harness.core.types import FloatArray, IntArray
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -85,7 +86,8 @@ class Sees(Predicate):
     Judged from the picture at the window's end; next to a temporal word, `for` or `within` from
     pictures all along, at the camera's `update_rate`, at most 5 a second. What happens between two
     pictures is not seen. An object whose opacity is below 0.1 is not seen: its colours differ from
-    the background by less than a tenth of their range.
+    the background by less than a tenth of their range. Colours and markers need the extra
+    `cameras`.
     """
 
     subject = "object"
@@ -123,6 +125,9 @@ class Sees(Predicate):
         at.scope.check_camera(self.camera, at.key("camera"))
         if self.object is not None:
             at.scope.check_object(self.object, at.key("object"), simulated=True)
+        elif missing := absent_package("cv2"):
+            key = "color" if self.marker is None else "marker"
+            at.scope.problems.add(at.key(key), f"pictures cannot be searched for it: {missing}")
 
     def names(self) -> frozenset[str]:
         return frozenset() if self.object is None else frozenset({self.object})
