@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import ClassVar
 
+from harness.cli.arguments import output_file
 from harness.cli.command import SETUP, Command
 from harness.cli.files import refusing_unwritable
 from harness.cli.output import output, say
@@ -21,7 +22,7 @@ class SchemaCommand(Command):
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness schema`."""
         text = "write the schema to this file instead of standard output"
-        command.add_argument("--write", metavar="FILE", help=text)
+        command.add_argument("--write", metavar="FILE", type=output_file, help=text)
         add_plugin(command)
 
     def run(self, arguments: argparse.Namespace) -> int:
