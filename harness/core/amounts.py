@@ -64,7 +64,13 @@ def joint_position(value: float, unit: str) -> str:
 
 def amount_in_units(value: float, units: Collection[str]) -> str:
     """A number that holds for joints of these units: `0.57 deg`, or `0.57 deg or 10.0 mm`."""
-    return " or ".join(amount(value, unit) for unit in sorted(units, reverse=True))
+    return " or ".join(stated_amount(value, unit) for unit in sorted(units, reverse=True))
+
+
+def stated_amount(value: float, unit: str) -> str:
+    """A limit or a miss, which has digits however small it is: `0.0005 mm`, not `0 mm`."""
+    text = amount(value, unit)
+    return amount(value, unit, -1) if value and _is_zero(text) else text
 
 
 def point_text(xyz: Iterable[float]) -> str:
@@ -74,12 +80,22 @@ def point_text(xyz: Iterable[float]) -> str:
 
 def amounts(value: float, limit: float, unit: str) -> tuple[str, str]:
     """A quantity and what it is compared with, in digits that differ where the two do."""
-    return distinct(value, limit, lambda number, more: amount(number, unit, more))
+    shown, stated = distinct(value, limit, lambda number, more: amount(number, unit, more))
+    return shown, stated_amount(limit, unit) if _is_zero(stated) else stated
+
+
+def is_visible(difference: float, unit: str) -> bool:
+    """Whether people read a difference of two quantities as one: it is not written as 0."""
+    return math.isfinite(difference) and not _is_zero(amount(difference, unit))
 
 
 def is_exact(value: float, limit: float, unit: str) -> bool:
     """Whether an error is so small that people read it as none: it is written as 0."""
-    return amounts(value, limit, unit)[0].partition(" ")[0] == "0"
+    return _is_zero(amounts(value, limit, unit)[0])
+
+
+def _is_zero(text: str) -> bool:
+    return text.partition(" ")[0] == "0"
 
 
 def percentages(value: float, limit: float) -> tuple[str, str]:

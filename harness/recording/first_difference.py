@@ -23,6 +23,17 @@ OF_JOINTS: dict[str, tuple[str, str | None]] = {
 }
 """Signals with a column for each joint, in words, and what follows a position's unit."""
 
+OF_PAIRS: dict[str, tuple[str, str]] = {
+    "contact_forces": ("contact force between", "N"),
+    "presses": ("push between", "N"),
+    "frictions": ("friction between", "N"),
+    "pulls": ("pull between", "N"),
+    "support_forces": ("support between", "N"),
+    "clearances": ("distance between", "m"),
+    "planned_clearances": ("planned distance between", "m"),
+}
+"""Signals of two bodies, in words, and their units."""
+
 POSE = ("x", "y", "z", *(f"{part} of the quaternion" for part in "wxyz"))
 
 
@@ -115,4 +126,7 @@ def _signal_name(run: Run, name: str, column: int, columns: int) -> tuple[str, s
     kind, _, body = name.partition("/")
     if kind == "object_poses" and columns == len(POSE):
         return f"{POSE[column]} of {body}", "m" if column < 3 else ""
+    if kind in OF_PAIRS:
+        words, unit = OF_PAIRS[kind]
+        return f"{words} {body.replace('|', ' and ')}", unit
     return name.replace("_", " ").replace("/", " of "), ""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from harness.core.amounts import amount
+from harness.core.amounts import amount, stated_amount
 from harness.core.printable import ESC, counted, printable, printable_lines
 from harness.recording.step_record import is_nested
 from harness.recording.verdict import Measure, Verdict
@@ -268,7 +268,8 @@ def verdict_line(verdict: Verdict) -> str:
     """
     text = verdict.status
     if not math.isnan(verdict.margin):
-        margin, tightest = amount(abs(verdict.margin), verdict.unit), tightest_name(verdict)
+        margin = stated_amount(abs(verdict.margin), verdict.unit)
+        tightest = tightest_name(verdict)
         if tightest:
             required = verdict.measures[0]
             gap = amount(abs(required.value - required.limit), required.unit)

@@ -2,7 +2,14 @@
 
 import pytest
 
-from harness.core.amounts import JointUnits, amount_in_units, joint_position
+from harness.core.amounts import (
+    JointUnits,
+    amount_in_units,
+    amounts,
+    is_visible,
+    joint_position,
+    stated_amount,
+)
 from harness.language.goals import GoalFields
 
 UNITS = JointUnits({"elbow": "rad", "wrist": "rad", "rail": "m", "lift": "m"}, gripper="m")
@@ -36,3 +43,25 @@ def test_goals_are_summarised_in_the_units_of_the_robot():
     goal = GoalFields(joints={"rail": 0.3, "elbow": 1.0})
     assert goal.summary_in(UNITS) == "joints 300 mm, 57.3 deg"
     assert GoalFields(position={"xyz": [0.3, -0.2, 0.05]}).summary_in(UNITS) == "(300, -200, 50) mm"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (5e-7, "m", "0.00050 mm"),
+        (0.02e-3, "m", "0.02 mm"),
+        (1e-6, "rad", "5.7e-05 deg"),
+        (0.0, "m", "0 mm"),
+    ],
+)
+def test_a_limit_and_a_miss_have_digits_however_small_they_are(value, unit, text):
+    assert stated_amount(value, unit) == text
+    assert amount_in_units(value, (unit,)) == text
+    assert amounts(0.3, value, unit)[1] == text
+
+
+def test_a_difference_is_visible_where_it_is_not_written_as_0():
+    assert is_visible(1e-5, "m")
+    assert is_visible(-1e-5, "m")
+    assert not is_visible(1e-9, "m")
+    assert not is_visible(float("nan"), "m")

@@ -4,10 +4,12 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from harness.cli.main import main
 from harness.plugins.comparison.compare import MOST, compare, line_changes
+from harness.plugins.comparison.farthest import farthest_apart
 from harness.plugins.comparison.lines import comparison_lines
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
@@ -126,6 +128,8 @@ def test_many_changed_lines_are_counted():
          "path: 0.05 -> 3.0 mm"),
         (Verdict("path", "passed", 0.05, "m"), Verdict("path", "passed", 0.04, "m"),
          "path: 50.0 mm -> 40.0 mm (-10.0 mm)"),
+        (Verdict("path", "passed", 0.05, "m"), Verdict("path", "failed", -1e-9, "m"),
+         "path: passed by 50.0 mm -> failed by 1.0e-06 mm"),
     ],
 )  # fmt: skip
 def test_a_plain_number_has_no_unit(before, after, said):
@@ -142,3 +146,36 @@ def test_runs_of_different_robots_are_compared_by_their_names():
     comparison = compare(*stored)
     assert not comparison.is_same
     assert "  hand -> one_joint" in list(comparison_lines(comparison))
+
+
+def test_margins_that_people_read_as_equal_are_no_change():
+    stored = [StoredRun(make_run(), (Verdict("path", "passed", margin, "rad"),), "passed", "", {})
+              for margin in (1.5, 1.5 + 1e-9)]  # fmt: skip
+    assert compare(*stored).changes == ()
+
+
+def test_the_tool_and_objects_are_named_where_they_are_farthest_apart():
+    times = np.linspace(0.0, 1.99, 200)
+    moved = np.tile([0.3, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0], (200, 1))
+    away = moved.copy()
+    away[100:, 1] = 0.25 * (times[100:] - 1.0)
+    runs = [make_run(object_poses={"box": each}) for each in (moved, away)]
+    [box] = farthest_apart(*runs)
+    assert (box.name, box.time) == ("box", pytest.approx(1.99))
+    assert box.distance == pytest.approx(0.2475)
+    stored = [StoredRun(run, (), "passed", str(n), {}) for n, run in enumerate(runs)]
+    lines = list(comparison_lines(compare(*stored)))
+    assert "  box is farthest apart at t=1.990 s, by 248 mm" in lines
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("contact_forces", "contact force between box and bin is 1.0 N and 2.0 N"),
+        ("support_forces", "support between box and bin is 1.0 N and 2.0 N"),
+    ],
+)
+def test_forces_of_two_bodies_are_named_with_their_unit(name, words):
+    runs = [make_run(**{name: {("box", "bin"): np.full(200, value)}}) for value in (1.0, 2.0)]
+    stored = [StoredRun(run, (), "passed", str(n), {}) for n, run in enumerate(runs)]
+    assert words in "\n".join(comparison_lines(compare(*stored)))

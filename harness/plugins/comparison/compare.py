@@ -10,10 +10,11 @@ from itertools import zip_longest
 
 import numpy as np
 
-from harness.core.amounts import amount, amounts
+from harness.core.amounts import amount, amounts, is_visible, stated_amount
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.plugins.comparison.alignment import StepPair, aligned_steps, names_of
+from harness.plugins.comparison.farthest import Farthest, farthest_apart
 from harness.recording.first_difference import FirstDifference, first_difference
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
@@ -62,12 +63,14 @@ class RunComparison:
         is_same: Whether the digests of what both folders hold are equal.
         changes: The changes: everything that differs.
         first_difference: Where the recordings part.
+        farthest: Where the tool and objects are farthest apart.
         warnings: What was changed in either folder after its run was written.
     """
 
     is_same: bool
     changes: tuple[Change, ...]
     first_difference: FirstDifference | None
+    farthest: tuple[Farthest, ...] = ()
     warnings: tuple[str, ...] = ()
 
 
@@ -91,7 +94,8 @@ def compare(first: StoredRun, second: StoredRun) -> RunComparison:
         *(f"second run: {each}" for each in second.changes()),
     )
     is_same = first.content_digest == second.content_digest
-    return RunComparison(is_same, tuple(changes), first_difference(one, two), warnings)
+    parting = first_difference(one, two)
+    return RunComparison(is_same, tuple(changes), parting, farthest_apart(one, two), warnings)
 
 
 def _readable(before: str, after: str) -> tuple[str, str]:
@@ -134,7 +138,7 @@ def _steps(
         changes += _words("step", name, _status(a), _status(b))
         changes += _trajectory(name, a, b, units)
         lasted = a.end_time - a.start_time, b.end_time - b.start_time
-        if abs(lasted[1] - lasted[0]) > 1e-9:
+        if is_visible(lasted[1] - lasted[0], "s"):
             changes.append(_number("duration", name, *lasted, "s"))
     return changes
 
@@ -158,9 +162,9 @@ def _trajectory(
         return [Change("trajectory", name, joints[0], joints[1])]
     before, after = _resampled(ours), _resampled(theirs)
     apart = np.abs(after - before).max(axis=0)
-    if not apart.any():
-        return []
     known = [units.get(joint, "") for joint in ours.joint_names]
+    if not any(map(is_visible, apart.tolist(), known)):
+        return []
     shared = known[0] if len(set(known)) == 1 else ""
     words = [f"path of {amount(path_length(path), shared)}".rstrip() for path in (before, after)]
     worst = int(np.argmax(apart))
@@ -182,7 +186,7 @@ def _verdicts(ours: Mapping[str, Verdict], theirs: Mapping[str, Verdict]) -> lis
         a, b = ours.get(name), theirs.get(name)
         if a is None or b is None or a.status != b.status:
             changes += _words("verdict", name, _judged(a), _judged(b))
-        elif a.margin != b.margin and not (np.isnan(a.margin) and np.isnan(b.margin)):
+        elif a.unit != b.unit or is_visible(b.margin - a.margin, a.unit):
             changes.append(_margin(name, a, b))
     return changes
 
@@ -217,7 +221,7 @@ def _judged(verdict: Verdict | None) -> str:
         return NONE
     if np.isnan(verdict.margin):
         return verdict.status
-    return f"{verdict.status} by {amount(abs(verdict.margin), verdict.unit)}"
+    return f"{verdict.status} by {stated_amount(abs(verdict.margin), verdict.unit)}"
 
 
 def _number(what: str, name: str, before: float, after: float, unit: str) -> Change:

@@ -37,6 +37,7 @@ def comparison_page(
     facts = {
         "pairs": _indices(first, second),
         "parting": None if parting is None else {"time": parting.time, "text": text},
+        "farthest": [{"time": each.time, "text": each.text} for each in comparison.farthest],
         "warnings": comparison.warnings,
         "groups": groups,
     }

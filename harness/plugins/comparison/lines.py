@@ -30,6 +30,7 @@ def comparison_lines(comparison: RunComparison, style: Style = PLAIN) -> Iterato
         yield f"{style.good('same')}  equal digests: commands, signals and verdicts are the same"
     else:
         yield f"{style.bad('different')}  {_parting(comparison.first_difference)}"
+    yield from (f"  {each.text}" for each in comparison.farthest)
     for warning in comparison.warnings:
         yield f"{style.bad('changed')}  {warning}"
     order = list(HEADINGS)
@@ -58,9 +59,9 @@ def parting_text(first: FirstDifference) -> str:
 
 def _line(change: Change) -> str:
     name = f"{change.name}: " if change.name else ""
-    if change.before == change.after:
-        return f"{name}{change.before}"
-    line = f"{name}{change.before} -> {change.after}"
+    line = f"{name}{change.before}"
+    if change.before != change.after:
+        line += f" -> {change.after}"
     if not change.difference:
         return line
     if change.what == "trajectory":

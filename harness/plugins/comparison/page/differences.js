@@ -5,9 +5,10 @@ import { STATUS } from "./units.js";
 
 /** @param {any} facts of the comparison @param {(time: number) => void} seek @returns {HTMLElement} */
 export function differencesView(facts, seek) {
-  const parting = facts.parting && element("section", {},
+  const moments = [facts.parting, ...facts.farthest].filter(Boolean);
+  const parting = moments.length > 0 && element("section", {},
     element("h3", {}, "Where they part"),
-    element("button.link", { type: "button", onclick: () => seek(facts.parting.time) }, facts.parting.text),
+    ...moments.map(({ time, text }) => element("button.link", { type: "button", onclick: () => seek(time) }, text)),
   );
   return element("div.differences", {}, parting, ...facts.warnings.map((text) => element("p.why", {}, text)), ...facts.groups.map(groupView));
 }
