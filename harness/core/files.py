@@ -64,11 +64,6 @@ def read_at_most(path: Path, most: int) -> bytes:
     return path.read_bytes()
 
 
-def part_of(file: Path) -> Path:
-    """The file that is written first, and then renamed."""
-    return file.with_name(f".{file.name}.{os.getpid()}")
-
-
 @contextmanager
 def replaced(file: Path) -> Generator[IO[bytes]]:
     """A new file, which gets its name when everything is written.
@@ -81,7 +76,7 @@ def replaced(file: Path) -> Generator[IO[bytes]]:
             yield stream
         return
     file = file.resolve()
-    part = part_of(file)
+    part = file.with_name(f".{file.name}.{os.getpid()}")
     try:
         with part.open("wb", buffering=BUFFER) as stream:
             yield stream

@@ -51,7 +51,6 @@ BUILT_IN = {
     "controller": "harness.simulation.controllers",
     "robot": "",
     "robot_format": "",
-    "robot_option": "",
     "world_format": "",
     "decomposer": "",
     "reporter": "harness.reporting.reporters",
@@ -60,7 +59,6 @@ BUILT_IN = {
     "grip": "",
     "adhesion": "",
     "tracker": "",
-    "coordinator": "",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 

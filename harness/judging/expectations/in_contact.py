@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -49,7 +48,6 @@ class InContact(Predicate):
     judged = "eventually"
     sentence = "{between} are in contact[ with at least {min_force}]"
     quantities = (CONTACT,)
-    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"force_window": ("min_force",)}
     synonyms = ("contact", "contacts", "touch", "touching")
 
     between: tuple[Name, Name] = Field(

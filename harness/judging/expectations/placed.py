@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -73,7 +72,6 @@ class Placed(ObjectPredicate):
     sentence = "{object} is placed[ on {on}][ at {pose}]"
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
     is_proposed = True
-    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"tolerance": ("pose",)}
 
     on: Name | None = Field(
         default=None,

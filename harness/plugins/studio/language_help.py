@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,8 +10,8 @@ from typing import Any
 
 import yaml
 
-from harness.core.registry import registry
 from harness.language.language import EXPECTATIONS
+from harness.language.schema import scenario_schema
 from harness.language.step import STEPS
 
 Schema = Mapping[str, Any]
@@ -63,7 +62,7 @@ def named_at(path: Path, names: Names) -> Sequence[str]:
 
 @cache
 def _schema() -> Schema:
-    return json.loads(registry("command").find("schema")().text())
+    return scenario_schema()
 
 
 def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:

@@ -260,6 +260,54 @@ def test_failures_without_a_cause_are_explained_by_nothing(failures, count):
     assert sum(map(bool, found)) <= 20
 
 
+def stuck(number):
+    return replace(STUCK, file="a/pick.scenario.yaml", case=f"c{number}")
+
+
+def two_causes(seed, count, first, second):
+    """A campaign whose runs fail by too little friction, or because the goal is too far."""
+    rng = random.Random(seed)
+    rows = [{name: rng.random() for name in ("friction", "x", "y", "color")} for _ in range(count)]
+    slipped, far = set(first(rows, rng)), set(second(rows, rng))
+    cases = [
+        SuiteCase(
+            stuck(i) if i in far else failed(i, 0.04) if i in slipped else passed(i, 0.06), row
+        )
+        for i, row in enumerate(rows)
+    ]
+    [found] = sensitivities(Columns(cases))
+    return found
+
+
+def highest(count, path):
+    return lambda rows, _: sorted(range(len(rows)), key=lambda i: -rows[i][path])[:count]
+
+
+def test_two_causes_are_explained_by_a_parameter_each():
+    found = two_causes(3, 60, lowest(20, "friction"), highest(9, "x"))
+    explained = {each.path: each for each in found.effects if each.is_shown}
+    assert list(explained) == ["friction", "x"]
+    assert explained["x"].causes == ("NO_IK_SOLUTION in move_to",)
+    assert explained["x"].explained == 9
+    assert "x (higher in failed runs) explains 9" in found.conclusion
+    assert f"Of {found.failures} failures friction" in found.conclusion
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("count", [40, 60])
+def test_two_causes_are_named_in_nearly_every_campaign_and_no_other(count):
+    found = [two_causes(s, count, lowest(15, "friction"), highest(6, "x")) for s in range(200)]
+    named = [{each.path for each in one.effects if each.is_shown} for one in found]
+    assert sum({"friction", "x"} <= each for each in named) >= 195
+    assert sum(bool(each - {"friction", "x"}) for each in named) <= 20
+
+
+@pytest.mark.nightly
+def test_two_causes_of_chance_are_explained_by_nothing():
+    found = [two_causes(s, 60, any_of_them(12), any_of_them(6)) for s in range(200)]
+    assert sum(any(each.is_shown for each in one.effects) for one in found) <= 20
+
+
 def test_margins_are_explained_where_no_run_failed():
     cases = [
         SuiteCase(passed(i, 0.06 + 0.001 * (i % 10)), {"x": i % 10, "y": i // 10})
@@ -390,3 +438,34 @@ def test_hostile_words_stay_text(tmp_path, visit):
 def test_few_runs_and_runs_without_variation_have_no_map(tmp_path):
     for cases in (campaign(4), [SuiteCase(passed(i)) for i in range(50)]):
         assert campaign_of(Columns(cases), cases, tmp_path) is None
+
+
+def test_the_keys_go_through_the_runs_of_the_map(page_file, visit):
+    page = visit(page_file).page
+    canvas = page.locator("#map canvas")
+    canvas.focus()
+    said = set()
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+        said.add(page.inner_text("#map output"))
+    assert len(said) == 3
+    page.keyboard.press("ArrowLeft")
+    assert page.inner_text("#map output") in said
+    assert "friction" in page.inner_text("#map output")
+
+
+def test_the_curve_of_a_parameter_leaves_out_runs_that_failed_for_another_cause():
+    rng = random.Random(3)
+    rows = [{"friction": rng.random(), "x": rng.random()} for _ in range(60)]
+    far = set(highest(9, "x")(rows, rng))
+    slipped = set(lowest(20, "friction")(rows, rng)) - far
+    cases = [
+        SuiteCase(
+            stuck(i) if i in far else failed(i, 0.04) if i in slipped else passed(i, 0.06), row
+        )
+        for i, row in enumerate(rows)
+    ]
+    shown = campaign_of(Columns(cases), cases, Path())
+    curve = shown.curves["a/pick.scenario.yaml", "friction"]
+    rates = [1 - point.y / curve.height for point in curve.points]
+    assert set(rates[-4:]) == {1.0}, "all that failed there were too far away"

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.cell.scope import At
-from harness.core.extras import absent_package
 from harness.core.types import FloatArray, IntArray
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -86,13 +85,11 @@ class Sees(Predicate):
     Judged from the picture at the window's end; next to a temporal word, `for` or `within` from
     pictures all along, at the camera's `update_rate`, at most 5 a second. What happens between two
     pictures is not seen. An object whose opacity is below 0.1 is not seen: its colours differ from
-    the background by less than a tenth of their range. Colours and markers need the extra
-    `cameras`.
+    the background by less than a tenth of their range.
     """
 
     subject = "object"
     one_of = ("object", "color", "marker")
-    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"min_visible": ("object",)}
     sentence = "camera {camera} sees[ {object}][ {color}][ {marker}]"
     quantities = (PIXELS, VISIBLE)
 
@@ -121,13 +118,16 @@ class Sees(Predicate):
         " the picture.",
     )
 
+    @model_validator(mode="after")
+    def _one(self) -> Sees:
+        if "min_visible" in self.model_fields_set and self.object is None:
+            raise ValueError("`min_visible` goes with `object`; write `min_area` here")
+        return self
+
     def check(self, at: At) -> None:
         at.scope.check_camera(self.camera, at.key("camera"))
         if self.object is not None:
             at.scope.check_object(self.object, at.key("object"), simulated=True)
-        elif missing := absent_package("cv2"):
-            key = "color" if self.marker is None else "marker"
-            at.scope.problems.add(at.key(key), f"pictures cannot be searched for it: {missing}")
 
     def names(self) -> frozenset[str]:
         return frozenset() if self.object is None else frozenset({self.object})

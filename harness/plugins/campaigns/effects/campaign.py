@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from harness.core.amounts import amount
-from harness.core.types import FloatArray
+from harness.core.types import FloatArray, IntArray
 from harness.plugins.campaigns.effects.curves import Curve, curve_of
 from harness.plugins.campaigns.effects.sensitivity import (
     FEWEST_RUNS,
@@ -121,10 +121,21 @@ def _curves(
     for each in found:
         chosen = np.flatnonzero(files == columns.files.index(each.file))
         shares = None if each.measured == "outcome" else np.array(columns.shares)
+        causes = {effect.path: effect.causes for effect in each.effects}
         for parameter in parameters:
-            curve = curve_of(parameter, chosen, is_good, shares)
+            runs = _without_other_causes(columns, chosen, causes.get(parameter.path, ()))
+            curve = curve_of(parameter, runs, is_good, shares)
             if curve is not None:
                 yield (each.file, parameter.path), curve
+
+
+def _without_other_causes(columns: Columns, chosen: IntArray, causes: Sequence[str]) -> IntArray:
+    """The runs that passed or failed for these causes; all of them where none is named."""
+    if not causes:
+        return chosen
+    names = list(columns.causes)
+    kept = [PASSED, *(names.index(cause) for cause in causes)]
+    return chosen[np.isin(np.array(columns.groups)[chosen], kept)]
 
 
 def _map(

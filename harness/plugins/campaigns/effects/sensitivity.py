@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,8 @@ class Effect:
         reason: Why there is no share; empty where there is one.
         chance: The probability that chance gives any parameter of the file as clear an effect.
         words: How the failed runs differ, or how the margin depends on the parameter.
+        causes: The causes whose failures it explains, where runs failed for several causes.
+        explained: The number of these failures.
     """
 
     path: str
@@ -37,6 +39,8 @@ class Effect:
     reason: str = ""
     chance: float = 1.0
     words: str = ""
+    causes: tuple[str, ...] = ()
+    explained: int = 0
 
     @property
     def is_shown(self) -> bool:
@@ -51,6 +55,7 @@ class FileSensitivity:
     Attributes:
         measured: What is explained: `outcome` where some runs failed, else `worst margin`.
         failures: The number of failed runs.
+        causes: The number of causes for which they failed.
         effects: The clearest one first; empty where the file has too few runs.
     """
 
@@ -59,14 +64,19 @@ class FileSensitivity:
     measured: str = ""
     failures: int = 0
     effects: Sequence[Effect] = ()
+    causes: int = 1
 
     @property
     def conclusion(self) -> str:
         """What the runs show, in a sentence."""
         what = "these failures" if self.measured == "outcome" else "the margins"
-        shown = [f"{each.path} ({each.words})" for each in self.effects if each.is_shown]
-        if not shown:
+        found = [each for each in self.effects if each.is_shown]
+        if not found:
             return f"No parameter explains {what}: none has an effect beyond chance."
+        if self.causes > 1:
+            parts = [f"{each.path} ({each.words}) explains {each.explained}" for each in found]
+            return f"Of {self.failures} failures {' and '.join(parts)}."
+        shown = [f"{each.path} ({each.words})" for each in found]
         verb = "explains" if len(shown) == 1 else "explain"
         return f"{' and '.join(shown)} {verb} {what}."
 
@@ -77,7 +87,8 @@ def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
     The statistic is a rank correlation, of the parameter or of its distance from its middle, or of
     words the correlation ratio. Permutations of the outcomes give its distribution by chance, and
     Westfall and Young's step with the smallest probability accounts for the number of parameters
-    [1]. The permutations are always the same.
+    [1]. The permutations are always the same. Where runs failed for several causes, each cause is
+    tested against the runs that passed, and its probabilities are multiplied by their number.
 
     References:
         [1] P. H. Westfall and S. S. Young, "Resampling-Based Multiple Testing", Wiley, 1993.
@@ -98,10 +109,45 @@ def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
         else:
             values = shares
             chosen = evenly(chosen[np.isfinite(shares[chosen])], 2 * MOST_RUNS)
-        effects = _effects(columns.parameters, chosen, values[chosen], is_outcome=has_both)
+        causes = _causes(columns, chosen) if has_both else {}
+        if len(causes) > 1:
+            effects = _effects_by_cause(columns, chosen, causes)
+        else:
+            effects = _effects(columns.parameters, chosen, values[chosen], is_outcome=has_both)
         measured = "outcome" if has_both else "worst margin"
         runs = int((files == number).sum())
-        yield FileSensitivity(file, runs, measured, failures, effects)
+        yield FileSensitivity(file, runs, measured, failures, effects, max(1, len(causes)))
+
+
+def _causes(columns: Columns, chosen: IntArray) -> dict[str, IntArray]:
+    """The failed runs of each cause, the most frequent cause first."""
+    names, groups = list(columns.causes), np.array(columns.groups)[chosen]
+    found = {names[group]: chosen[groups == group] for group in np.unique(groups[groups >= 0])}
+    return dict(sorted(found.items(), key=lambda each: -len(each[1])))
+
+
+def _effects_by_cause(
+    columns: Columns, chosen: IntArray, causes: Mapping[str, IntArray]
+) -> list[Effect]:
+    """The effects of parameters on failures of any cause, those that explain most first."""
+    passed = chosen[columns.is_good[chosen]]
+    found: dict[str, list[tuple[str, Effect]]] = {}
+    for cause, failed in causes.items():
+        runs = np.sort(np.concatenate([passed, failed]))
+        values = np.isin(runs, failed).astype(float)
+        for each in _effects(columns.parameters, runs, values, is_outcome=True):
+            chance = min(1.0, each.chance * len(causes))
+            found.setdefault(each.path, []).append((cause, replace(each, chance=chance)))
+    merged = [_merged(each, causes) for each in found.values()]
+    return sorted(merged, key=lambda each: (-each.explained, each.share is None, each.chance))
+
+
+def _merged(effects: Sequence[tuple[str, Effect]], causes: Mapping[str, IntArray]) -> Effect:
+    """The clearest effect of a parameter on one of the causes, with all causes that it explains."""
+    shown = tuple(cause for cause, each in effects if each.is_shown)
+    clearest = min((each for _, each in effects), key=lambda each: each.chance)
+    explained = sum(len(causes[cause]) for cause in shown)
+    return replace(clearest, causes=shown, explained=explained)
 
 
 def evenly(indices: IntArray, most: int = MOST_RUNS) -> IntArray:

@@ -1,1 +1,0 @@
-"""Puts arms on pedestals and rails, and joins several arms into one robot."""

@@ -1,1 +1,0 @@
-"""The options `mount` and `robots`."""

@@ -1,1 +1,0 @@
-"""The options `kinematics` and `moveit`, which name files."""
