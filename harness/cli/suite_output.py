@@ -140,12 +140,12 @@ def show_interruption(arguments: argparse.Namespace, suite: SuiteRun, seconds: f
 
     after = f"interrupted after {seconds:.1f} s"
     if len(suite.jobs) == 1:
-        where = "".join(f", during {progress_text(event)}" for event in suite.unfinished.values())
+        where = "".join(f", {progress_text(event)}" for event in suite.unfinished.values())
         complain(f"{after}{where}: the run did not finish, and no report was written")
         return
     complain(f"{after}: {suite.missing} of {len(suite.jobs)} runs did not finish")
     for index, event in suite.unfinished.items():
-        complain(f"  {suite.jobs[index].file}: during {progress_text(event)}")
+        complain(f"  {suite.jobs[index].file}: {progress_text(event)}")
     if arguments.repeat == 1 and not arguments.no_report:
         complain("the same command with --resume runs the rest")
 

@@ -238,7 +238,7 @@ class _Running:
 def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
     if isinstance(ended.result, CaseResult) and ended.code == 0:
         return ended.result
-    at = f" during {progress_text(case.last)}" if case.last else ""
+    at = f" {progress_text(case.last)}" if case.last else ""
     printed = f"\nIt had printed:\n{ended.log.rstrip()}" if ended.log.strip() else ""
     if case.is_over_cap:
         why = f"no end after {cap:g} s of wall time{at}; stopped by the hard cap{printed}"
@@ -257,20 +257,20 @@ def _result(case: _Running, ended: Ended, cap: float) -> CaseResult:
 
 
 def progress_text(event: ProgressEvent) -> str:
-    """The progress of a case, in words."""
+    """When in its course a case stands, in words."""
     match event:
         case StepProgress():
             number = f" {event.index + 1}/{event.total}" if event.index >= 0 else ""
-            after = "after " if isinstance(event, StepFinished) else ""
-            return f"{after}step{number}: {event.step}"
+            when = "after" if isinstance(event, StepFinished) else "during"
+            return f"{when} step{number}: {event.step}"
         case Working():
-            return event.what
+            return f"during {event.what}"
         case Compiled():
-            return "the first step"
+            return "during the first step"
         case Judged():
-            return "the report"
+            return "during the report"
         case _:
-            return "the end"
+            return "during the end"
 
 
 def error_result(job: RunRequest, message: str) -> CaseResult:

@@ -71,11 +71,19 @@ def remove_abandoned(prefix: str, parent: Path | None = None) -> None:
 
 
 def is_alive(pid: int) -> bool:
-    """Whether a process of this machine is there."""
+    """Whether a process of this machine runs.
+
+    One that has ended does not, although its parent, as the first process of many containers,
+    never waits for it.
+    """
     try:
         os.kill(pid, 0)
     except (ProcessLookupError, OverflowError):
         return False
     except PermissionError:
         return True
-    return True
+    try:
+        status = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return True
+    return status.rpartition(") ")[2][:1] != "Z"

@@ -12,6 +12,8 @@ import time
 from dataclasses import dataclass
 from itertools import pairwise
 
+from tests.waiting import HANG
+
 HARNESS = [sys.executable, "-m", "harness.cli"]
 STYLING = re.compile(r"\x1b\[\d+m|\x1b\]8;;[^\x1b]*\x1b\\")
 
@@ -78,6 +80,8 @@ def run_in_terminal(arguments, folder, columns=80, on_text=None, **environment):
             except OSError:  # Linux: the other end is gone
                 break
             moments.append(time.monotonic() - begin)
+            if moments[-1] > HANG:
+                process.kill()
             if on_text is not None:
                 on_text(process, text.decode(errors="replace"))
     moments.append(time.monotonic() - begin)

@@ -12,25 +12,28 @@ import pytest
 
 from harness.suite.leftovers import clean_report_folder
 from tests.cli.run_in_terminal import HARNESS, run_in_terminal
-from tests.waiting import HANG, wait_for
+from tests.gate import PLUGIN, Gate
+from tests.waiting import HANG, is_alive, wait_for
 
 LONG = """\
 scenario: Long
 robot: open_manipulator_x
 steps:
   - wait: 0.1 s
-  - wait: 500 s
+  - STEP
     id: sleep
 expect:
   - duration: {at_least: 1 s}
 """
 SCRIPT = [sys.executable, "-c", "from harness.cli.main import entry; entry()"]
-SHORT = LONG.replace("500 s", "0.1 s")
+WIDE = 200
+"""Columns that hold a line of progress, however long the estimate of the time left is."""
+SHORT = LONG.replace("STEP", "wait: 0.1 s")
 
 
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "long.scenario.yaml").write_text(LONG)
+    (tmp_path / "long.scenario.yaml").write_text(LONG.replace("STEP", Gate(tmp_path).step))
     (tmp_path / "short.scenario.yaml").write_text(SHORT)
     return tmp_path
 
@@ -51,11 +54,13 @@ def once(words, number):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupted_run_says_where_it_stood(folder, number):
     session = run_in_terminal(
-        ["run", "long.scenario.yaml"], folder, on_text=once("2/2  wait 500 s", number)
+        ["run", "long.scenario.yaml", *PLUGIN], folder, on_text=once("2/2  hold", number)
     )
     assert session.code == 130, session.text
     said = " ".join(session.text.split())
-    assert re.search(r"interrupted after [\d.]+ s, during step 2/2: wait 500 s: the run did", said)
+    assert re.search(
+        r"interrupted after [\d.]+ s, during step 2/2: hold at the gate: the run did", said
+    )
     assert "Traceback" not in said
     assert "0 cases" not in said
     assert not list(folder.glob("reports/**/.*")), "nothing half written"
@@ -63,14 +68,14 @@ def test_an_interrupted_run_says_where_it_stood(folder, number):
 
 def test_an_interrupted_suite_counts_what_is_missing(folder):
     session = run_in_terminal(
-        ["run", "short.scenario.yaml", "long.scenario.yaml", "--no-page"], folder,
-        on_text=once("2/2  wait 500 s", signal.SIGTERM),
+        ["run", "short.scenario.yaml", "long.scenario.yaml", "--no-page", *PLUGIN],
+        folder, columns=WIDE, on_text=once("2/2  hold", signal.SIGTERM),
     )  # fmt: skip
     assert session.code == 130
     lines = "\n".join(session.lines)
     assert "1 failed of 1 case" in lines
     assert re.search(r"interrupted after [\d.]+ s: 1 of 2 runs did not finish", lines)
-    assert "long.scenario.yaml: during step 2/2: wait 500 s" in lines
+    assert "long.scenario.yaml: during step 2/2: hold at the gate" in lines
     assert "--resume" in lines
 
 
@@ -80,7 +85,7 @@ def test_an_interrupted_suite_counts_what_is_missing(folder):
 def test_a_signal_at_any_moment_ends_a_command_without_a_traceback(folder, number, option):
     for delay in (0.02, 0.05, 0.1, 0.15, 0.25, 0.3, 0.4, 0.5, 0.6, 1.2):
         with subprocess.Popen(
-            [*SCRIPT, "run", "long.scenario.yaml", option], cwd=folder,
+            [*SCRIPT, "run", "long.scenario.yaml", option, *PLUGIN], cwd=folder,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         ) as process:  # fmt: skip
             time.sleep(delay)
@@ -202,14 +207,24 @@ def test_every_run_cleans_the_whole_report_folder(folder):
 
 
 def test_a_killed_run_leaves_nothing_after_the_next_one(folder):
-    (folder / "film.scenario.yaml").write_text(SHORT)
-    with subprocess.Popen([*HARNESS, "run", "film.scenario.yaml"], cwd=folder,
-                          stdout=subprocess.DEVNULL) as process:  # fmt: skip
-        while not (found := list(Path(folder, "reports").glob(".film.writing.*"))):
-            assert process.poll() is None
-            time.sleep(0.002)
+    gate = Gate(folder)
+    with subprocess.Popen(
+        [*HARNESS, "run", "short.scenario.yaml", *gate.reporter], cwd=folder,
+        stdout=subprocess.DEVNULL,
+    ) as process:  # fmt: skip
+        gate.wait()
+        [found] = Path(folder, "reports").glob(".short.writing.*")
         process.kill()
-    writer = int(found[0].name.split(".")[3])
-    wait_for(lambda: not Path(f"/proc/{writer}").exists())
+    writer = int(found.name.split(".")[3])
+    wait_for(lambda: not is_alive(writer))
+    assert found.exists()
     clean_report_folder(folder / "reports")
-    assert not list(Path(folder, "reports").glob(".film.*"))
+    assert not found.exists()
+
+
+def test_a_process_that_nobody_waits_for_is_no_writer(folder):
+    with subprocess.Popen(["true"]) as zombie:
+        os.waitid(os.P_PID, zombie.pid, os.WEXITED | os.WNOWAIT)
+        gone = leftover(folder / "reports", "short", zombie.pid)
+        clean_report_folder(folder / "reports")
+        assert not gone.exists()

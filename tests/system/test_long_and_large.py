@@ -11,9 +11,10 @@ import pytest
 
 from harness.plugins.grading.grade import grade_bag
 from tests.benchmarks.test_campaigns import parts_of
+from tests.gate import PLUGIN, Gate
 from tests.plugins.grading.hand_made import SCENARIO
 from tests.plugins.grading.test_large_bags import RATE, bag_of, joint_states, one
-from tests.reporting.browser import wait_for
+from tests.reporting import browser
 from tests.running import run_case
 from tests.suite.ball import ball
 
@@ -22,45 +23,46 @@ PAGE_OF_A_CASE = 8e3  # memory that the suite's page takes for each row while it
 
 
 class Watched:
-    """A suite in a process of its own, and what it and its server hold while it runs."""
+    """A suite in a process of its own, and what it holds while its cases wait at a gate."""
 
-    def __init__(self, folder, *words):
-        self.folder, self.temporary = folder, folder / "temporary"
+    def __init__(self, folder, text):
+        self.folder, self.temporary, self.gate = folder, folder / "temporary", Gate(folder)
         self.temporary.mkdir()
+        (folder / "a.scenario.yaml").write_text(text.replace("STEP", self.gate.step))
+        words = ["a.scenario.yaml", "--no-page", "--format", "short", "--report-dir", "reports"]
         with (folder / "said").open("w") as said:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "harness.cli", "run", *words, "--report-dir", "reports"],
+                [sys.executable, "-m", "harness.cli", "run", *words, *PLUGIN],
                 cwd=folder, env={**os.environ, "TMPDIR": str(self.temporary)}, stdout=said,
             )  # fmt: skip
 
-    def until(self, count):
-        """Wait until that many cases have ended; memory [bytes] and number of open files."""
+    def at(self, count):
+        """Memory [bytes] and number of open files when that many cases have ended."""
+        self.gate.let_pass(count)
         stream = self.folder / "reports/results.jsonl"
-        while self._process.poll() is None and not (
-            stream.exists() and stream.read_bytes().count(b'"result"') >= count
-        ):
+        while self.gate.arrived <= count or stream.read_bytes().count(b'"result"') < count:
+            assert self._process.poll() is None
             time.sleep(0.1)
-        return self.held(self._process.pid)
-
-    def held(self, pid):
+        pid = self._process.pid
         status = Path(f"/proc/{pid}/status").read_text()
         resident = 1024 * int(status.partition("VmRSS:")[2].split()[0])
         return resident, len(os.listdir(f"/proc/{pid}/fd"))  # noqa: PTH208 - only their number
 
-    def end(self):
+    def end(self, count):
+        self.gate.let_pass(count)
         return self._process.wait()
 
 
 @pytest.mark.nightly(but=["12"])
 @pytest.mark.parametrize("count", [12, 10_000])
 def test_a_suite_of_many_cases_is_flat_in_memory_handles_and_files(count, tmp_path):
-    (tmp_path / "ball.scenario.yaml").write_text(ball(count, farthest="25 cm"))
-    suite = Watched(tmp_path, "ball.scenario.yaml", "--no-page", "--format", "short")
-    memory, files = suite.until(count // 4)
-    later, files_later = suite.until(count * 3 // 4)
+    text = ball(count, farthest="25 cm").replace("wait: 2 ms", "STEP")
+    suite = Watched(tmp_path, text)
+    memory, files = suite.at(count // 4)
+    later, files_later = suite.at(count * 3 // 4)
     assert files_later <= files + 4
     assert later - memory < 20e6 + PAGE_OF_A_CASE * count
-    assert suite.end() == 0
+    assert suite.end(count) == 0
     assert f"{count} cases passed" in (tmp_path / "said").read_text()
     assert not list(suite.temporary.iterdir())
     assert [each.name for each in (tmp_path / "reports").glob(".*")] == []
@@ -77,7 +79,7 @@ def test_a_world_of_many_objects_is_run_and_judged(count, tmp_path):
     file = tmp_path / "many.scenario.yaml"
     file.write_text(
         "scenario: many objects\nrobot: open_manipulator_x\nobjects:\n" + "".join(rows)
-        + "steps: [{move_to: {joints: {joint1: 0.5}}}]\n"
+        + "steps: [{STEP}, {move_to: {joints: {joint1: 0.5}}}]\n"
         "expect: [{never: collision}, {always: within_limits}]\n"
     )  # fmt: skip
     result = run_case(file, report_dir=tmp_path / "run")
@@ -94,7 +96,7 @@ def test_the_page_of_a_long_recording_opens(seconds, tmp_path, visit):
     bag = bag_of(tmp_path / "long.db3", list(joint_states(int(RATE * seconds), one))[::every])
     grade_bag(file, bag, report_dir=tmp_path / "run")
     seen = visit(tmp_path / "run/report.html")
-    wait_for(seen.page, "document.querySelector('#track') !== null")
+    browser.wait_for(seen.page, "document.querySelector('#track') !== null")
     end = float(seen.page.get_attribute("#track", "aria-valuemax"))
     assert end == pytest.approx(seconds, rel=0.01)
     assert not seen.complaints
@@ -113,15 +115,14 @@ def test_many_shards_are_merged(parts, tmp_path):
 @pytest.mark.nightly
 def test_two_hours_of_simulated_time_are_twelve_runs_of_the_longest(tmp_path):
     """One run may have ten minutes; the record of each ends with its process."""
-    file = tmp_path / "hours.scenario.yaml"
-    file.write_text(
+    text = (
         "scenario: ten minutes\nrobot: open_manipulator_x\nsamples: 12\nparams: {angle: 0.1}\n"
         "randomize: {angle: {uniform: [0, 0.2]}}\n"
-        "steps: [{move_to: {joints: {joint1: '${angle}'}}}, {wait: 590 s}]\n"
+        "steps: [{STEP}, {move_to: {joints: {joint1: '${angle}'}}}, {wait: 590 s}]\n"
         "expect: [{always: within_limits}]\n"
     )
-    suite = Watched(tmp_path, file.name, "--no-page", "--format", "short")
-    memory, _ = suite.until(1)
-    later, _ = suite.until(11)
+    suite = Watched(tmp_path, text)
+    memory, _ = suite.at(1)
+    later, _ = suite.at(11)
     assert later - memory < 20e6
-    assert suite.end() == 0
+    assert suite.end(12) == 0

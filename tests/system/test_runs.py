@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from tests.gate import PLUGIN, Gate
 from tests.waiting import HANG, is_alive, wait_for
 
 HARNESS = Path(sys.executable).parent / "harness"
@@ -43,6 +44,12 @@ def write(name, *, title="Move", tag="a", robot="open_manipulator_x", wait="0.1 
     file = Path(f"{name}.scenario.yaml")
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text)
+
+
+def write_held(name):
+    write(name)
+    file = Path(f"{name}.scenario.yaml")
+    file.write_text(file.read_text().replace("wait: 0.1 s", Gate(Path().absolute()).step))
 
 
 def harness(*arguments, **environment):
@@ -203,10 +210,13 @@ def test_no_report_writes_nothing(folder, run_here):
 
 
 def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
-    write("a", wait="590 s")
+    write_held("a")
     write("b")
     process = subprocess.Popen(
-        [HARNESS, "run", ".", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [HARNESS, "run", ".", "--json", *PLUGIN],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     [child] = wait_for(lambda: running_cases(process.pid))
     os.kill(child, signal.SIGKILL)
@@ -223,10 +233,10 @@ def test_a_killed_child_is_an_error_and_leaves_the_others_complete():
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_ctrl_c_keeps_finished_reports_and_leaves_nothing_half_written(workers):
     write("a")
-    write("b", wait="590 s")
-    write("c", wait="590 s")
+    write_held("b")
+    write_held("c")
     process = subprocess.Popen(
-        [HARNESS, "run", ".", "-j", workers],
+        [HARNESS, "run", ".", "-j", workers, *PLUGIN],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
