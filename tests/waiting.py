@@ -7,8 +7,11 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-HANG = 120.0
-"""Wall time after which a wait counts as a hang [s]; on a busy machine most events take seconds."""
+HANG = 600.0
+"""Wall time after which a wait counts as a hang [s]; a command took 100 s to start at load 20."""
+
+MOST_WORK = 120.0
+"""Processor time that no refusal of a file may take [s]; each takes less than one."""
 
 
 def wait_for(condition: Callable[[], T]) -> T:

@@ -17,6 +17,7 @@ from harness.recording.film import decoded_film
 from harness.session.observation.findings import slowed_videos
 from tests.cameras.camera_runs import ball, eye, robot, run_with
 from tests.cameras.test_captures import centre_of, predicted
+from tests.waiting import HANG
 
 CAMERA = eye(width=200, height=150, update_rate=10.0, jpeg_quality=75)
 
@@ -131,6 +132,6 @@ def test_nothing_of_the_video_library_reaches_the_terminal():
         "recorded(*crossing(11))\nprint('done')"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=HANG
     )
     assert (done.stdout, done.stderr) == ("done\n", "")

@@ -12,6 +12,7 @@ import pytest
 
 from harness.planning.search.planner_names import planner_names, resolve_planner_id
 from tests.planning.planner_trial import Trial, signature
+from tests.waiting import HANG
 
 
 @pytest.fixture(scope="module")
@@ -106,5 +107,5 @@ def _fresh_process(code: str) -> str:
     environment = {**os.environ, "PYTHONHASHSEED": "123"}
     command = [sys.executable, "-c", code]
     return subprocess.run(
-        command, env=environment, capture_output=True, text=True, timeout=300, check=True
+        command, env=environment, capture_output=True, text=True, timeout=HANG, check=True
     ).stdout

@@ -17,6 +17,7 @@ from harness.core.memory import limited_memory
 from harness.plugins.meshes.solid_grid import MOST_POINTS, solid_grid, surface_points
 from harness.robot.mesh_file import convex_hull, read_triangles
 from tests.robot.arm_files import SHAPE, URDF, write_arm
+from tests.waiting import HANG
 
 SOLID = trimesh.creation.icosphere(subdivisions=1, radius=0.05)
 
@@ -101,7 +102,7 @@ def test_a_mesh_as_thin_as_its_rounding_is_flat_and_crashes_nothing(tmp_path, th
     write_arm(tmp_path, URDF.replace(SHAPE, MESH.format("thin.stl")))
     checked = subprocess.run(
         [sys.executable, "-m", "harness.cli", "robot", "check", "arm.urdf"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=300,
+        cwd=tmp_path, capture_output=True, text=True, timeout=HANG,
     )  # fmt: skip
     assert checked.returncode == 2, checked.stderr
     assert "arm.urdf:4:" in checked.stderr

@@ -9,7 +9,7 @@ import trimesh
 
 from harness.core.errors import SpecError
 from harness.plugins.formats.moveit_scene.scene import load_scene
-from tests.waiting import HANG
+from tests.waiting import MOST_WORK
 
 NEW = """(noname)+
 * table
@@ -184,7 +184,7 @@ def test_a_large_scene_is_read_in_seconds_and_a_larger_one_refused(tmp_path):
     body = f"mesh\n60000 59998\n{corners}\n{faces}\n0 0 0\n0 0 0 1\n0 0 0 0\n"
     started = time.process_time()
     found = scene(tmp_path, f"x\n* a\n1\n{body}.\n")
-    assert time.process_time() - started < HANG
+    assert time.process_time() - started < MOST_WORK
     assert len(found.meshes["a_0.stl"]) == 59_998
     with pytest.raises(SpecError, match="at most 8 MB are read"):
         scene(tmp_path, "x" * 9_000_000)

@@ -13,6 +13,7 @@ from harness.plugins.ros.bridge import BridgeRequest, run_bridge
 from harness.plugins.ros.domain import free_domain
 from harness.session.run_request import RunRequest
 from tests.plugins.ros.nodes import Node
+from tests.waiting import HANG
 
 PYTHON = os.environ.get("HARNESS_ROS_PYTHON", sys.executable)
 """An environment with rclpy, and with control_msgs, which no package index has."""
@@ -57,5 +58,5 @@ def bridge(file, *, waits=False, **options):
         finally:
             if not waits:
                 ended.set()
-            thread.join(120)
+            thread.join(HANG)
             node.graph.close()

@@ -48,7 +48,7 @@ def run_program(folder, command, environment=os.environ, **served):
             env={**environment, "ROS_DOMAIN_ID": str(node.graph.participant.domain)},
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=HANG,
             check=False,
         )
     assert done.stdout, done.stderr
