@@ -6,17 +6,16 @@ import signal
 import socket
 import subprocess
 import sys
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from docs import ROOT
 from harness.suite import warm
 from harness.suite.cases import read_ahead
 from harness.suite.environment import server_environment
 from harness.suite.server import Server, send
 from harness.suite.warm import REPORT_MODULES, RUN_MODULES, Ended, WarmServer
+from tests.beginning import as_before_tests
 
 ROBOTS = frozenset({"open_manipulator_x"})
 """Bundled robots that most scenarios of tests name."""
@@ -25,21 +24,15 @@ ROBOTS = frozenset({"open_manipulator_x"})
 @cache
 def server() -> WarmServer:
     made = WarmServer(["harness.cli.main", *RUN_MODULES, *REPORT_MODULES, "tests.commands"])
-    here = ROOT  # a test may have removed the folder it stands in
-    with suppress(FileNotFoundError):
-        here = Path.cwd()
-    os.chdir(ROOT)  # the folder of the test that comes first is removed at its end
-    try:
-        made.prepare(read_ahead, ROBOTS)
-    finally:
-        os.chdir(here)
+    made.prepare(read_ahead, ROBOTS)
     atexit.register(made.close)
     return made
 
 
 def forked(function, *arguments) -> Ended:
     """The end of a process that calls a function, which has the name of a module's."""
-    job = server().start(function, *arguments)
+    with as_before_tests():
+        job = server().start(function, *arguments)
     while True:
         for event in server().wait(None):
             if isinstance(event, Ended) and event.job == job:
@@ -55,6 +48,13 @@ def harness(*words, cwd, **environment) -> subprocess.CompletedProcess[str]:
         assert server().pid is not None, "the server ended"
         text = [file.read_text(encoding="utf-8") for file in (out, err)]
     return subprocess.CompletedProcess(words, end.code or 0, *text)
+
+
+def run(file, options, _notify):
+    """The outcome of one case of a file, for `forked`."""
+    from tests.running import run_case
+
+    return run_case(file, **options).outcome
 
 
 class _Process:

@@ -9,8 +9,11 @@ import pytest
 from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadFileScheduling
 
+from harness.suite.environment import use_one_thread
+
 pytest_plugins = [
     "pytester",
+    "tests.beginning",
     "tests.extras",
     "tests.lanes",
     "tests.recorded",
@@ -31,6 +34,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 """Hundreds of tests start a process: each would compile the package again, half a second long."""
 
+use_one_thread()
 
 gc.disable()
 

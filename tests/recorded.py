@@ -15,13 +15,14 @@ def recorded_run(tmp_path_factory):
     """`recorded_run(file, **options)`: the folder of the file's run with options of `run_case`.
 
     The folder holds the run in `run`, without page and pictures unless `page` and `stills` say so;
-    `file` may be a scenario's text, too. Tests that change a run change a copy.
+    `file` may be a scenario's text, too. It runs in a process of its own, so that it is the same
+    whichever test needs it first. Tests that change a run change a copy.
     """
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
     def record(file: Path | str, outcome: str = "passed", **options) -> Path:
-        from tests.running import run_case
+        from tests.commands import forked, run
 
         said = f"{file}\0{sorted(options.items())}"
         folder = shared / "recorded" / hashlib.sha256(said.encode()).hexdigest()[:12]
@@ -33,7 +34,8 @@ def recorded_run(tmp_path_factory):
                     (folder / "a.scenario.yaml").write_text(file, encoding="utf-8")
                     file = folder / "a.scenario.yaml"
                 options = {"stills": False, "page": False} | options
-                run_case(file, report_dir=folder / "run", **options)
+                end = forked(run, file, options | {"report_dir": folder / "run"})
+                assert end.code == 0, end.traceback or end.log
                 (folder / "whole").touch()
         assert read_run(folder / "run").outcome == outcome
         return folder
