@@ -222,7 +222,7 @@ def test_a_killed_run_leaves_nothing_after_the_next_one(folder):
     assert not found.exists()
 
 
-def test_a_process_that_nobody_waits_for_is_no_writer(folder):
+def test_a_process_that_has_ended_writes_no_longer(folder):
     with subprocess.Popen(["true"]) as zombie:
         os.waitid(os.P_PID, zombie.pid, os.WEXITED | os.WNOWAIT)
         gone = leftover(folder / "reports", "short", zombie.pid)
