@@ -86,7 +86,7 @@ class PackagePath:
         if name not in self._found:
             found = next(self._candidates(name), None)
             if found is None:
-                found = next((each for each in self._above() if _may_be(each, inside)), None)
+                found = next((each for each in self._above() if self._may_be(each, inside)), None)
                 if found is not None:
                     self.assumed[name] = found.resolve()
             if found is None:
@@ -167,6 +167,12 @@ class PackagePath:
                 return
             yield folder
 
+    def _may_be(self, folder: Path, inside: str) -> bool:
+        """Whether a folder may be the package of which a file of the robot has a path."""
+        if inside:
+            return is_file(folder / inside)
+        return any(self.home.is_relative_to(folder / each) for each in DESCRIPTIONS)
+
     def _around(self) -> Iterator[Path]:
         """Folders of adjacent packages: the parent folder, and install folders next to its own."""
         if is_file(self.home / MANIFEST):
@@ -205,13 +211,6 @@ def additional_package_folders(folders: Sequence[Path]) -> Iterator[None]:
 
 def _is_folder(folder: Path, name: str) -> bool:
     return folder.name == name and is_there(folder) and is_dir(folder)
-
-
-def _may_be(folder: Path, inside: str) -> bool:
-    """Whether a folder may be the package of which a file of the robot has a path."""
-    if inside:
-        return is_file(folder / inside)
-    return any(is_dir(folder / each) for each in DESCRIPTIONS)
 
 
 def _inside(folder: Path, name: str) -> Iterator[Path]:

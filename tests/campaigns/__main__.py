@@ -1,6 +1,8 @@
-"""All campaigns: every reader, drawn scenarios, and the long tests of the promises.
+"""All campaigns: every reader, drawn scenarios, and the tests of the promises, long ones included.
 
 python -m tests.campaigns [--minutes N] [--scenarios N] [--seed S]
+
+With `--minutes 0 --scenarios 0` only the promises are tested.
 """
 
 from __future__ import annotations
@@ -8,9 +10,15 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from xml.etree import ElementTree
 
 from docs.generators.reliability import PROMISES
 from tests.campaigns import fuzz, generated
+from tests.campaigns.records import count_tests
 
 
 def main() -> int:
@@ -20,12 +28,41 @@ def main() -> int:
     parser.add_argument("--scenarios", type=int, default=200, help="number of drawn scenarios")
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
-    found = fuzz.main(["--minutes", str(arguments.minutes), "--seed", str(arguments.seed)])
+    found = 0
+    if arguments.minutes:
+        found += fuzz.main(["--minutes", str(arguments.minutes), "--seed", str(arguments.seed)])
     found += generated.run_many(1000 * arguments.seed, arguments.scenarios)
-    tests = dict.fromkeys(path for _, paths in PROMISES for path in paths)
+    return int(bool(found + keep_promises()))
+
+
+def keep_promises() -> int:
+    """Test the promises, record how each test ended, and return the exit code of pytest."""
+    paths = dict.fromkeys(path for _, paths in PROMISES for path in paths)
     both = "nightly or not nightly"
-    done = subprocess.run([sys.executable, "-m", "pytest", "-q", "-m", both, *tests], check=False)
-    return int(bool(found or done.returncode))
+    with TemporaryDirectory() as folder:
+        report = Path(folder, "tests.xml")
+        done = subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-m", both, f"--junitxml={report}", *paths],
+            check=False,
+        )
+        ends = [*_ends(report)] if report.exists() else []
+    if done.returncode in (0, 1):  # it was not interrupted
+        for path in paths:
+            count_tests(
+                path, Counter(end for file, end in ends if f"{file}/".startswith(f"{path}/"))
+            )
+    return done.returncode
+
+
+def _ends(report: Path) -> Iterator[tuple[str, str]]:
+    """File and end of each test of a report in JUnit's XML."""
+    for case in ElementTree.parse(report).iter("testcase"):
+        parts = {part.tag for part in case}
+        words = case.get("classname", "").split(".")
+        names = [at for at, word in enumerate(words) if word.startswith("test_")]
+        file = "/".join(words[: names[0] + 1]) + ".py" if names else "/".join(words)
+        end = "failed" if parts & {"failure", "error"} else "skipped" if "skipped" in parts else ""
+        yield file, end or "passed"
 
 
 if __name__ == "__main__":

@@ -62,6 +62,13 @@ def count_scenarios(ends: Mapping[str, int]) -> None:
     change(edit)
 
 
+def count_tests(path: str, ends: Mapping[str, int]) -> None:
+    """Set how many tests of a promise's file or folder ended how when they were run last."""
+    day = datetime.now(UTC).date().isoformat()
+    last = {"date": day, **{end: number for end, number in ends.items() if number}}
+    change(lambda known: known.setdefault("promises", {}).update({path: last}))
+
+
 def _counts(found: Outcome) -> dict[str, int]:
     return {
         "executions": found.executions,

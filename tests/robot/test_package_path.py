@@ -121,6 +121,28 @@ def test_a_package_that_is_nowhere_is_the_folder_around_the_robots_file_that_has
     assert f"the package 'looks' is not found: {folder} is read instead" in found.notes
 
 
+@pytest.mark.parametrize(("folder", "is_its"), [("urdf", True), ("xacro", False)])
+def test_a_folder_of_descriptions_that_has_not_the_robots_file_makes_no_package(
+    tmp_path, folder, is_its
+):
+    (tmp_path / "xacro").mkdir()
+    robot = tmp_path / "urdf" / "deeper" / "bare.xacro"
+    if not is_its:
+        robot = tmp_path / "elsewhere" / "bare.xacro"
+    robot.parent.mkdir(parents=True)
+    (tmp_path / folder / "part.xacro").write_text(URDF)
+    robot.write_text(
+        '<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro">'
+        f'<xacro:include filename="$(find looks)/{folder}/part.xacro"/></robot>'
+    )
+    spec = RobotSpec.model_validate({"xacro": str(robot)})
+    if is_its:
+        assert load_robot(spec).name
+    else:
+        with pytest.raises(RobotError, match="the package 'looks' is not found"):
+            load_robot(spec)
+
+
 def test_a_package_next_to_a_folder_around_the_robots_file_is_found(tmp_path):
     looks(tmp_path / "many" / "looks", manifest=False)
     urdf = tmp_path / "many" / "arm" / "urdf" / "bare.urdf"
