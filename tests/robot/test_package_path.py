@@ -139,7 +139,7 @@ def test_a_folder_of_descriptions_that_has_not_the_robots_file_makes_no_package(
     if is_its:
         assert load_robot(spec).name
     else:
-        with pytest.raises(RobotError, match="the package 'looks' is not found"):
+        with pytest.raises(SpecError, match="the package 'looks' is not found"):
             load_robot(spec)
 
 
