@@ -171,6 +171,27 @@ def test_without_a_place_in_the_address_a_failure_is_shown(visit, failed_run):
     assert opened.time() == pytest.approx(stored.verdicts[first].time, abs=2e-3)
 
 
+LATE_FAILURE = """\
+scenario: the fourth motion fails
+robot: open_manipulator_x
+steps:
+  - lin: {position: {xyz: [0.2, 0, 0.2]}}
+  - lin: {position: {xyz: [0.22, 0, 0.2]}}
+  - lin: {position: {xyz: [0.2, 0, 0.2]}}
+  - move_to: {position: {xyz: [0.2, 0.3, 0.9]}}
+"""
+
+
+def test_the_page_opens_at_what_was_planned_for_the_step_that_failed(recorded_run, visit):
+    folder = recorded_run(LATE_FAILURE, "failed", page=True) / "run"
+    page = visit(folder / "report.html", width=1440, height=600).page
+    panel, part = (
+        page.locator(name).bounding_box() for name in ("#panels", "#panel-planner [data-step='3']")
+    )
+    assert panel["y"] <= part["y"] + 1 < panel["y"] + 40, "below those of three steps that passed"
+    assert "m/s" in page.inner_text("#panel-planner [data-step='2']"), "speeds have their unit"
+
+
 def test_dragging_in_a_plot_zooms_all_of_them_and_a_click_seeks(opened):
     page = opened.page
     canvas = page.locator(".plot canvas").first

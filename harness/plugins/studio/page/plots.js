@@ -77,7 +77,7 @@ function draw(now) {
 
 const COLORED = (name, index) => {
   const sign = element("i", {});
-  sign.style.background = `var(--s${index % 10})`;
+  sign.style.background = `var(--s${index % 12})`;
   return element("span", {}, sign, name);
 };
 

@@ -139,9 +139,9 @@ async function start() {
   /** Without a place in the address: open at the failure, or at the failure that was expected. */
   function openAtFailure() {
     const failed = run.steps.findIndex(({ status, hasChildren }) => status === "failed" && !hasChildren);
+    if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected error"))) showTab("planner");
     if (failed >= 0) selectStep(failed);
     else nextFailure();
-    if (failed >= 0 || (!run.verdicts.length && run.steps.some(({ status }) => status === "expected error"))) showTab("planner");
   }
 
   /** The step that failed at a time that the terminal rounded. */

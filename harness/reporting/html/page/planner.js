@@ -9,7 +9,10 @@ const LABELS = {
   path_length: "path length", raw_path_length: "before shortening", attempts: "attempts",
   waypoints: "waypoints", vertices: "tree vertices", resolution: "resolution", duration: "duration",
 };
-const UNITS = { path_length: "rad", raw_path_length: "rad", resolution: "rad", duration: "s" };
+const UNITS = {
+  path_length: "rad", raw_path_length: "rad", resolution: "rad", path_deviation: "rad", duration: "s", position_deviation: "m",
+  orientation_deviation: "rad", link_velocity: "m/s", link_acceleration: "m/s^2", link_turning: "rad/s",
+};
 const DRAWN = ["path", "raw_path", "raw_waypoints", "waypoint_positions"];
 
 /**
@@ -22,10 +25,12 @@ export function plannerView({ run }, select) {
     .map((step, index) => ({ step, index }))
     .filter(({ step }) => Object.keys(step.planner).length || Object.keys(step.explanation).length);
   if (!requests.length) return element("p.empty", {}, "No step used the planner.");
-  return element("div.planner", {}, ...requests.map(({ step, index }) => planned(step, index, select)));
+  const slides = run.joints?.some(({ unit }) => unit !== "°");
+  return element("div.planner", {}, ...requests.map(({ step, index }) => planned(step, index, select, slides)));
 }
 
-function planned(step, index, select) {
+/** @param {boolean} slides whether some joint is in metres, so that a row of positions has no one unit */
+function planned(step, index, select, slides) {
   const { ik_solutions: solutions, ik_method: method, stages, advice, nearest, picture, ...rest } = step.explanation;
   return element(
     `section.${stepTone(step.status)}`, { "data-step": index },
@@ -36,7 +41,7 @@ function planned(step, index, select) {
     stages?.length ? stageList(stages) : null,
     advice && element("p.advice", {}, element("b", {}, "What to do: "), advice),
     nearest?.shows && element("p.remark", {}, element("b", {}, "Drawn in orange: "), nearest.shows),
-    solutions && solutionTable(method, solutions),
+    solutions && solutionTable(method, solutions, slides),
     ...Object.entries(rest).map(([key, value]) => remark(key, value)),
   );
 }
@@ -52,7 +57,7 @@ function shortening(planner) {
   const row = (label, length) => {
     const bar = element("i");
     bar.style.width = `${(100 * length) / Math.max(before, after)}%`;
-    return element("div.length", {}, element("span", {}, label), element("span.bar", {}, bar), element("code", {}, `${number(length)} rad`));
+    return element("div.length", {}, element("span", {}, label), element("span.bar", {}, bar), element("code", {}, amount(length, "rad")));
   };
   return element("div.lengths", {}, row("as found", before), row("shortened", after));
 }
@@ -84,15 +89,17 @@ function facts(planner, hidden) {
   );
 }
 
-function solutionTable(method, solutions) {
-  const head = `Inverse kinematics${method ? ` (${method})` : ""}: ${solutions.length || "no"} solution${solutions.length === 1 ? "" : "s"}`;
+function solutionTable(method, solutions, slides) {
+  const count = `${solutions.length || "no"} solution${solutions.length === 1 ? "" : "s"}`;
+  const head = `Inverse kinematics${method ? ` (${method})` : ""}: ${count}, ${slides ? "rad and m" : "degrees"}`;
+  const positions = slides ? (values) => values.map(number).join("  ") : degrees;
   const rows = solutions.slice(0, SOLUTIONS_SHOWN).map((solution) => {
     const isGood = /^(chosen|free|reachable|valid)/.test(solution.status ?? "");
     const touches = (solution.touches ?? []).map(({ pair, distance }) => `${pair.join(" and ")} ${amount(distance, "m")}`);
     return element(
       "tr", {},
       element("td", {}, element(`span.tag.${isGood ? "good" : "bad"}`, {}, solution.status ?? "")),
-      element("td", {}, element("code", {}, degrees(solution.joint_positions ?? [])), touches.length ? element("div.touches", {}, touches.slice(0, 3).join("; ")) : null),
+      element("td", {}, element("code", {}, positions(solution.joint_positions ?? [])), touches.length ? element("div.touches", {}, touches.slice(0, 3).join("; ")) : null),
     );
   });
   return element("details", { open: solutions.length <= SOLUTIONS_SHOWN }, element("summary", {}, head), element("table.solutions", {}, element("tbody", {}, ...rows)));
@@ -110,7 +117,7 @@ function remark(key, value) {
 export function plain(value, unit = "") {
   if (typeof value === "number") {
     if (unit === "s") return seconds(value);
-    return unit ? `${number(value)} ${unit}` : Number.isInteger(value) ? String(value) : number(value);
+    return unit ? amount(value, unit) : Number.isInteger(value) ? String(value) : number(value);
   }
   if (Array.isArray(value)) return value.map((item) => plain(item)).join(", ");
   if (value && typeof value === "object") {

@@ -45,7 +45,7 @@ export class Plot {
 
   /** Colour of a number. @param {number} index */
   static color(index) {
-    return themeColor(`--s${index % 10}`);
+    return themeColor(`--s${index % 12}`);
   }
 
   /** @param {PlotData} data @param {Set<number>} [hidden] series that are not drawn @param {number[]} [colors] number of each one's colour */

@@ -110,15 +110,17 @@ export class Plots {
     for (const save of panel.saves) save.title = save.ariaLabel = `Save the plot of ${panel.data.title} as ${save.textContent}`;
   }
 
-  /** Of the lines of a plot: the largest value at the cursor, and whose it is. */
+  /** Of the lines of a plot: the largest value at the cursor, and whose it is, in its colour. */
   #point(panel, time) {
     panel.plot.point(time);
     const texts = readings(panel.data, time);
     const size = (index) => Math.abs(parseFloat(texts[index])) || 0;
     const shown = panel.data.series.map((_, index) => index).filter((index) => !panel.plot.hidden.has(index) && texts[index] !== "–");
     const largest = shown.reduce((best, index) => (best < 0 || size(index) > size(best) ? index : best), -1);
-    panel.reading.textContent = largest < 0 ? "–" : texts[largest];
-    panel.reading.title = largest < 0 ? "" : `${panel.data.series[largest].name} at the cursor, the largest`;
+    const name = largest < 0 ? "" : panel.data.series[largest].name;
+    panel.reading.textContent = largest < 0 ? "–" : shown.length > 1 ? `${texts[largest]} ${short(name)}` : texts[largest];
+    panel.reading.style.color = largest < 0 ? "" : Plot.color(this.colors.get(name) ?? largest);
+    panel.reading.title = name && `${name} at the cursor, the largest`;
   }
 
   /** One entry for each line of any plot; its colour is the same in all of them. */

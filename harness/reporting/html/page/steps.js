@@ -3,6 +3,8 @@
 import { byId, element, scrollInto } from "./dom.js";
 import { STATUS, tone } from "./units.js";
 
+const ROOMY = 12; // steps in sight, up to which long titles take a second line
+
 /**
  * @param {import("./payload.js").Payload} payload
  * @param {{step: (index: number) => void, verdict: (index: number) => void, time: (time: number) => void}} select
@@ -15,7 +17,10 @@ export function makeSteps({ run }, select) {
     return element("li", { style: `--depth: ${step.depth}` }, row(step, index, select.step), element("span.dots", {}, ...dots), step.commands.length > 0 && commandList(step, select.time));
   });
   const folded = new Set(run.steps.flatMap((step, index) => (step.hasChildren && step.tone === "good" ? [index] : [])));
-  const show = () => items.forEach((item, index) => (item.hidden = ancestors(parents, index).some((each) => folded.has(each))));
+  const show = () => {
+    items.forEach((item, index) => (item.hidden = ancestors(parents, index).some((each) => folded.has(each))));
+    byId("steps").classList.toggle("short", items.filter(({ hidden }) => !hidden).length <= ROOMY);
+  };
   run.steps.forEach((step, index) => {
     if (!step.hasChildren) return;
     const inside = run.steps.filter((_, other) => ancestors(parents, other).includes(index)).length;
