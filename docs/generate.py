@@ -18,7 +18,7 @@ from docs.generators.reliability import reliability_page
 from docs.generators.robot_formats import robot_formats_page
 from docs.generators.robot_yaml import robot_yaml_page
 from docs.generators.world_formats import formats_page
-from harness.language.schema import schema_text, world_schema_text
+from harness.plugins.authoring.scenario_schema import schema_text, world_schema_text
 
 RENEW = "python -m docs.generate"
 

@@ -65,7 +65,8 @@ since the run began |
 | premise never held | P of `P implies Q`, or of `not P or Q`, holds at no sample of the window |
 | hardly observed | `always` or `never` of something that is in the scene at 1 % of the samples \
 at most, as an object that the next step adds, over a step that takes no time, or of fewer than \
-three pictures of more than 0.2 s |
+three pictures of more than 0.2 s; a formula without a temporal word, which reads its first \
+sample alone |
 | partly seen | `never: sees` of an object of which a picture shows less than `min_visible` |
 | contact may be missed | `never: in_contact` or `never: collision` of an object that moves \
 between two samples by more than its least width and the other's together: the physics looks for \

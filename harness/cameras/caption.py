@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
+from PIL import Image, ImageDraw, ImageFont
 
+from harness.core.picture_files import jpeg
 from harness.core.printable import printable
 
 MOST_CHARACTERS = 130  # of a caption, which is one line
-RED, DARK = (50, 40, 200), (50, 45, 40)  # BGR
-FONT, SIZE, MARGIN = cv2.FONT_HERSHEY_SIMPLEX, 0.45, 10
+RED, DARK = (200, 40, 50), (40, 45, 50)  # RGB
+SIZE, MARGIN, STRIP = 13, 10, 26  # of letters, left and right of them, and of their strip [pixels]
 
 
 def captioned_jpeg(
@@ -32,30 +33,24 @@ def captioned(
     status: str = "",
     status_ink: tuple[int, int, int] = DARK,
 ) -> np.ndarray:
-    """A picture with a caption over its lowest rows, BGR.
+    """A picture with a caption over its lowest rows, RGB.
 
     Args:
         pixels: The picture, RGB, shape (height, width, 3), uint8.
         caption: Text at the left, scaled down to fit.
-        ink: Colour of the caption, BGR.
+        ink: Colour of the caption, RGB.
         status: Text at the right.
-        status_ink: Colour of the status, BGR.
+        status_ink: Colour of the status, RGB.
     """
-    picture = np.ascontiguousarray(pixels[:, :, ::-1])
-    picture[-26:] = (0.25 * picture[-26:] + 0.75 * 255).astype(np.uint8)
-    height, right = picture.shape[0] - 9, picture.shape[1] - MARGIN
+    picture = pixels.copy()
+    picture[-STRIP:] = (0.25 * picture[-STRIP:] + 0.75 * 255).astype(np.uint8)
+    image = Image.fromarray(picture)
+    draw, font = ImageDraw.Draw(image), ImageFont.load_default(SIZE)
+    right, middle = image.width - MARGIN, image.height - STRIP / 2
     if status:
-        right -= cv2.getTextSize(status, FONT, SIZE, 1)[0][0]
-        cv2.putText(picture, status, (right, height), FONT, SIZE, status_ink, 1, cv2.LINE_AA)
-        right -= MARGIN
+        draw.text((right, middle), status, status_ink, font, anchor="rm")
+        right -= draw.textlength(status, font) + MARGIN
     text = printable(caption)[:MOST_CHARACTERS]
-    wide = cv2.getTextSize(text, FONT, SIZE, 1)[0][0]
-    scale = SIZE * min(1.0, (right - MARGIN) / max(wide, 1))
-    cv2.putText(picture, text, (MARGIN, height), FONT, scale, ink, 1, cv2.LINE_AA)
-    return picture
-
-
-def jpeg(picture: np.ndarray) -> bytes:
-    """A BGR picture as a JPEG file."""
-    _, content = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
-    return content.tobytes()
+    scale = min(1.0, (right - MARGIN) / max(draw.textlength(text, font), 1))
+    draw.text((MARGIN, middle), text, ink, ImageFont.load_default(scale * SIZE), anchor="lm")
+    return np.array(image)

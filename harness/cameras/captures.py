@@ -9,9 +9,9 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Mapping, Sequence
+from colorsys import hsv_to_rgb
 from functools import cached_property
 
-import cv2
 import numpy as np
 
 from harness.cameras.camera_scene import CameraScene
@@ -21,6 +21,7 @@ from harness.cameras.sensor import as_delivered
 from harness.cameras.viewpoint import FLIP, View
 from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
+from harness.core.picture_files import jpeg, png
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.arrays import write_npz
@@ -37,6 +38,12 @@ SUFFIXES = {
     "segmentation": ".labels.png",
     "segmentation_preview": ".segmentation.png",
 }
+
+VIRIDIS = (
+    *((68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142)),
+    *((31, 158, 137), (53, 183, 121), (109, 205, 89), (180, 222, 44), (253, 231, 37)),
+)
+"""Colours of a scale from dark to bright, RGB, at equal distances."""
 
 
 def take_pictures(
@@ -122,18 +129,20 @@ class _Shot:
         if "color" in kinds:
             ideal = self._renderer.render(self._view)
             picture = as_delivered(ideal, camera, self._seed, self._look.sample)
-            content["color"] = _png(picture) if self._look.step else jpeg(picture, camera)
+            content["color"] = (
+                png(picture) if self._look.step else jpeg(picture, camera.jpeg_quality)
+            )
         if "depth" in kinds:
             depth, _ = self._measured
             content["depth"] = _npz(depth)
             if self._look.step:
-                content["depth_preview"] = _png(_depth_colours(depth))
+                content["depth_preview"] = png(_depth_colours(depth))
         if "segmentation" in kinds:
             _, geoms = self._measured
             labels = np.where(geoms >= 0, self._scene.geom_labels[geoms], 0).astype(np.uint16)
-            content["segmentation"] = _png(labels)
+            content["segmentation"] = png(labels)
             if self._look.step:
-                content["segmentation_preview"] = _png(_label_colours(labels))
+                content["segmentation_preview"] = png(_label_colours(labels))
         return content
 
     def outlines(self, poses: Mapping[str, SE3]) -> dict[str, int]:
@@ -164,24 +173,6 @@ def file_stem(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:48] or "camera"
 
 
-def _png(picture: np.ndarray) -> bytes:
-    """A picture of one or three (RGB) channels as a PNG file."""
-    return _encoded(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 3])
-
-
-def jpeg(picture: np.ndarray, camera: Camera) -> bytes:
-    """A picture of one or three (RGB) channels as a JPEG file of the camera's quality."""
-    return _encoded(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, camera.jpeg_quality])
-
-
-def _encoded(suffix: str, picture: np.ndarray, options: list[int]) -> bytes:
-    channels_of_opencv = picture[:, :, ::-1] if picture.ndim == 3 else picture
-    done, content = cv2.imencode(suffix, np.ascontiguousarray(channels_of_opencv), options)
-    if not done:
-        raise RuntimeError(f"OpenCV cannot write {suffix} files here")
-    return content.tobytes()
-
-
 def _npz(depth: np.ndarray) -> bytes:
     """An .npz file of the array `depth`, float32, with equal bytes for equal depths."""
     stream = io.BytesIO()
@@ -195,15 +186,15 @@ def _depth_colours(depth: np.ndarray) -> np.ndarray:
     ratio = np.log(np.where(seen, np.maximum(depth, 1e-3), 1.0))
     low, high = (ratio[seen].min(), ratio[seen].max()) if seen.any() else (0.0, 1.0)
     share = np.clip((high - ratio) / max(high - low, 1e-9), 0, 1)
-    grey = np.where(seen, 30 + 225 * share, 0).astype(np.uint8)
-    colours = cv2.applyColorMap(grey, cv2.COLORMAP_VIRIDIS)[:, :, ::-1]
+    levels = np.where(seen, (30 + 225 * share) / 255, 0)
+    places = np.linspace(0, 1, len(VIRIDIS))
+    colours = np.stack([np.interp(levels, places, ink) for ink in zip(*VIRIDIS, strict=True)], -1)
     return np.where(seen[:, :, None], colours, 0).astype(np.uint8)
 
 
 def _label_colours(labels: np.ndarray) -> np.ndarray:
     """RGB with a distinct colour for each label; label 0 is black."""
     hues = (np.arange(int(labels.max()) + 1) * 0.618034) % 1.0
-    hsv = np.stack([hues * 179, np.full_like(hues, 170), np.full_like(hues, 235)], axis=1)
-    palette = cv2.cvtColor(hsv.astype(np.uint8)[None], cv2.COLOR_HSV2RGB)[0]
+    palette = 255 * np.array([hsv_to_rgb(hue, 0.67, 0.92) for hue in hues])
     palette[0] = 0
-    return palette[labels]
+    return palette.astype(np.uint8)[labels]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 
-import cv2
 import numpy as np
 
 from harness.core.camera import Camera
+from harness.core.picture_files import grey
 
 
 def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) -> np.ndarray:
@@ -24,7 +24,7 @@ def as_delivered(picture: np.ndarray, camera: Camera, seed: int, sample: int) ->
         RGB, or one channel of a grey camera, uint8.
     """
     if camera.is_grey:
-        picture = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+        picture = grey(picture)
     if not (camera.noise_mean or camera.noise_stddev):
         return picture
     rng = np.random.default_rng(_noise_seed(camera.name, seed, sample))

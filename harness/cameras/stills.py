@@ -25,8 +25,8 @@ MOST_STEPS = 400  # that are drawn, at 20 to 100 ms each: the first and the last
 FARTHEST_IN_VIEW = 1.3  # [m]; objects farther from the base may be outside the view
 UNSEEN = 5e-4  # [m], a motion that a picture does not show, below half a pixel; directions too
 
-INK = {"passed": (60, 130, 40), "expected error": (60, 130, 40), "failed": RED}
-"""Colour of a caption's status, BGR."""
+INK = {"passed": (40, 130, 60), "expected error": (40, 130, 60), "failed": RED}
+"""Colour of a caption's status, RGB."""
 
 
 @dataclass(frozen=True)

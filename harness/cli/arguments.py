@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from harness.core.files import is_dir
+from harness.core.files import is_dir, path_exists
 from harness.core.printable import printable
 from harness.core.suggestion import did_you_mean, nearest
 
@@ -109,6 +109,36 @@ def folder(text: str) -> Path:
     if not is_dir(Path(text)):
         raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
     return Path(text)
+
+
+def output_file(text: str) -> str:
+    """A file that the command writes; one that cannot be written is refused before it runs."""
+    from harness.suite.folders import refuse_unwritable_file
+
+    return _writable(text, refuse_unwritable_file)
+
+
+def output_folder(text: str) -> str:
+    """A folder that the command writes into; refused as a file is."""
+    from harness.suite.folders import refuse_unwritable
+
+    return _writable(text, refuse_unwritable)
+
+
+def output_path(text: str) -> str:
+    """A new file or folder, refused as a file is; the command knows what may exist already."""
+    return text if path_exists(Path(text)) else output_file(text)
+
+
+def _writable(text: str, refuse: Callable[[Path], None]) -> str:
+    from harness.suite.discovery import UsageError
+
+    try:
+        if text:  # the default of some options is empty
+            refuse(Path(text))
+    except UsageError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
 
 
 def override_argument(text: str) -> tuple[str, str]:

@@ -133,7 +133,7 @@ def _begun(run: Callable[[argparse.Namespace], int], parsed: argparse.Namespace)
 
         from harness.suite.folders import refuse_unwritable
 
-        refuse_unwritable(Path(parsed.report_dir))
+        refuse_unwritable(Path(parsed.report_dir), "--report-dir: ")
     with _package_path(getattr(parsed, "package_folders", ())):
         return run(parsed)
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import shlex
 import sys
 from importlib.metadata import PackageNotFoundError, requires
+from importlib.util import find_spec
 from pathlib import Path
 
 DISTRIBUTION = "armharness"
 EXTRAS = {
+    "cv2": "cameras",
     "av": "video",
     "rosbags": "bags",
     "mcap": "bags",
@@ -50,6 +52,11 @@ def missing_extra(error: BaseException) -> str:
     if extra is None:
         return ""
     return f"the Python package {package} is not installed; install it by: {install_command(extra)}"
+
+
+def absent_package(package: str) -> str:
+    """What to install where a package of an extra is not installed; empty where it is."""
+    return "" if find_spec(package) else missing_extra(ModuleNotFoundError(name=package))
 
 
 def _pip_install(*what: str) -> str:

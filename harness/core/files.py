@@ -64,6 +64,11 @@ def read_at_most(path: Path, most: int) -> bytes:
     return path.read_bytes()
 
 
+def part_of(file: Path) -> Path:
+    """The file that is written first, and then renamed."""
+    return file.with_name(f".{file.name}.{os.getpid()}")
+
+
 @contextmanager
 def replaced(file: Path) -> Generator[IO[bytes]]:
     """A new file, which gets its name when everything is written.
@@ -76,7 +81,7 @@ def replaced(file: Path) -> Generator[IO[bytes]]:
             yield stream
         return
     file = file.resolve()
-    part = file.with_name(f".{file.name}.{os.getpid()}")
+    part = part_of(file)
     try:
         with part.open("wb", buffering=BUFFER) as stream:
             yield stream

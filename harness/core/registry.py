@@ -51,6 +51,7 @@ BUILT_IN = {
     "controller": "harness.simulation.controllers",
     "robot": "",
     "robot_format": "",
+    "robot_option": "",
     "world_format": "",
     "decomposer": "",
     "reporter": "harness.reporting.reporters",
@@ -59,6 +60,7 @@ BUILT_IN = {
     "grip": "",
     "adhesion": "",
     "tracker": "",
+    "coordinator": "",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 

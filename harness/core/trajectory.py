@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,27 +60,3 @@ class JointTrajectory:
         velocities = (out + s * (2.0 * square + 3.0 * s * cube)) / length
         accelerations = (2.0 * square + 6.0 * s * cube) / length**2
         return positions, velocities, accelerations
-
-
-def together(
-    motions: Sequence[tuple[JointTrajectory, float]], names: tuple[str, ...], rest: FloatArray
-) -> JointTrajectory:
-    """Motions of different joints as one.
-
-    Args:
-        motions: Each motion, and the time at which it begins [s].
-        names: The joints of the whole.
-        rest: Positions of the joints that no motion moves, shape (dof,).
-    """
-    stamps = [np.round(motion.times + delay, 9) for motion, delay in motions]
-    times = np.unique(np.concatenate([[0.0], *stamps]))
-    positions = np.tile(rest, (len(times), 1))
-    velocities, accelerations = np.zeros_like(positions), np.zeros_like(positions)
-    for motion, delay in motions:
-        columns = [names.index(name) for name in motion.joint_names]
-        rows = motion.at(times - delay)
-        moves = ((times > delay) & (times < delay + motion.duration))[:, None]
-        positions[:, columns] = rows[0]
-        velocities[:, columns] = np.where(moves, rows[1], 0.0)
-        accelerations[:, columns] = np.where(moves, rows[2], 0.0)
-    return JointTrajectory(names, times, positions, velocities, accelerations)

@@ -6,7 +6,7 @@ A tolerance that the file does not give is one of angles. For joints that slide,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -40,10 +40,16 @@ def check_tolerance(at: At, targets: Mapping[str, float], tolerance: float, is_g
         for name, joint in joints.items()
         if name in targets
     ]
-    if is_given and reaches and max(reaches) <= tolerance:
+    if is_given:
+        refuse_unbreakable(at, tolerance, reaches, f"position of {' or '.join(sorted(targets))}")
+
+
+def refuse_unbreakable(at: At, tolerance: float, errors: Sequence[float], of: str) -> None:
+    """Report a tolerance that is no less than the largest possible error."""
+    if errors and max(errors) <= tolerance:
         at.scope.problems.add(
             at.key("tolerance"),
-            f"no position of {' or '.join(sorted(targets))} is beyond this tolerance",
+            f"no {of} is beyond this tolerance",
             "angles without a unit are in radians, lengths in metres",
         )
 

@@ -65,6 +65,18 @@ def refuse_percent(value: Any) -> Any:
     return value
 
 
+def refuse_metres(value: float) -> float:
+    """A distance from where something is to be, in metres.
+
+    Raises:
+        MistakeError: It is a metre or more, as numbers in millimetres without their unit are.
+    """
+    if value >= 1:
+        hint = f"write `{value:g} mm` for millimetres"
+        raise MistakeError(f"must be less than 1 m, not `{value:g}` m", hint)
+    return value
+
+
 class SpecModel(BaseModel):
     """A part of a file: unknown keys refused, immutable, numbers finite and bounded.
 
@@ -74,12 +86,14 @@ class SpecModel(BaseModel):
         short_is_list: Whether that field is a list, and one value alone a list of one.
         one_of: Fields of which exactly one is given.
         some_of: Fields of which at least one is given.
+        goes_with: Fields that say nothing unless one of others is given, by their names.
     """
 
     short: ClassVar[str] = ""
     short_is_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[str, ...]] = ()
     some_of: ClassVar[tuple[str, ...]] = ()
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {}
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
@@ -118,6 +132,11 @@ class SpecModel(BaseModel):
             if keys and not 1 <= sum(getattr(self, key) is not None for key in keys) <= most:
                 *first, last = (f"`{key}`" for key in keys)
                 raise ValueError(f"{number} of {', '.join(first)} and {last} is needed")
+        given = {key for key in self.model_fields_set if getattr(self, key) is not None}
+        for key in given.intersection(self.goes_with):
+            others = self.goes_with[key]
+            if given.isdisjoint(others):
+                raise ValueError(f"`{key}` goes with {' or '.join(f'`{each}`' for each in others)}")
         return self
 
 
@@ -145,6 +164,7 @@ JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]
 
 PositiveLength = Annotated[Length, Field(gt=0), AfterValidator(refuse_tiny)]
 NonNegativeLength = Annotated[Length, Field(ge=0)]
+Deviation = Annotated[PositiveLength, AfterValidator(refuse_metres)]  # from where it is to be
 AngleBetween = Annotated[Angle, Field(le=math.pi)]  # of two directions, never beyond pi
 NonNegativeAngle = Annotated[Angle, Field(ge=0)]
 PositiveDuration = Annotated[Duration, Field(gt=0)]

@@ -10,12 +10,12 @@ from harness.core.amounts import JointUnits
 from harness.language.base import (
     Angle,
     AngularVelocity,
+    Deviation,
     JointValue,
     LinearAcceleration,
     LinearVelocity,
     Name,
     NonNegativeAngle,
-    PositiveLength,
     SpecModel,
     kind_of,
 )
@@ -34,7 +34,7 @@ class GoalTolerance(SpecModel):
     axis every pose inside is as good as the middle.
     """
 
-    position: PositiveLength = Field(
+    position: Deviation = Field(
         default=1e-3, description="The motion may end within this radius of the target [m]."
     )
     orientation: Annotated[

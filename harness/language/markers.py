@@ -66,7 +66,10 @@ class MarkerName(SpecModel):
 
 
 class MarkerSpec(MarkerName):
-    """A printed ArUco marker on a white plate of 1 mm; it faces +z of its pose, its top is +y."""
+    """A printed ArUco marker on a white plate of 1 mm; it faces +z of its pose, its top is +y.
+
+    It needs the extra `cameras`.
+    """
 
     short = ""
 

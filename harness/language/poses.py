@@ -10,9 +10,9 @@ from pydantic import Field, field_validator, model_validator
 from harness.core.amounts import point_text
 from harness.language.base import (
     AngleBetween,
+    Deviation,
     Name,
     Number,
-    PositiveLength,
     Quaternion,
     Rpy,
     SpecModel,
@@ -139,7 +139,7 @@ class Direction(SpecModel):
 class PoseTolerance(SpecModel):
     """The tolerance of a pose: MoveIt's goal tolerances."""
 
-    position: PositiveLength = Field(default=1e-3, description="The radius around the target [m].")
+    position: Deviation = Field(default=1e-3, description="The radius around the target [m].")
     orientation: Annotated[AngleBetween, Field(ge=0)] = Field(
         default=1e-2, description="The largest rotation about each axis [rad]."
     )

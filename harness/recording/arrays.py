@@ -1,7 +1,7 @@
 """Recorded arrays under flat names, and a file of them with the same bytes every time.
 
 `times`, `tcp_pose` ... as they are; those of a mapping as `frames/<link>`, `object_poses/<object>`,
-`wrenches/<sensor>`,
+`wrenches/<sensor>`, `surfaces/<object>`,
 `contact_forces/<body>|<body>`, `presses/<link>|<body>`, `frictions/<link>|<body>`,
 `pulls/<cup>|<body>`,
 `support_forces/<a>|<b>`, `slides/<a>|<b>`, `clearances/<a>|<b>`, `clearance_links/<a>|<b>`,
@@ -23,7 +23,7 @@ from harness.core.types import Pair
 from harness.recording.signals import Signals
 
 Array = np.ndarray[Any, Any]
-BY_NAME = ("frames", "object_poses", "wrenches")
+BY_NAME = ("frames", "object_poses", "wrenches", "surfaces")
 BY_PAIR = (
     "contact_forces",
     "presses",

@@ -23,7 +23,7 @@ from harness.robot.description import RobotDescription
 Inconsistency = tuple[str, str]  # key, and what is wrong there
 COLUMNS = {
     **{"tcp_pose": 7, "frames": 7, "object_poses": 7, "wrenches": 6},
-    **{"presses": 6, "frictions": 3, "pulls": 4},
+    **{"presses": 6, "frictions": 3, "pulls": 4, "surfaces": 4},
 }
 """Numbers per sample; the joint signals have one per joint, others one."""
 PER_SAMPLE = tuple(

@@ -116,6 +116,8 @@ class Signals:
             (link of the cup, body).
         wrenches: What each sensor of force and torque reads, in its axes: force [N], then torque
             [N m], (N, 6) each; with its noise, held at its rate, less its tare.
+        surfaces: The velocity of the surface of each belt and turntable at its origin, in its axes
+            [m/s], and its turn about z [rad/s], since the sample before, (N, 4) each.
         support_forces: Upward part of the normal force [N] that the first of two objects exerts on
             the second; negative where the second carries the first. (N,) each; keys as in
             `contact_forces`, of objects alone. A pair that is not in it was recorded without.
@@ -151,6 +153,7 @@ class Signals:
     frictions: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     pulls: Mapping[Pair, FloatArray] = field(default_factory=dict[tuple[str, str], FloatArray])
     wrenches: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
+    surfaces: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
     support_forces: Mapping[Pair, FloatArray] = field(
         default_factory=dict[tuple[str, str], FloatArray]
     )

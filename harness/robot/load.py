@@ -20,24 +20,21 @@ from harness.core.suggestion import did_you_mean
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.files.yaml_file import read_text
 from harness.language.scenario import RobotSpec, ScenarioContent
-from harness.robot.assumed_limits import with_assumed_limits_listed, with_plausible_efforts
 from harness.robot.bare_arm import without_gripper
-from harness.robot.calibration import calibrated
 from harness.robot.collision_shapes import with_collision_modes, with_collision_shapes
 from harness.robot.compose import RobotPart, compose_robot
 from harness.robot.decomposed_meshes import decompose_meshes, without_undrawable
 from harness.robot.description import RobotDescription
 from harness.robot.estimated_masses import with_estimated_masses
-from harness.robot.find_file import find_file, find_folder
+from harness.robot.find_file import find_folder
 from harness.robot.folder_names import refuse_incomplete_states, unknown_names
 from harness.robot.mechanism import Joint
-from harness.robot.mount import mounted
-from harness.robot.options import with_moveit_files, with_options
+from harness.robot.options import with_options
 from harness.robot.packages import PackagePath
 from harness.robot.robot_collection import collected_robots
-from harness.robot.robot_format import FORMATS, read_robot_file, render_xacro
+from harness.robot.robot_format import FORMATS, render_xacro, robot_format
+from harness.robot.robot_option import options_of, robot_option
 from harness.robot.robot_yaml import RobotYaml, XacroFile, read_robot_yaml, robot_yaml_error
-from harness.robot.several_arms import joined_arms
 from harness.robot.srdf.read import read_srdf
 from harness.robot.urdf.urdf import SDF_HINT, parse_urdf
 from harness.robot.xacro_file import arguments_of
@@ -112,7 +109,7 @@ def load_scenario_robot(scenario: ScenarioContent, base_dir: Path) -> RobotDescr
             raise RobotOptionError(f"{name}.{error.key}", error.reason, "robots") from error
         except RobotError as error:
             raise RobotOptionError(name, str(error), "robots") from error
-    return joined_arms(arms)
+    return robot_option("robots").joined(arms)
 
 
 def load_robot(
@@ -154,19 +151,14 @@ def _loaded_once(bundled: _Bundled, collision: CollisionMode | None) -> RobotDes
 def _loaded(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotDescription:
     main, tool = _parts(spec, base_dir, collision)
     description = compose_robot(main, tool, spec.base.se3())
-    if spec.mount is not None:
-        description = mounted(description, spec.mount)
-    if spec.kinematics is not None:
-        note = f"the joints' poses are those of the calibration {spec.kinematics}"
-        description = replace(description, notes=(*description.notes, note))
-    description, known = with_moveit_files(description, spec.moveit, base_dir)
-    is_imported = spec.model is None and main is not None
-    if is_imported:
-        known |= {name for name, limits in spec.joint_limits.items() if limits.max_acceleration}
-        description = with_plausible_efforts(description)
-    description = with_options(description, spec)
-    if is_imported:
-        description = with_assumed_limits_listed(description, known)
+    known = frozenset[str]()
+    for option in options_of(spec):
+        description, stated = option.robot(description, spec, base_dir)
+        known |= stated
+    if spec.model is None and main is not None:
+        description = robot_format(spec).with_options(description, spec, known)
+    else:
+        description = with_options(description, spec)
     links = spec.collision
     if not isinstance(links, str):
         own: dict[str, CollisionMode] = {}
@@ -205,21 +197,15 @@ def _parts(
         main, tool = None, main
     if main is not None and tool is not None:
         main = without_gripper(main)
-    if spec.kinematics is not None:
-        main = _calibrated(main, find_file(spec.kinematics, "kinematics", base_dir, ()))
+    for option in options_of(spec):
+        main = option.part(main, spec, base_dir)
     return main, tool
-
-
-def _calibrated(main: RobotPart | None, path: Path) -> RobotPart:
-    if main is None:
-        raise RobotOptionError("kinematics", "a gripper alone has no calibration")
-    return replace(main, urdf=replace(main.urdf, joints=calibrated(main.urdf.joints, path)))
 
 
 def _main(spec: RobotSpec, base_dir: Path, collision: CollisionMode | None) -> RobotPart | None:
     """The arm, or a gripper without an arm; None when only `gripper` is given."""
     if any(getattr(spec, key) is not None for key in FORMATS):
-        return read_robot_file(spec, base_dir, collision)
+        return robot_format(spec).read(spec, base_dir, collision)
     for key in OF_FILES:
         if getattr(spec, key):
             raise RobotOptionError(key, "it requires a robot's file: `urdf`, `xacro` or `mjcf`")

@@ -15,13 +15,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 
 from harness.core.errors import MissingPackage, RobotError
-from harness.core.extras import missing_extra
+from harness.core.extras import absent_package, missing_extra
 from harness.core.geometry import Hull, Mesh, Shape
 from harness.core.inputs import read_input
 from harness.core.limits import MESH_FILE, READING_MEMORY
@@ -60,9 +59,8 @@ def require_reader(geometry: Mesh) -> None:
         MissingPackage: It is not.
     """
     package = {".dae": "collada", ".obj": ""}.get(geometry.path.suffix.lower(), "trimesh")
-    if package and find_spec(package) is None:
-        missing = ModuleNotFoundError(name=package)
-        raise MissingPackage(f"{geometry.path.name} cannot be read: {missing_extra(missing)}")
+    if package and (missing := absent_package(package)):
+        raise MissingPackage(f"{geometry.path.name} cannot be read: {missing}")
 
 
 @lru_cache(maxsize=128)

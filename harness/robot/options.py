@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from harness.core.errors import RobotOptionError
 from harness.core.suggestion import did_you_mean
-from harness.language.scenario import JointLimits, MoveItFiles, RobotSpec, StartState
+from harness.language.scenario import JointLimits, RobotSpec, StartState
 from harness.robot.description import NamedState, RobotDescription
-from harness.robot.find_file import find_file
 from harness.robot.mechanism import Joint
-from harness.robot.moveit_files import position_only_groups, with_joint_limits
 from harness.robot.srdf.srdf import parse_srdf, write_srdf
 from harness.robot.urdf.write import write_urdf
 from harness.robot.wrench_sensors import with_wrench_sensors
@@ -59,29 +56,6 @@ def with_options(description: RobotDescription, spec: RobotSpec) -> RobotDescrip
     for name, position in description.start_state.items():
         _within(description, name, position, "start_state")
     return description
-
-
-def with_moveit_files(
-    description: RobotDescription, files: MoveItFiles, base_dir: Path
-) -> tuple[RobotDescription, frozenset[str]]:
-    """The robot with the limits of MoveIt's files, and the joints whose acceleration they give.
-
-    Raises:
-        SpecError: A file has mistakes; at line and column.
-        RobotError: A file does not exist.
-    """
-    given: frozenset[str] = frozenset()
-    if files.joint_limits is not None:
-        path = find_file(files.joint_limits, "moveit", base_dir, ())
-        notes = list(description.notes)
-        joints, given = with_joint_limits(description.joints, path, description.name, notes)
-        urdf = write_urdf(description.name, description.links, joints)
-        description = replace(description, joints=joints, urdf=urdf, notes=tuple(notes))
-    if files.kinematics is not None:
-        path = find_file(files.kinematics, "moveit", base_dir, ())
-        only = position_only_groups(path, description.groups, description.name)
-        description = replace(description, position_only_groups=only)
-    return description, given
 
 
 def _movable(description: RobotDescription, name: str, where: str) -> Joint:

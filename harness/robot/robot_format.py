@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -13,6 +13,8 @@ from harness.core.registry import Plugin, absent_plugins, registry
 from harness.language.files.xml_file import XmlElement, read_xml
 from harness.language.scenario import RobotSpec
 from harness.robot.compose import RobotPart
+from harness.robot.description import RobotDescription
+from harness.robot.options import with_options
 from harness.robot.packages import PackagePath
 
 FORMATS = ("urdf", "xacro", "mjcf")
@@ -40,21 +42,34 @@ class RobotFormat(Plugin, ABC):
             RobotError: A file is not found, or an option does not fit it.
         """
 
+    def with_options(
+        self, robot: RobotDescription, spec: RobotSpec, known: Set[str]
+    ) -> RobotDescription:
+        """Apply the options of `robot:`; a format may first assume limits that its file lacks.
 
-def read_robot_file(
-    spec: RobotSpec, base_dir: Path, collision: CollisionMode | None = None
-) -> RobotPart:
-    """The robot of the file that a key of `robot:` names; see `RobotFormat.read`.
+        Args:
+            robot: The robot with its gripper, fixed in the world.
+            spec: The `robot:` of the scenario.
+            known: Joints whose acceleration another file states.
+
+        Raises:
+            RobotError: An option refers to an unknown name, or exceeds the robot's limits.
+        """
+        del known
+        return with_options(robot, spec)
+
+
+def robot_format(spec: RobotSpec) -> RobotFormat:
+    """The plug-in that reads the file of a `robot:`.
 
     Raises:
-        SpecError: The file has mistakes.
-        RobotError: An option does not fit it, or no plug-in reads the format.
+        RobotError: No plug-in reads the format.
     """
     key = next(key for key in FORMATS if getattr(spec, key) is not None)
     formats = registry(RobotFormat.plugin_kind)
     if key not in formats:
         raise RobotOptionError(key, "; ".join(["no plug-in reads such a file", *absent_plugins()]))
-    return formats[key]().read(spec, base_dir, collision)
+    return formats[key]()
 
 
 def render_xacro(path: Path, args: Mapping[str, Any], packages: PackagePath) -> XmlElement:

@@ -10,6 +10,7 @@ from harness.cell.program import Program, ProgramStep
 from harness.cell.scene_state import Belief, Presence, StepNotes
 from harness.core.details import Details
 from harness.core.errors import StepFailed
+from harness.core.registry import registry
 from harness.ports.external import ExternalControl
 from harness.ports.planning import PlanningPorts
 from harness.ports.simulation import Simulator
@@ -19,8 +20,8 @@ from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 from harness.session.advice import advice
-from harness.session.at_once import AtOnce, End, Failure, OnStep, RunEndedError
-from harness.session.moving_frames import execute_motion
+from harness.session.coordinator import Coordinator, End, Failure, OnStep, RunEndedError
+from harness.steps import _tracker
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ class _Runner:
 
     def run_together(self, steps: Sequence[ProgramStep]) -> tuple[float, ...]:
         """Carry out steps of different arms at once; returns when each of them begins [s]."""
-        return AtOnce(self, steps).run()
+        coordinator: Coordinator = registry(Coordinator.plugin_kind).find("rounds")()
+        return coordinator.run(self, steps)
 
     def begin(self, step: ProgramStep) -> End:
         """Begin the record of a step; returns what completes it from the cell's notes."""
@@ -101,7 +103,7 @@ class _Runner:
     def _attempt(self, step: ProgramStep) -> Failure | None:
         self.depth += 1
         try:
-            execute_motion(step.spec, self.cell)
+            _tracker.execute(step.spec, self.cell)
         except (StepFailed, RunEndedError) as failure:
             return failure
         finally:

@@ -281,7 +281,7 @@ class Recording:
 
         Args:
             object_poses: T_world_object of each object, NaN while absent, shape (N, 7) each.
-            surfaces: The motion of the surface of each belt since the sample before, (N, 4) each.
+            surfaces: The velocity of the surface of each belt, as in `Signals.surfaces`.
             first: The first of the N samples.
         """
         physics, last = self._physics, self.count
@@ -295,6 +295,7 @@ class Recording:
         efforts[:, physics.actuated] = self._sensors[rows, self._effort_columns]
         frames = self._sensors[rows, :frame_end].reshape(count, -1, 7)
         contacts = self._contacts.forces(first, last)
+        moved = {name: rows * self.timestep for name, rows in surfaces.items()}
         return Signals(
             times=self.times()[first:],
             joint_positions=self.joint_positions(first).copy(),
@@ -314,8 +315,9 @@ class Recording:
             else {pair: values[first:] for pair, values in self._adhesion.recorded(last).items()},
             wrenches={name: self.wrench(name, first) for name in self.wrenches.sensors},
             slides=self._contacts.slides(
-                first, last, object_poses, self._moved_by_robot(contacts), surfaces
+                first, last, object_poses, self._moved_by_robot(contacts), moved
             ),
+            surfaces=dict(surfaces),
         )
 
     def _moved_by_robot(self, pairs: Collection[BodyPair]) -> set[str]:

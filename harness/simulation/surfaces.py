@@ -50,19 +50,17 @@ class Surfaces:
         wake(self._physics.model, self._data)
 
     def recorded(self, first: int = 0) -> dict[str, FloatArray]:
-        """How far each surface moved since the sample before: x, y, z [m], turn [rad], (N, 4).
+        """Velocity of each surface since the sample before: x, y, z [m/s], turn [rad/s], (N, 4).
 
         Args:
             first: The first of the samples.
         """
-        count, timestep = self._recording.count - first, self._recording.timestep
-        moved: dict[str, FloatArray] = {}
+        velocities: dict[str, FloatArray] = {}
         for name, log in self._log.items():
-            rows = moved[name] = np.zeros((count, 4))
+            rows = velocities[name] = np.zeros((self._recording.count - first, 4))
             for begin, motion in log:
-                moves = np.array([*motion.velocity, motion.rotation]) * timestep
-                rows[max(0, begin - first) :] = moves
-        return moved
+                rows[max(0, begin - first) :] = [*motion.velocity, motion.rotation]
+        return velocities
 
     def _write(self, name: str, motion: SurfaceMotion) -> None:
         """Set the velocity of each geom's surface: at the geom's origin, in the geom's axes."""

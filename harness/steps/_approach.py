@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.goals import TcpGoal, group_of, task_space_of
@@ -21,7 +22,7 @@ from harness.language.poses import Direction, Pose
 from harness.ports.goals import PoseGoal
 from harness.recording.explanation import ApproachFailure, Explanation, NearestState
 from harness.steps.lin import Lin
-from harness.steps.move_relative import MoveRelative
+from harness.steps.move_relative import MoveRelative, check_lengths
 from harness.steps.move_to import MoveTo
 
 DEFAULT_TRAVEL = 0.1  # [m]
@@ -45,6 +46,11 @@ class Travel(SpecModel):
     distance: PositiveLength | None = Field(
         default=None, description="The move has exactly this length [m]."
     )
+
+    @model_validator(mode="after")
+    def _one_length(self) -> Self:
+        check_lengths(self.distance, self.min_distance, self.max_distance)
+        return self
 
 
 def check_travel(travel: Travel | None, at: At, key: str) -> None:

@@ -1,50 +1,33 @@
-"""How an arm picks from a surface that moves and places onto one, as plug-ins."""
+"""How an arm moves to what a surface carries, picks from it and places onto it, as plug-ins."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach
 from harness.cell.scope import At
 from harness.core.registry import Plugin, absent_plugins, registry
 from harness.core.spatial import SE3
+from harness.language.step import Step
 from harness.steps.grasp import Grasp
 from harness.steps.move_relative import MoveRelative
 
 
-class Carried(Protocol):
-    """An object that the surface of a belt or turntable carries."""
-
-    @property
-    def belt(self) -> str:
-        """The name of what carries it."""
-        ...
-
-    @property
-    def speed(self) -> float:
-        """The speed of the object now [m/s]."""
-        ...
-
-    def pose(self, duration: float) -> SE3:
-        """T_world_object after a duration [s]."""
-        ...
-
-    def is_on(self, duration: float) -> bool:
-        """Whether the surface still carries the object after a duration [s]."""
-        ...
-
-
 class Tracker(Plugin, ABC):
-    """Picks and places in motion, for `track: true`."""
+    """Moves to objects in motion; picks and places in motion, for `track: true`."""
 
     plugin_kind: ClassVar[str] = "tracker"
 
     @abstractmethod
-    def carried(self, name: str, cell: Cell) -> Carried | None:
-        """What carries an object now; None where it stands."""
+    def execute(self, spec: Step, cell: Cell) -> None:
+        """Carry out a step; a motion to where an object is carried ends when the object is there.
+
+        Raises:
+            StepFailed: The step cannot be carried out, or the arm cannot be there in time.
+        """
 
     @abstractmethod
     def pick(
@@ -87,15 +70,17 @@ def tracker() -> Tracker:
     return registry(Tracker.plugin_kind).find("belt")()
 
 
-def carried(name: str, cell: Cell) -> Carried | None:
-    """What carries an object now; None where it stands, or where no plug-in follows belts."""
-    presence = cell.presence[name]
-    is_free = presence.is_there and presence.obj.in_simulation and not presence.obj.is_static
-    moving = [each for each in cell.presence.values() if each.obj.surface_motion is not None]
-    is_held = name in cell.scene.attached() or name not in cell.scene.object_names()
-    if not (is_free and moving) or is_held or "belt" not in registry(Tracker.plugin_kind):
-        return None
-    return tracker().carried(name, cell)
+def execute(spec: Step, cell: Cell) -> None:
+    """Carry out a step, with a plug-in where it moves an arm and surfaces move.
+
+    Raises:
+        StepFailed: It cannot be carried out.
+    """
+    is_moving = any(each.obj.surface_motion is not None for each in cell.presence.values())
+    if spec.moves_arm and is_moving and "belt" in registry(Tracker.plugin_kind):
+        tracker().execute(spec, cell)
+    else:
+        spec.execute(cell)
 
 
 def check_track(track: bool, at: At) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -19,12 +20,25 @@ from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOpt
 from harness.ports.motions import RelativeMotion
 
 
+def check_lengths(exact: float | None, least: float | None, most: float | None) -> None:
+    """Refuse a length that is stated twice.
+
+    Raises:
+        ValueError: It is exact and bounded as well, or its bounds contradict each other.
+    """
+    if exact is not None and (least or most):
+        raise ValueError("a move takes `distance`, or `min_distance` and `max_distance`")
+    if least and most and least > most:
+        raise ValueError("`min_distance` must not be more than `max_distance`")
+
+
 class MoveRelative(Step):
     """Move the link by a distance, or turn it by an angle: Task Constructor's MoveRelative."""
 
     verb: ClassVar[str] = "move_relative"
     moves_arm: ClassVar[bool] = True
     one_of = ("direction", "rotation")
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"angle": ("rotation",)}
 
     direction: Direction | None = Field(
         default=None, description="The link moves straight in this direction."
@@ -56,14 +70,9 @@ class MoveRelative(Step):
             if any((self.distance, self.min_distance, self.max_distance)):
                 raise ValueError("a `rotation` takes an `angle` and no distance")
             return self
-        if self.angle is not None:
-            raise ValueError("an `angle` goes with `rotation`")
-        if self.distance is not None and (self.min_distance or self.max_distance):
-            raise ValueError("a `direction` takes `distance`, or `min_distance` and `max_distance`")
         if self.distance is None and self.max_distance is None:
             raise ValueError("a `direction` needs a `distance` or a `max_distance`")
-        if self.min_distance and self.max_distance and self.min_distance > self.max_distance:
-            raise ValueError("`min_distance` must not be more than `max_distance`")
+        check_lengths(self.distance, self.min_distance, self.max_distance)
         return self
 
     def summary(self) -> str:

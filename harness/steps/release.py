@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
@@ -48,6 +48,12 @@ class Release(Step):
         default=None,
         description="The gripper's joint opens to this position, in place of `named_target`.",
     )
+
+    @model_validator(mode="after")
+    def _one_target(self) -> Self:
+        if self.named_target is not None and self.position is not None:
+            raise ValueError("at most one of `named_target` and `position`")
+        return self
 
     def summary(self) -> str:
         return self.object or ""

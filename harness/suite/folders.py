@@ -9,27 +9,46 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from harness.core.files import is_dir, path_exists
+from harness.core.files import is_dir, is_file, part_of, path_exists
 from harness.core.resources import data_folder
 from harness.suite.discovery import SUFFIX, UsageError
 
 LONGEST_NAME = 200  # the longest name of a report's folder [bytes]
 
 
-def refuse_unwritable(root: Path) -> None:
-    """Check before anything runs that a folder can be written, or created.
+def refuse_unwritable_file(file: Path, option: str = "") -> None:
+    """Check before anything runs that a file can be written, and the folders above it.
+
+    Args:
+        file: A file that need not exist yet.
+        option: What a message begins with, such as `--ctrf: `.
 
     Raises:
         UsageError: It cannot.
     """
-    place = root
+    if is_dir(file):
+        raise UsageError(f"{option}'{file}' is a folder; name a file")
+    if is_file(file) or not path_exists(file):  # no pipe and no device
+        _refuse(part_of(Path(os.path.realpath(file))), f"{option}'{file}' cannot be written")
+
+
+def refuse_unwritable(root: Path, option: str = "") -> None:
+    """Check before anything runs that a folder can be written, or created; see above.
+
+    Raises:
+        UsageError: It cannot.
+    """
+    _refuse(root, f"{option}nothing can be written into '{root}'")
+
+
+def _refuse(path: Path, what: str) -> None:
+    place = path
     while not path_exists(place) and place != place.parent:
         place = place.parent
-    what = f"--report-dir: nothing can be written into '{root}'"
     if not is_dir(place):
-        raise UsageError(f"{what}, as '{place}' is a file; choose a folder")
+        raise UsageError(f"{what}, as '{place}' is a file; choose another folder")
     longest = os.pathconf(place, "PC_NAME_MAX")
-    if any(len(os.fsencode(part)) > longest for part in root.parts):
+    if any(len(os.fsencode(part)) > longest for part in path.parts):
         raise UsageError(f"{what}: a name has at most {longest} bytes; choose a shorter one")
     try:
         Path(tempfile.mkdtemp(prefix=".armharness-", dir=place)).rmdir()

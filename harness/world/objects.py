@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from harness.core.errors import RobotError
+from harness.core.extras import absent_package
 from harness.core.files import is_file
 from harness.core.geometry import (
     Box,
@@ -211,6 +212,8 @@ def _geometry(spec: ObjectSpec | ShapeSpec, base_dir: Path) -> Geometry:
     if (solid := primitive(spec)) is not None:
         return solid
     if spec.marker is not None:
+        if missing := absent_package("cv2"):
+            raise ObjectUnusableError(f"its marker cannot be drawn: {missing}")
         return plate(spec.marker)
     if spec.mesh is not None:
         path = base_dir / spec.mesh.file

@@ -87,6 +87,52 @@ def test_a_video_without_its_package_is_refused_at_its_line(tmp_path):
     assert "pip install" in done.stdout
 
 
+SEEN = """\
+scenario: A
+robot: {model: open_manipulator_x}
+world: empty
+cameras: [{name: eye, pose: {xyz: [1, 0, 1]}, look_at: [0, 0, 0]}]
+objects: [{name: card, OBJECT, static: true, pose: {xyz: [0.3, 0, 0]}}]
+steps: [{capture: {camera: eye, kinds: [color, depth, segmentation]}}]
+expect: [{sees: {camera: eye, WHAT}}]
+"""
+BOX, MARKER = "box: {size: [0.1, 0.1, 0.01]}", "marker: {id: 3, size: 0.1}"
+
+
+@pytest.mark.nightly(but=["run-marked", "check-color"])
+@pytest.mark.parametrize(
+    ("thing", "what", "place"),
+    [
+        (MARKER, "object: card", "5:11: object 'card': its marker cannot be drawn"),
+        (f"shapes: [{{{MARKER}}}]", "object: card", "5:11: object 'card': its marker cannot"),
+        (BOX, "color: red", "7:38: pictures cannot be searched for it"),
+        (BOX, "marker: 3", "7:39: pictures cannot be searched for it"),
+    ],
+    ids=["marked", "shape", "color", "marker"],
+)
+@pytest.mark.parametrize("command", [["check"], ["run", "--in-process"]], ids=["check", "run"])
+def test_what_opencv_draws_or_finds_is_refused_at_its_line(command, thing, what, place, tmp_path):
+    text = SEEN.replace("OBJECT", thing).replace("WHAT", what)
+    (tmp_path / "a.scenario.yaml").write_text(text)
+    done = without(["cv2"], tmp_path, *command, "a.scenario.yaml")
+    assert done.returncode == 2, done.stdout + done.stderr
+    said = " ".join(done.stdout.split())
+    assert f"a.scenario.yaml:{place}" in said
+    assert "the Python package cv2 is not installed; install it by:" in said
+    assert not (tmp_path / "reports").exists()
+
+
+def test_a_camera_looks_for_objects_without_opencv(tmp_path):
+    text = SEEN.replace("OBJECT", BOX).replace("WHAT", "object: card")
+    (tmp_path / "a.scenario.yaml").write_text(text)
+    done = without(["cv2"], tmp_path, "run", "a.scenario.yaml", "--in-process", "--bag")
+    assert done.returncode == 0, done.stdout + done.stderr
+    pictures = {
+        file.name.split(".", 2)[2] for file in (tmp_path / "reports/a/cameras/eye").iterdir()
+    }
+    assert pictures == {"color.png", "depth.npz", "depth.png", "labels.png", "segmentation.png"}
+
+
 def test_the_film_of_a_saved_run_without_its_package_is_refused(tmp_path, recorded_run):
     scenario = tmp_path / "wait.scenario.yaml"
     scenario.write_text("scenario: A\nrobot: open_manipulator_x\nsteps: [{wait: 0.1 s}]\n")
@@ -157,7 +203,10 @@ def test_a_robot_is_drawn_without_the_meshes_that_nothing_reads(file, package, t
     assert (note in done.stdout + done.stderr) == bool(package)
 
 
-DISTRIBUTIONS = {"collada": "pycollada"}  # of packages that are called otherwise
+DISTRIBUTIONS = {
+    "collada": "pycollada",
+    "cv2": "opencv-python-headless",
+}  # of packages that are called otherwise
 
 
 def test_each_package_is_declared_in_its_extra_and_not_required():

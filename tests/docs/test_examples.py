@@ -21,7 +21,7 @@ from docs.generators.examples import (
     shown,
 )
 from harness.cli.main import parser_of
-from harness.language.schema import schema_text
+from harness.plugins.authoring.scenario_schema import schema_text
 
 EVERY_PAGE = sorted(
     {

@@ -8,7 +8,7 @@ import pytest
 
 from docs import ROOT
 from harness.cli.main import main
-from harness.language.schema import schema_text, world_schema_text
+from harness.plugins.authoring.scenario_schema import schema_text, world_schema_text
 from harness.robot.robot_yaml import RobotYaml
 
 INSTEAD = {

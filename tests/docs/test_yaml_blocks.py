@@ -52,6 +52,7 @@ BEFORE = {
     "docs/guides/belts.md": [
         "robot: ur5e\nsteps: [{wait: 0.5}]\n",
         f"{UR3E}objects:\n{BELT % 0}",
+        f"{UR3E}objects:\n{BELT % 0.1}steps: [{{conveyor: {{object: belt, velocity: 0}}}}]\n",
         f"{UR3E}objects:\n{BELT % 0.1}expect: [{{lifted: {{object: can, above: 5 cm}}}}]\n",
         f"{UR3E}objects:\n{BELT % 0.1}",
     ],

@@ -301,6 +301,23 @@ def test_temporal_words_agree_with_their_formulas(signal, hold, within):
         assert said == answer, text
 
 
+@pytest.mark.parametrize(
+    ("text", "is_warned"),
+    [
+        ("z(box) < 10 cm", True),
+        ("not z(box) > 10 cm and time < 1", True),
+        ("always[0, 0] z(box) < 10 cm", True),
+        ("always z(box) < 10 m", False),
+        ("time < 1 and eventually z(box) > 10 cm", False),
+        ("z(box) < 10 m until z(box) > 10 cm", False),
+    ],
+)
+def test_a_formula_that_reads_its_first_sample_alone_has_a_warning(text, is_warned):
+    answer = verdict(lift_run(), Formula(formula=text))
+    assert answer.status == "passed"
+    assert [each.name for each in answer.warnings] == ["hardly observed"] * is_warned
+
+
 def test_during_is_the_formula_on_the_step_s_samples():
     run = lift_run()
     for step, status in (("approach", "failed"), ("lift", "passed")):

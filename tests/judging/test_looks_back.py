@@ -49,7 +49,7 @@ def from_sample(run, skipped):
         Upright(object="a"),
         InContact(between=("left", "a")),
         InContact(between=("left", "a"), min_force=2.0, force_window=0.2),
-        InContact(between=("a", "ground_plane"), force_window=0.0),
+        InContact(between=("a", "ground_plane"), min_force=0.01, force_window=0.0),
         On(object="a", support="ground_plane"),
         On(object="a", support="b"),
     ],

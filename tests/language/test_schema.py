@@ -10,8 +10,8 @@ from harness.core.resources import data_folder
 from harness.language.files.source import Source
 from harness.language.files.yaml_file import parse_yaml
 from harness.language.language import PREDICATES
-from harness.language.schema import scenario_schema, schema_text, world_schema
 from harness.language.step import STEPS
+from harness.plugins.authoring.scenario_schema import scenario_schema, schema_text, world_schema
 
 FILES = Path(__file__).parent / "files"
 LESSONS = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))

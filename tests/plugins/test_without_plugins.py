@@ -109,6 +109,24 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert done.returncode == 2
     assert "formula.scenario.yaml:1:15" in done.stdout + done.stderr
     assert "no plug-in reads such a file" in done.stdout + done.stderr
+    for key, value in (
+        ("mount", "{pedestal: [0.2, 0.2, 0.5]}"),
+        ("moveit", "{kinematics: k.yaml}"),
+    ):
+        file.write_text(
+            f"scenario: t\nrobot: {{model: open_manipulator_x, {key}: {value}}}\n"
+            "steps: [{wait: 1}]\n"
+        )
+        done = core("check", file)
+        assert done.returncode == 2
+        assert "formula.scenario.yaml:2:4" in done.stdout + done.stderr
+        assert "no plug-in applies this key here" in done.stdout + done.stderr
+    arm = "{model: open_manipulator_x}"
+    file.write_text(f"scenario: t\nrobots: {{a: {arm}, b: {arm}}}\nsteps: [{{wait: 1}}]\n")
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:2:9" in done.stdout + done.stderr
+    assert "no plug-in applies this key here" in done.stdout + done.stderr
     file.write_text("scenario: t\nrobot: {model: suction_cup}\nsteps: [{gripper: on}]\n")
     done = core("check", file)
     assert done.returncode == 2

@@ -5,8 +5,8 @@ import pytest
 
 from harness.core.errors import RobotError, RobotOptionError
 from harness.language.scenario import RobotSpec
+from harness.plugins.assembly.several_arms import ALL_ARMS, joined_arms
 from harness.robot.load import load_robot
-from harness.robot.several_arms import ALL_ARMS, joined_arms
 
 UR = {"model": "ur3e", "gripper": "rh_p12_rn_a"}
 SMALL = {"model": "open_manipulator_x"}

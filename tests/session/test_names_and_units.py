@@ -118,6 +118,61 @@ def test_a_tolerance_leaves_positions_that_are_beyond_it(expected, is_possible, 
     assert all("is beyond this tolerance" in each for each in said)
 
 
+@pytest.mark.parametrize(
+    ("expected", "is_possible"),
+    [
+        ("grasped: {object: cube, max_slip: 5}", False),
+        ("grasped: {object: cube, max_slip: 5 mm}", True),
+        ("slip: {object: cube, max_distance: 100 cm}", False),
+        ("inserted: {peg: cube, hole: cube, depth: 1 mm, tolerance: 2}", False),
+        ("slip: {object: cube, max_distance: 0.9}", True),
+        ("tcp_pose: {pose: {xyz: [0, 0, 1]}, tolerance: {position: 1}}", False),
+        ("placed: {object: cube, pose: {xyz: [0, 0, 1]}, tolerance: {position: 10}}", False),
+        ("clearance: {max_below_plan: 20}", False),
+        ("gripper: {width: 2 cm, tolerance: 10 cm}", False),
+        ("gripper: {width: 2 cm, tolerance: 3 cm}", True),
+    ],
+)
+def test_no_error_of_a_length_is_allowed_that_only_millimetres_can_mean(
+    expected, is_possible, tmp_path
+):
+    said = messages(tmp_path, rest=f"objects: [{CUBE % 'cube'}]\nexpect: [{{{expected}}}]")
+    assert (said == []) == is_possible, said
+
+
+@pytest.mark.parametrize(
+    ("expected", "message"),
+    [
+        ("placed: {object: cube, tolerance: {position: 1 mm}}", "goes with `pose`"),
+        ("in_contact: {between: [robot, cube], force_window: 1 ms}", "goes with `min_force`"),
+        ("gripper: {stalled: true, tolerance: 1 mm}", "`tolerance` goes with `named_target` or"),
+        ("within_limits: {position: false, velocity: false, effort: false}", "at least one kind"),
+        ("formula: {formula: always x(cube) < 1, force_window: 1 ms}", "reads no force"),
+        (
+            "tcp_pose: {pose: {xyz: [0, 0, 1]}, position_only: true, tolerance: {orientation: 1}}",
+            "says nothing with `position_only`",
+        ),
+    ],
+)
+def test_a_key_that_changes_no_verdict_is_refused(expected, message, tmp_path):
+    [said] = messages(tmp_path, rest=f"objects: [{CUBE % 'cube'}]\nexpect: [{{{expected}}}]")
+    assert message in said
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "release: {object: cube, named_target: open, position: 5 mm}",
+        "pick: {object: cube, approach: {distance: 3 cm, max_distance: 5 cm}}",
+        "place: {pose: {xyz: [0, 0.2, 1]}, retreat: {min_distance: 3 cm, distance: 3 cm}}",
+        "move_to: {position: {xyz: [0.2, 0, 0.2]}, tolerance: {position: 5}}",
+    ],
+)
+def test_a_step_takes_no_key_that_another_one_overrides(step, tmp_path):
+    rest = f"objects: [{CUBE % 'cube'}]"
+    assert len(messages(tmp_path, f"- {{{step}}}", rest=rest)) == 1
+
+
 def test_a_number_of_a_formula_is_no_larger_than_any_other(tmp_path):
     for number, is_right in (("1e9", True), ("1.1e9", False), ("1e999", False)):
         said = messages(tmp_path, rest=f"expect:\n  - formula: always z(tcp) < {number}\n")

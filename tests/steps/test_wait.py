@@ -4,7 +4,7 @@ import jsonschema
 import pytest
 import yaml
 
-from harness.language.schema import scenario_schema
+from harness.plugins.authoring.scenario_schema import scenario_schema
 from harness.session.check import check_file
 
 UNTIL = "until: {joints: {positions: {joint1: 1.0}}}"

@@ -11,7 +11,7 @@ from packaging.utils import canonicalize_name
 from docs import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-EXTRAS = ("meshes", "bags", "video", "search", "ik-test", "studio", "parquet", "mcp")
+EXTRAS = ("cameras", "meshes", "bags", "video", "search", "ik-test", "studio", "parquet", "mcp")
 PAGE = (ROOT / "docs/reference/licences.md").read_text()
 LOCK = (ROOT / ".ci/requirements.lock").read_text()
 TABLE = {

@@ -28,7 +28,7 @@ from harness.judging.observations import CLEARANCE_ROOM, Observations
 from harness.judging.poses import present
 from harness.judging.support import carried_by_hand
 from harness.judging.window import NotObservable, NotReached, Window, lasting
-from harness.language.base import Name, NonNegativeLength, PositiveLength
+from harness.language.base import Deviation, Name, NonNegativeLength
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import VerdictWarning
@@ -73,7 +73,7 @@ class Clearance(Predicate):
     at_least: NonNegativeLength | None = Field(
         default=None, description="The smallest distance that is allowed [m]."
     )
-    max_below_plan: PositiveLength | None = Field(
+    max_below_plan: Deviation | None = Field(
         default=None,
         description="The largest amount by which the distance may be below the one with the arm at"
         " its commands [m].",

@@ -31,7 +31,7 @@ from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import present
 from harness.judging.temporal import TIME_RESOLUTION, episodes
 from harness.judging.window import Window, object_record
-from harness.language.base import AngleBetween, Force, PositiveLength
+from harness.language.base import AngleBetween, Deviation, Force
 from harness.language.expectation import Quantity
 from harness.recording.run import Run
 from harness.recording.verdict import Measure
@@ -66,7 +66,7 @@ class Grasped(ArmPredicate, ObjectPredicate):
     min_force: Annotated[Force, Field(ge=0)] = Field(
         default=0.05, description="The smallest force on each side [N]."
     )
-    max_slip: PositiveLength = Field(
+    max_slip: Deviation = Field(
         default=0.005,
         description="The largest distance moved in the hand since the grasp began [m].",
     )

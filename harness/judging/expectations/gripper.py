@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -13,7 +14,13 @@ from harness.core.state_words import stated_name
 from harness.judging.contacts import finger_gap
 from harness.judging.expectation import ArmPredicate, Mechanisms
 from harness.judging.hands import gripper_of
-from harness.judging.joints import POSITION_ERROR, SLIDING_TOLERANCE, check_tolerance, near
+from harness.judging.joints import (
+    POSITION_ERROR,
+    SLIDING_TOLERANCE,
+    check_tolerance,
+    near,
+    refuse_unbreakable,
+)
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotObservable, NotReached, Window, refuse_unrecorded_steps
 from harness.language.base import Flag, JointValue, Name, NonNegativeLength
@@ -31,6 +38,9 @@ class GripperState(ArmPredicate):
     word = "gripper"
     short = "named_target"
     one_of = ("named_target", "position", "width", "stalled")
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "tolerance": ("named_target", "position", "width")
+    }
     sentence = "gripper is[ {named_target}][ at {position}][ open by {width}][ {stalled}]"
     quantities = (POSITION_ERROR, GAP, STALLED)
     is_proposed = True
@@ -61,6 +71,9 @@ class GripperState(ArmPredicate):
         hand = at.scope.description.gripper
         if self.width is not None:
             at.scope.problems.check_unit(at.key("tolerance"), "m")
+            if hand is not None and "tolerance" in self.model_fields_set:
+                errors = np.abs(hand.widths[:, 1] - self.width).tolist()
+                refuse_unbreakable(at, self.tolerance, errors, "gap of the gripper")
         elif hand is not None:
             for key in self.model_fields_set.intersection(("position", "tolerance")):
                 at.scope.check_joint_unit(hand.joint, at.key(key))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -48,6 +49,7 @@ class InContact(Predicate):
     judged = "eventually"
     sentence = "{between} are in contact[ with at least {min_force}]"
     quantities = (CONTACT,)
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"force_window": ("min_force",)}
     synonyms = ("contact", "contacts", "touch", "touching")
 
     between: tuple[Name, Name] = Field(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -72,6 +73,7 @@ class Placed(ObjectPredicate):
     sentence = "{object} is placed[ on {on}][ at {pose}]"
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
     is_proposed = True
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"tolerance": ("pose",)}
 
     on: Name | None = Field(
         default=None,

@@ -12,7 +12,7 @@ from harness.judging.drift import drift_in_hand
 from harness.judging.expectation import ObjectPredicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import Window
-from harness.language.base import AngleBetween, PositiveLength
+from harness.language.base import AngleBetween, Deviation
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
@@ -28,7 +28,7 @@ class Slip(ObjectPredicate):
     quantities = (SLIP, TURN)
     is_upper_bound = True
 
-    max_distance: PositiveLength = Field(
+    max_distance: Deviation = Field(
         default=0.003, description="The largest distance between the two [m]."
     )
     max_rotation: Annotated[AngleBetween, Field(gt=0)] = Field(

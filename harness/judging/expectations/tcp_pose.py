@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.cell.scope import At
 from harness.core.amounts import amounts, is_exact
@@ -43,6 +44,12 @@ class TcpPose(ArmPredicate):
     position_only: Flag = Field(
         default=False, description="Whether the position alone counts, with any rotation."
     )
+
+    @model_validator(mode="after")
+    def _one_rotation(self) -> Self:
+        if self.position_only and "orientation" in self.tolerance.model_fields_set:
+            raise ValueError("a tolerance of the orientation says nothing with `position_only`")
+        return self
 
     def check(self, at: At) -> None:
         at.scope.check_link(self.link, at.key("link"))

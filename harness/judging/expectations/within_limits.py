@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from harness.core.amounts import amounts
 from harness.core.types import FloatArray
@@ -70,6 +71,12 @@ class WithinLimits(Predicate):
         default=False, description="Whether accelerations of the commanded trajectory are judged."
     )
     effort: Flag = Field(default=True, description="Whether efforts of the motors are judged.")
+
+    @model_validator(mode="after")
+    def _any(self) -> Self:
+        if not (self.position or self.velocity or self.acceleration or self.effort):
+            raise ValueError("at least one kind of limit has to be judged")
+        return self
 
     def signal(self, window: Window) -> MarginSignal:
         """Positions, velocities, efforts and commanded accelerations, as shares of their limits."""

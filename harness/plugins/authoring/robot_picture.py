@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from harness.cameras.camera_scene import floor_height
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.renderer import render_overview
 from harness.core.geometry import bounding_radius
+from harness.core.picture_files import jpeg, png
 from harness.core.types import FloatArray
 from harness.robot.description import RobotDescription
 from harness.robot.mechanism import Link
@@ -43,10 +43,7 @@ def save_robot_picture(
     radii = np.array([_radius(link) for link in links])
     picture.pose(poses)
     image = render_overview(picture, centres, radii, SIZE, SIZE)
-    done, encoded = cv2.imencode(file.suffix, np.ascontiguousarray(image[:, :, ::-1]))
-    if not done:
-        raise OSError(0, "cannot be encoded", str(file))
-    file.write_bytes(encoded.tobytes())
+    file.write_bytes(png(image) if file.suffix.lower() == ".png" else jpeg(image))
     missing = undrawn(description, ())
     return f"not in the picture: {', '.join(missing)}" if missing else ""
 

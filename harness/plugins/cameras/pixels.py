@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from harness.core.picture_files import decoded
 from harness.language.markers import MarkerName
 
 
@@ -55,9 +56,10 @@ def marker_pixels(file: bytes, marker: MarkerName) -> int:
 
 def label_pixels(file: bytes, label: int) -> int:
     """Pixels of a label in a segmentation."""
-    import cv2
-
-    return int(np.count_nonzero(_decoded(file, cv2.IMREAD_UNCHANGED) == label))
+    labels = decoded(file)
+    if labels is None:
+        raise ValueError("no picture that Pillow can read")
+    return int(np.count_nonzero(labels == label))
 
 
 def _decoded(file: bytes, flags: int) -> Any:

@@ -7,9 +7,9 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from harness.cli.arguments import share_of_one
+from harness.cli.arguments import output_file, share_of_one
 from harness.cli.output import complain, output, say
-from harness.core.files import replaced, writing
+from harness.core.files import is_file, replaced, writing
 from harness.core.printable import counted
 from harness.plugins.ci.baseline import (
     KEEP,
@@ -25,6 +25,7 @@ from harness.plugins.ci.ctrf import ctrf_text
 from harness.plugins.ci.results import SavedSuite, read_results
 from harness.reporting.suite.github import annotation
 from harness.suite.discovery import UsageError
+from harness.suite.folders import refuse_unwritable_file
 from harness.suite.outcome import EXIT_CODES
 
 
@@ -38,11 +39,11 @@ def add_gate_options(command: argparse.ArgumentParser) -> None:
     text = f"the share of each earlier margin that has to remain (default: {KEEP})"
     add("--keep-margin", metavar="SHARE", type=share_of_one, default=KEEP, help=text)
     text = "write the results with their margins in the Common Test Report Format (CTRF)"
-    add("--ctrf", metavar="FILE", default="", help=text)
+    add("--ctrf", metavar="FILE", type=output_file, default="", help=text)
     text = (
         "write a comment for a pull request, in Markdown: failures, margins that shrank, a picture"
     )
-    add("--comment", metavar="FILE", default="", help=text)
+    add("--comment", metavar="FILE", type=output_file, default="", help=text)
     text = "the address at which the report folder is published, for the links of --comment"
     add("--page-url", metavar="URL", default="", help=text)
 
@@ -51,10 +52,15 @@ def is_requested(arguments: argparse.Namespace) -> bool:
     """Whether an option of pipelines has a value.
 
     Raises:
-        UsageError: Options contradict each other.
+        UsageError: Options contradict each other, or the baseline cannot be read or written.
     """
+    baseline = Path(arguments.baseline)
     if arguments.update_baseline and not arguments.baseline:
         raise UsageError("--update-baseline goes with --baseline FILE, the file to write")
+    if arguments.baseline and not (arguments.update_baseline and not is_file(baseline)):
+        read_baseline(baseline)
+    if arguments.update_baseline:
+        refuse_unwritable_file(baseline, "--baseline: ")
     return bool(arguments.baseline or arguments.ctrf or arguments.comment)
 
 

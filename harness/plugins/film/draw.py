@@ -8,11 +8,12 @@ from contextlib import closing
 import numpy as np
 
 from harness.cameras.camera_scene import floor_height, scene_poses
-from harness.cameras.caption import DARK, RED, captioned, jpeg
+from harness.cameras.caption import DARK, RED, captioned
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
 from harness.cameras.stills import INK, overview
 from harness.core.activity import Activity, unobserved
+from harness.core.picture_files import jpeg
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.plugins.film.story import Frame, Moment, deciding_moment, frames_of
@@ -78,12 +79,12 @@ class ReplayRenderer:
         frames = list(frames_of(self._stored, rate))
         for number, frame in enumerate(frames):
             activity("drawing", number, len(frames))
-            picture = self.picture(frame)[:, :, ::-1]
+            picture = self.picture(frame)
             for _ in range(frame.repeats):
                 yield picture
 
     def picture(self, frame: Frame) -> np.ndarray:
-        """A captioned picture, BGR."""
+        """A captioned picture, RGB."""
         run = self._stored.run
         self._picture.pose(scene_poses(run.robot, self._objects, run, frame.sample))
         pixels = self._renderer.render(self._view)

@@ -19,11 +19,11 @@ from harness.plugins.formats.moveit_messages.request import MoveItRequest, read_
 from harness.plugins.formats.moveit_messages.scene import MoveItScene, read_scene
 from harness.plugins.formats.stl import stl_bytes
 from harness.plugins.formats.world_text import world_text
+from harness.plugins.formats.yaml_data import read_data
 from harness.robot.description import RobotDescription
 from harness.robot.load import load_robot
 from harness.robot.packages import PackagePath
 from harness.robot.robot_source import RobotSource
-from harness.robot.yaml_data import read_data
 from harness.world.notes import Note
 
 OnProgress = Callable[[str, int, int], None]

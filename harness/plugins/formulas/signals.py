@@ -118,6 +118,10 @@ def _recorded(node: Signal, window: Window, force_window: float) -> Values:
             return _reading(window, sensor, "xyz".index(name[-1]), "N", force_window)
         case "torque_x" | "torque_y" | "torque_z" as name, (sensor,):
             return _reading(window, sensor, 3 + "xyz".index(name[-1]), "N m", force_window)
+        case "surface_velocity", (belt,):
+            return Values(_surface(window, belt)[:, 0], "m/s")
+        case "surface_rotation", (belt,):
+            return Values(_surface(window, belt)[:, 3], "rad/s")
         case name, (joint,):
             return _joint(name, joint, window)
         case _:
@@ -135,6 +139,13 @@ def _poses(window: Window, name: str) -> FloatArray:
 
 def _reading(window: Window, sensor: str, column: int, unit: str, force_window: float) -> Values:
     return Values(window.cut(averaged_wrench(window.run, sensor, force_window)[:, column]), unit)
+
+
+def _surface(window: Window, belt: str) -> FloatArray:
+    """The velocity of a belt's surface, (n, 4) as in `Signals.surfaces`."""
+    if belt not in window.run.signals.surfaces:
+        raise NotObservable(f"the surface of '{belt}' was not recorded")
+    return window.cut(window.run.signals.surfaces[belt])
 
 
 def _joint(name: str, joint: str, window: Window) -> Values:

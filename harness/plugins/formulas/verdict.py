@@ -33,7 +33,7 @@ from harness.core.types import BoolArray, FloatArray, IntArray
 from harness.judging.contacts import FORCE_WINDOW
 from harness.judging.temporal import TIME_RESOLUTION, range_min
 from harness.judging.window import NotObservable, NotReached, Window
-from harness.judging.words import ALREADY_TRUE
+from harness.judging.words import ALREADY_TRUE, HARDLY_OBSERVED
 from harness.plugins.formulas.language.formula import (
     Comparison,
     Interval,
@@ -324,6 +324,9 @@ class Evaluation:
             for premise in premises_of(root)
             if not self._times_true(premise)
         ]
+        if len(self.times) > 1 and not _looks_ahead(root):
+            message = "no temporal word: it is judged at the first sample, write `always` or"
+            found.append(VerdictWarning(HARDLY_OBSERVED, f"{message} `eventually`"))
         inner = _awaited(root)
         if inner is not None and self.bounds(inner).low[0] > 0:
             time = self.window.time(0)
@@ -353,6 +356,17 @@ class Evaluation:
                 time = self.window.time(int(np.argmax(undefined)))
                 return f"{node.text} has no value at t={time:.3f} s, where it divides by zero"
         return ""
+
+
+def _looks_ahead(node: Node) -> bool:
+    """Whether a formula reads samples after the first one."""
+    match node:
+        case Temporal():
+            return node.interval.last > 0
+        case Logic():
+            return any(map(_looks_ahead, node.operands))
+        case _:
+            return False
 
 
 def _awaited(root: Node) -> Node | None:

@@ -140,9 +140,9 @@ class _Painter(SpawnProcess):
 
     def run(self) -> None:
         from harness.cameras.camera_scene import CameraScene
-        from harness.cameras.captures import jpeg
         from harness.cameras.renderer import make_renderer
         from harness.cameras.sensor import as_delivered
+        from harness.core.picture_files import jpeg
 
         self.pictures.close()
         scene = CameraScene(*self._scene)
@@ -158,5 +158,5 @@ class _Painter(SpawnProcess):
             if view is not None:
                 ideal = make(camera.width, camera.height).render(view)
                 picture = as_delivered(ideal, camera, self._seed, sample)
-                drawn = picture, jpeg(picture, camera)
+                drawn = picture, jpeg(picture, camera.jpeg_quality)
             self._requests.send(drawn)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,8 +11,8 @@ from typing import Any
 
 import yaml
 
+from harness.core.registry import registry
 from harness.language.language import EXPECTATIONS
-from harness.language.schema import scenario_schema
 from harness.language.step import STEPS
 
 Schema = Mapping[str, Any]
@@ -62,7 +63,7 @@ def named_at(path: Path, names: Names) -> Sequence[str]:
 
 @cache
 def _schema() -> Schema:
-    return scenario_schema()
+    return json.loads(registry("command").find("schema")().text())
 
 
 def path_at(text: str, line: int, column: int) -> tuple[Path, bool]:

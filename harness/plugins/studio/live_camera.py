@@ -8,11 +8,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import cv2
 import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.errors import HarnessError
+from harness.core.picture_files import jpeg
 from harness.plugins.studio.live_cell import LiveCell
 from harness.plugins.studio.newest import Newest
 
@@ -80,5 +80,4 @@ def camera_picture(cell: LiveCell, camera: Camera, most_pixels: int) -> str:
     if view is None:
         raise HarnessError(f"'{camera.frame}', which carries it, is not there")
     picture = RayRenderer(scene.picture, width, height).render(view)
-    _, encoded = cv2.imencode(".jpg", np.ascontiguousarray(picture[:, :, ::-1]))
-    return base64.b64encode(encoded.tobytes()).decode()
+    return base64.b64encode(jpeg(picture)).decode()

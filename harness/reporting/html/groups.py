@@ -61,7 +61,7 @@ def groups_of(run: Run, verdicts: Sequence[Verdict] = ()) -> Iterator[Group]:
     """Every group that has something to show, the usual ones first."""
     makers: Sequence[Callable[[Run], Group | None]] = (
         joints.positions, joints.velocities, joints.efforts, joints.tracking, joints.gripper,
-        world.clearances, world.contacts, world.forces, world.torques, world.slip,
+        world.clearances, world.contacts, world.forces, world.torques, world.surfaces, world.slip,
         world.tcp_position, world.tcp_turn, world.tcp_speed, world.heights, world.displacements,
         world.turns, joints.gripper_effort,
         joints.commands, joints.velocity_errors, joints.plain_velocities, joints.plain_efforts,

@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import Any
 
-import cv2
-import numpy as np
-
+from harness.core.picture_files import colours, resized, webp
 from harness.recording.drawings import Drawings
 from harness.recording.run import Run
 from harness.recording.stored_run import StoredRun
@@ -84,13 +82,11 @@ def _note(backend: str) -> str:
 
 def _small(data: bytes, suffix: str) -> tuple[bytes, str]:
     """The picture as WebP where that is smaller."""
-    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    picture = colours(data)
     if picture is None:
         return data, suffix.lower()
     height, width = picture.shape[:2]
     if width > WIDEST:
-        size = (WIDEST, round(height * WIDEST / width))
-        picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-    is_coded, coded = cv2.imencode(".webp", picture, [cv2.IMWRITE_WEBP_QUALITY, QUALITY])
-    small = coded.tobytes() if is_coded else data
+        picture = resized(picture, WIDEST, round(height * WIDEST / width))
+    small = webp(picture, QUALITY)
     return (small, ".webp") if len(small) < len(data) else (data, suffix.lower())

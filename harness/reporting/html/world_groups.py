@@ -76,6 +76,12 @@ def _read(run: Run, name: str, title: str, unit: str, first: int) -> Group:
     return Group(name, title, unit, series, least=0.1, measure=title, is_signed=True)
 
 
+def surfaces(run: Run) -> Group:
+    """How the surfaces of belts move, along their x axes."""
+    series = {belt: rows[:, 0] for belt, rows in run.signals.surfaces.items()}
+    return Group("surface", "belt velocity", "m/s", series, least=0.01)
+
+
 def slip(run: Run) -> Group:
     """How far a held object is from where the planner believes it to be."""
     times = run.signals.times

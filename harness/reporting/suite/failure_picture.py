@@ -34,7 +34,7 @@ def deciding_picture(result: CaseResult, width: int) -> bytes | None:
     still = deciding_still(result)
     if still is None:
         return None
-    from harness.reporting.html.still import small_still  # loads OpenCV
+    from harness.reporting.html.still import small_still  # loads Pillow
 
     return small_still(still, width)
 

@@ -43,7 +43,7 @@ def test_a_share_that_is_complete_uses_none_of_its_allowance():
     used = {measure.name: allowance_used(measure) for measure in answer.measures}
     assert used["share travelled forwards"] == pytest.approx(0.0, abs=1e-9)
     assert margin_share(answer) == pytest.approx(1.0)
-    half = verdict(along_z(end=0.495), TcpPath(line=LINE, max_deviation=1.0))
+    half = verdict(along_z(end=0.495), TcpPath(line=LINE, max_deviation=0.99))
     assert used_allowance(half) == pytest.approx(0.5, abs=1e-6)
     assert margin_share(half) == pytest.approx(0.5, abs=1e-6)
 

@@ -112,3 +112,31 @@ def test_what_is_no_belt_is_refused_where_it_stands(tmp_path, objects, step, mes
     text = "\n".join(f"{each.message}; {each.hint}" for each in result.problems)
     assert all(message in text for message in messages), text
     assert all(problem.line > 3 for problem in result.problems)
+
+
+def test_formulas_read_the_velocity_of_a_belt_as_it_was_driven(tmp_path):
+    table = "{name: table, static: true, cylinder: {radius: 0.2, length: 0.1},"
+    table += " pose: {xyz: [-1, 1, 0.05]}, surface_rotation: -30 deg/s}"
+    formulas = [
+        "eventually always surface_velocity(belt) >= 0.1",
+        "always abs(surface_velocity(belt)) <= 10 cm/s",
+        "eventually (surface_velocity(belt) > 4 cm/s and surface_velocity(belt) < 6 cm/s)",
+        "always surface_rotation(table) <= -29 deg / s",
+        "always surface_velocity(belt) < 9 cm/s",
+    ]
+    result = run(
+        tmp_path,
+        ["conveyor: {object: belt, velocity: 10 cm/s}", "wait: 0.5"],
+        (BELT + ", surface_velocity: 0}", table),
+        "expect: [" + ", ".join(f"{{formula: '{each}'}}" for each in formulas) + "]",
+    )
+    assert not result.problems
+    assert [each.status for each in result.verdicts] == ["passed"] * 4 + ["failed"]
+    assert result.verdicts[-1].time == pytest.approx(0.2, abs=2e-3)  # the end of the ramp
+
+
+def test_a_formula_that_reads_the_surface_of_what_is_no_belt_is_refused(tmp_path):
+    expect = "expect: [{formula: 'always surface_velocity(box) > 0'}]"
+    result = run(tmp_path, ["wait: 0.1"], expect=expect)
+    [problem] = result.problems
+    assert "belt or turntable 'box'" in problem.message

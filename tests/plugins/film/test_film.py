@@ -88,4 +88,3 @@ def test_a_run_and_a_saved_run_get_a_film(tmp_path, capsys):
     assert capsys.readouterr().out.splitlines()[0] == str(tmp_path / "again" / "film.mp4")
     assert (tmp_path / "again" / "film.mp4").read_bytes() == (folder / "film.mp4").read_bytes()
     assert main(["film", str(tmp_path)]) == 2
-    assert main(["film", str(folder), "--to", str(file)]) == 2

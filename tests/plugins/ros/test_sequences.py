@@ -55,7 +55,11 @@ class SequenceClient(MoveGroupClient):
         return self.node.send(goal, self.sequence)
 
     def tcp(self):
-        here = self.call("compute_fk", "GetPositionFK").pose_stamped[0].pose.position
+        here = (
+            self.call("compute_fk", "GetPositionFK", fk_link_names=["end_effector_link"])
+            .pose_stamped[0]
+            .pose.position
+        )
         return here.x, here.y, here.z
 
 

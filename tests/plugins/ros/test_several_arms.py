@@ -90,8 +90,8 @@ def test_moveit_plans_for_an_arm_and_for_both(tmp_path):
         assert moved.status is Status.SUCCEEDED
         names = moved.result.planned_trajectory.joint_trajectory.joint_names
         assert sorted(names) == sorted([*arm_joints("left"), *arm_joints("right")])
-        found = moveit.call("compute_fk", "GetPositionFK")
-        assert list(found.fk_link_names) == ["left_end_effector_link", "right_end_effector_link"]
+        tips = [f"{arm}_end_effector_link" for arm in ("left", "right")]
+        found = moveit.call("compute_fk", "GetPositionFK", fk_link_names=tips)
         assert moveit.move_to(both, group="").result.error_code.val == -15
         place = pose_goal(found.pose_stamped[1].pose, link="")
         assert moveit.move_to(place, group="right", plan_only=True).status is Status.SUCCEEDED

@@ -7,6 +7,7 @@ import shlex
 from pathlib import Path
 from typing import ClassVar
 
+from harness.cli.arguments import output_path
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.output import output, say, say_text
 from harness.cli.robot_options import ROBOT, add_robot_options, source_of
@@ -28,12 +29,14 @@ class NewCommand(Command):
     def add_options(self, command: argparse.ArgumentParser) -> None:
         """Add the options of `harness new`."""
         text = "the scenario file to write, as first.scenario.yaml; with --assignment a folder"
-        command.add_argument("file", metavar="FILE", nargs="?", default="", help=text)
+        command.add_argument(
+            "file", metavar="FILE", type=output_path, nargs="?", default="", help=text
+        )
         text = (
             "write a folder for a repository of scenarios instead: a first scenario, a baseline of"
             " margins, and files for pytest, GitHub and GitLab"
         )
-        command.add_argument("--project", metavar="DIR", default="", help=text)
+        command.add_argument("--project", metavar="DIR", type=output_path, default="", help=text)
         command.add_argument("--robot", metavar="ROBOT", default="", help=ROBOT)
         add_robot_options(command)
         names = list(registry("starter").built_in_names)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.arguments import whole_number
+from harness.cli.arguments import output_file, whole_number
 from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import refuse_existing, refusing_unwritable, write_text
 from harness.cli.output import say, say_json
@@ -47,14 +47,14 @@ class RobotCommand(Command):
             text = "draw the robot in this named state (default: the start)"
             add("--state", metavar="NAME", default="", help=text)
             text = "write the picture to this PNG or JPEG file"
-            add("--image", metavar="FILE", default="", help=text)
+            add("--image", metavar="FILE", type=output_file, default="", help=text)
         add = check.add_argument
         text = "check N random configurations (default: 2000; for an SRDF 10000)"
         add("--samples", metavar="N", type=whole_number, default=None, help=text)
         text = "draw the configurations with this seed (default: 0)"
         add("--seed", metavar="N", type=int, default=0, help=text)
         text = "write an SRDF that disables the pairs that need no collision check"
-        add("--write-srdf", metavar="FILE", default="", help=text)
+        add("--write-srdf", metavar="FILE", type=output_file, default="", help=text)
         add("--force", action="store_true", help="overwrite that file")
         add_json(check)
 

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach
-from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
+from harness.language.step import Step
+from harness.plugins.belts.moving_frames import execute_motion
 from harness.plugins.belts.pick_in_motion import pick_in_motion
 from harness.plugins.belts.place_in_motion import place_in_motion
-from harness.plugins.belts.ride import Ride, ride_of
 from harness.steps._tracker import Tracker
 from harness.steps.grasp import Grasp
 from harness.steps.move_relative import MoveRelative
@@ -22,12 +22,8 @@ class BeltTracker(Tracker):
 
     name: ClassVar[str] = "belt"
 
-    def carried(self, name: str, cell: Cell) -> Ride | None:
-        try:
-            ride = ride_of(name, cell)
-        except StepFailed:
-            return None
-        return None if ride.motion.is_still else ride
+    def execute(self, spec: Step, cell: Cell) -> None:
+        execute_motion(spec, cell)
 
     def pick(
         self, grasp: Grasp, lift: MoveRelative, choose: Callable[[], ChosenApproach], cell: Cell

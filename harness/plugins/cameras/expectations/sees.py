@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from harness.cell.scope import At
+from harness.core.extras import absent_package
 from harness.core.types import FloatArray, IntArray
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
@@ -85,11 +86,13 @@ class Sees(Predicate):
     Judged from the picture at the window's end; next to a temporal word, `for` or `within` from
     pictures all along, at the camera's `update_rate`, at most 5 a second. What happens between two
     pictures is not seen. An object whose opacity is below 0.1 is not seen: its colours differ from
-    the background by less than a tenth of their range.
+    the background by less than a tenth of their range. Colours and markers need the extra
+    `cameras`.
     """
 
     subject = "object"
     one_of = ("object", "color", "marker")
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"min_visible": ("object",)}
     sentence = "camera {camera} sees[ {object}][ {color}][ {marker}]"
     quantities = (PIXELS, VISIBLE)
 
@@ -118,16 +121,13 @@ class Sees(Predicate):
         " the picture.",
     )
 
-    @model_validator(mode="after")
-    def _one(self) -> Sees:
-        if "min_visible" in self.model_fields_set and self.object is None:
-            raise ValueError("`min_visible` goes with `object`; write `min_area` here")
-        return self
-
     def check(self, at: At) -> None:
         at.scope.check_camera(self.camera, at.key("camera"))
         if self.object is not None:
             at.scope.check_object(self.object, at.key("object"), simulated=True)
+        elif missing := absent_package("cv2"):
+            key = "color" if self.marker is None else "marker"
+            at.scope.problems.add(at.key(key), f"pictures cannot be searched for it: {missing}")
 
     def names(self) -> frozenset[str]:
         return frozenset() if self.object is None else frozenset({self.object})

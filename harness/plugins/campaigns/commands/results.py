@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from harness.cli.arguments import whole_number
+from harness.cli.arguments import output_file, whole_number
 from harness.cli.command import RESULTS, Command
 from harness.cli.output import say, say_json
 from harness.cli.shared_options import add_json
@@ -59,9 +59,10 @@ class ResultsCommand(Command):
             " lower success rate"
         )
         add("--against", metavar="DIR", default="", help=text)
-        add("--csv", metavar="FILE", default="", help="write the selected runs as CSV")
+        text = "write the selected runs as CSV"
+        add("--csv", metavar="FILE", type=output_file, default="", help=text)
         text = "write the selected runs as Parquet; needs the extra `parquet`"
-        add("--parquet", metavar="FILE", default="", help=text)
+        add("--parquet", metavar="FILE", type=output_file, default="", help=text)
         add_json(command)
 
     def run(self, arguments: argparse.Namespace) -> int:

@@ -25,7 +25,6 @@ class PipelineMode(RunMode):
 
     def run(self, run_files: RunFiles, call: RunCall) -> int:
         """Run scenarios; a margin that shrank fails a suite whose cases pass."""
-        from harness.plugins.ci.baseline import read_baseline
         from harness.plugins.ci.gate import gate, is_requested
 
         arguments, hooks = call.arguments, call.hooks
@@ -40,8 +39,6 @@ class PipelineMode(RunMode):
                 )
         if arguments.repeat > 1:
             raise UsageError("--repeat compares runs of a case; leave it out with --baseline")
-        if arguments.baseline and not arguments.update_baseline:
-            read_baseline(Path(arguments.baseline))  # refused before anything runs
         code = run_files(replace(call, hooks=replace(hooks, writes_single_case=True)))
         if code > max(EXIT_CODES.values()):
             return code  # interrupted

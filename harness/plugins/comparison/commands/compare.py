@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import ClassVar
 
+from harness.cli.arguments import output_file
 from harness.cli.command import RESULTS, Command
 from harness.cli.files import run_folder, write_text
 from harness.cli.output import say, say_json
@@ -28,7 +29,7 @@ class CompareCommand(Command):
         command.add_argument("first", metavar="RUN", help="the report folder of a run")
         command.add_argument("second", metavar="RUN", help="the report folder of another run")
         text = f"write the page of both runs into this file (default: {PAGE}, if they differ)"
-        command.add_argument("--page", metavar="FILE", default="", help=text)
+        command.add_argument("--page", metavar="FILE", type=output_file, default="", help=text)
         command.add_argument("--no-page", action="store_true", help="write no page")
         add_json(command)
 

@@ -18,7 +18,7 @@ from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import physical_poses
 from harness.judging.window import NotObservable, Window, object_record
-from harness.language.base import Name, PositiveLength
+from harness.language.base import Deviation, Name, PositiveLength
 from harness.language.expectation import Judged, Quantity
 from harness.recording.run import ObjectRecord, Run
 from harness.recording.verdict import Measure, Verdict, VerdictWarning
@@ -49,7 +49,7 @@ class Inserted(Predicate):
         description="The name of the object whose `box` has the `hole`; of several the nearest."
     )
     depth: PositiveLength = Field(description="The depth of the peg's end below the opening [m].")
-    tolerance: PositiveLength = Field(
+    tolerance: Deviation = Field(
         default=1e-3,
         description="The largest distance of the peg's axis from the hole's, as far as the peg is"
         " below the opening [m].",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -25,6 +26,7 @@ class Inject(Step):
 
     verb: ClassVar[str] = "inject"
     results = (InjectedFaults,)
+    goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"push_duration": ("push",)}
 
     friction: dict[Name, Annotated[Number, Field(ge=0, le=100)]] | None = Field(
         default=None,
@@ -62,8 +64,6 @@ class Inject(Step):
                 "say which fault: friction, gripper_effort, joint_stall, push, sensor_noise,"
                 " command_latency"
             )
-        if "push_duration" in self.model_fields_set and self.push is None:
-            raise ValueError("`push_duration` goes with `push`")
         return self
 
     def summary(self) -> str:

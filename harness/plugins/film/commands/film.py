@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import ClassVar
 
+from harness.cli.arguments import output_folder
 from harness.cli.command import RESULTS, Command
 from harness.cli.files import refusing_unwritable, run_folder
 from harness.cli.output import say
@@ -22,7 +23,7 @@ class FilmCommand(Command):
         """Add the options of `harness film`."""
         command.add_argument("run", metavar="RUN", help="the report folder of a run")
         text = "the folder that gets film.mp4 and moment.jpg (default: the run's)"
-        command.add_argument("--to", metavar="DIR", default="", help=text)
+        command.add_argument("--to", metavar="DIR", type=output_folder, default="", help=text)
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Draw both files."""
@@ -30,8 +31,10 @@ class FilmCommand(Command):
         from harness.plugins.film.draw import draw_film, draw_moment
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import blames_changes
+        from harness.suite.folders import refuse_unwritable
 
         stored, target = read_run(folder), Path(arguments.to or folder)
+        refuse_unwritable(target)
         with blames_changes(folder, stored):
             files = {
                 "film.mp4": draw_film(stored, activity=WorkBar()),

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import ClassVar
 
+from harness.cli.arguments import output_path
 from harness.cli.command import EXCHANGE, Command
 from harness.cli.files import refuse_existing, refusing_unwritable
 from harness.cli.output import say
@@ -40,7 +41,7 @@ class ImportCommand(Command):
             "write to this path (default: FILE's name with .yaml; of an SRDF a folder of FILE's"
             " name; for `moveit` the folder `scenarios` next to the first FILE)"
         )
-        add("-o", "--output", metavar="FILE", help=text)
+        add("-o", "--output", metavar="FILE", type=output_path, help=text)
         text = "look models up here before GZ_SIM_RESOURCE_PATH; an MJCF may read files in it"
         add("--model-path", metavar="DIR", action="append", default=[], help=text)
         add("--force", action="store_true", help="overwrite what exists")

@@ -16,7 +16,7 @@ from harness.plugins.formats.moveit_messages.values import (
     text,
 )
 from harness.plugins.formats.plain_values import rounded
-from harness.robot.yaml_data import number, read_data, refuse
+from harness.plugins.formats.yaml_data import number, read_data, refuse
 from harness.world.notes import Note, Notes
 
 KEYS = ("goal_constraints", "start_state", "group_name")

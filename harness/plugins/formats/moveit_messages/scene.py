@@ -25,9 +25,9 @@ from harness.plugins.formats.moveit_messages.values import (
 )
 from harness.plugins.formats.plain_values import LEAST_NORMAL, THICK_PLANE, plane_pose, pose_spec
 from harness.plugins.formats.stl import Triangles, add_mesh, cone
+from harness.plugins.formats.yaml_data import number, read_data, refuse
 from harness.robot.packages import NotFoundError, PackagePath
 from harness.robot.srdf.srdf import link_pair
-from harness.robot.yaml_data import number, read_data, refuse
 from harness.world.notes import Note, Notes
 
 KEYS = ("world", "robot_model_name")

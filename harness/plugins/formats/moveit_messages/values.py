@@ -12,7 +12,7 @@ from harness.core.spatial import SE3, wxyz_from_xyzw
 from harness.language.base import LARGEST_NUMBER
 from harness.language.files.source import Located
 from harness.plugins.formats.plain_values import first_mistake
-from harness.robot.yaml_data import number, refuse
+from harness.plugins.formats.yaml_data import number, refuse
 
 
 def child(item: Located, *names: str) -> Located | None:

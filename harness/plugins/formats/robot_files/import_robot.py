@@ -16,6 +16,7 @@ from harness.plugins.formats.robot_files.imported_files import (
     refuse_unknown_arguments,
 )
 from harness.plugins.formats.robot_files.imported_part import imported_part, refuse_unknown_links
+from harness.plugins.formats.robot_files.moveit_files import with_joint_limits
 from harness.plugins.formats.xacro.render import render
 from harness.robot.collision_shapes import with_collision_modes
 from harness.robot.compose import RobotPart
@@ -24,7 +25,6 @@ from harness.robot.description import RENAMED_ROOT, NamedState
 from harness.robot.estimated_masses import with_estimated_masses
 from harness.robot.find_file import find_file, find_folder
 from harness.robot.mechanism import WORLD
-from harness.robot.moveit_files import with_joint_limits
 from harness.robot.packages import PackagePath
 from harness.robot.robot_format import FORMATS
 from harness.robot.srdf.read import read_srdf

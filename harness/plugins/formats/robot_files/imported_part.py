@@ -11,6 +11,7 @@ import numpy as np
 from harness.core.errors import RobotError, RobotOptionError
 from harness.core.suggestion import did_you_mean
 from harness.language.scenario import RobotSpec, StartState
+from harness.plugins.formats.robot_files.assumed_limits import ACCELERATION, VELOCITY
 from harness.plugins.formats.robot_files.default_group import DEFAULT_GROUP, MOST_FINGER_JOINTS
 from harness.plugins.formats.robot_files.find_hand import hand_candidates, named_hand
 from harness.plugins.formats.robot_files.inferred_gripper import (
@@ -23,7 +24,6 @@ from harness.plugins.formats.robot_files.inferred_tcp import (
     with_integrated_gripper,
 )
 from harness.plugins.formats.touching_links import touching_pairs
-from harness.robot.assumed_limits import ACCELERATION, VELOCITY
 from harness.robot.compose import PartArm, RobotPart
 from harness.robot.description import PlanningGroup
 from harness.robot.groups import planning_groups

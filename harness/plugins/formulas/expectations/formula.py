@@ -44,6 +44,7 @@ RANGES: dict[str, Callable[[Joint], tuple[float, float]]] = {
     "effort": lambda joint: (-joint.effort, joint.effort),
 }
 """The smallest and the largest value of a joint's signals, by their names."""
+FORCES = ("force", "torque")
 UNITS_HINT = "angles without a unit are in radians, lengths in metres"
 LARGEST_CUTOFF = 2.0  # [m]; distances are recorded up to here, whatever is compared
 
@@ -80,14 +81,25 @@ class Formula(Expectation):
         for comparison in comparisons_of(root):
             if problem := _beyond_range(comparison, robot) or _unbreakable(comparison, robot):
                 at.scope.problems.add_in_text(at.key("formula"), comparison.start, *problem)
+        reads_forces = any(each.name.startswith(FORCES) for each in signals_of(root))
+        if "force_window" in self.model_fields_set and not reads_forces:
+            at.scope.problems.add(at.key("force_window"), "the formula reads no force")
         sensors = tuple(robot.wrench_sensors)
-        known = {"joint": robot.joint_names, "frame": frames, "body": bodies, "sensor": sensors}
+        belts = tuple(n for n, each in at.scope.objects.items() if each.surface_motion is not None)
+        known = {
+            "joint": robot.joint_names,
+            "frame": frames,
+            "body": bodies,
+            "sensor": sensors,
+            "belt": belts,
+        }
         measured = (*MEASURED_WORDS, *robot.of_arm, *at.scope.objects)
         kind_names = {
             "joint": "joint",
             "frame": "link or object",
             "body": "object or link",
             "sensor": "wrench sensor",
+            "belt": "belt or turntable",
         }
         for signal in signals_of(root):
             kinds, _, _ = SIGNALS[signal.name]

@@ -18,7 +18,7 @@ from typing import Literal, TypeGuard
 
 from harness.language.units import COMMON
 
-Kind = Literal["frame", "body", "joint", "sensor"]
+Kind = Literal["frame", "body", "joint", "sensor", "belt"]
 
 SENSED: dict[str, tuple[tuple[Kind, ...], str, str]] = {
     f"{what}_{axis}": (
@@ -55,6 +55,8 @@ SIGNALS: dict[str, tuple[tuple[Kind, ...], str, str]] = {
         "distance between `robot`, or what it holds, and an object",
     ),
     **SENSED,
+    "surface_velocity": (("belt",), "m/s", "velocity of a belt's surface along its x axis"),
+    "surface_rotation": (("belt",), "rad/s", "rate at which a turntable's surface turns"),
 }
 """Name -> kinds of its arguments, unit (empty: the joint's), meaning."""
 
@@ -62,8 +64,10 @@ FUNCTIONS = {"abs": 1, "min": 2, "max": 2}
 """Arithmetic of one or two numbers."""
 
 UNITS = {
-    name: (unit, factor) for unit in ("m", "rad", "s", "N") for name, factor in COMMON[unit].items()
-}
+    name: (unit, factor)
+    for unit in ("m", "rad", "s", "N", "m/s", "rad/s")
+    for name, factor in COMMON[unit].items()
+} | {"N*m": ("N m", 1.0)}
 """Unit after a number -> its SI unit and factor."""
 
 

@@ -205,13 +205,16 @@ class _Parser:
             raise self.wrong(token, f"{token.text} is too large", f"at most {LARGEST_NUMBER:g}")
         if self.token.kind == "name" and self.token.text not in (*SIGNALS, *FUNCTIONS):
             unit = self.take()
-            if unit.text not in UNITS:
+            text = unit.text
+            following = "".join(each.text for each in self.tokens[self.place : self.place + 2])
+            if self.at("/", "*") and text + following in UNITS:  # cm/s, N*m
+                text += following
+                self.place += 2
+            if text not in UNITS:
                 raise self.wrong(
-                    unit,
-                    f"no unit is called `{unit.text}`",
-                    did_you_mean(unit.text, UNITS, "units"),
+                    unit, f"no unit is called `{text}`", did_you_mean(text, UNITS, "units")
                 )
-            name, factor = UNITS[unit.text]
+            name, factor = UNITS[text]
             return Const(value * factor, name, token.start)
         return Const(value, "", token.start)
 

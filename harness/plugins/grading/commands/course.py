@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from harness.cli.arguments import output_path
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.commands.view import open_browser
 from harness.cli.files import refuse_existing, write_text
@@ -39,7 +40,9 @@ class CourseCommand(Command):
         text = "the number of an exercise, or a folder with assignment.yaml"
         start.add_argument("exercise", metavar="EXERCISE", help=text)
         text = "the folder to write into (default: the name of the exercise)"
-        start.add_argument("folder", metavar="FOLDER", nargs="?", default="", help=text)
+        start.add_argument(
+            "folder", metavar="FOLDER", type=output_path, nargs="?", default="", help=text
+        )
         text = "run what was done so far and print its points"
         check = parts.add_parser("check", help=text, description=text)
         text = "the folder, or the file in it (default: this folder)"

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.arguments import whole_number
+from harness.cli.arguments import output_file, whole_number
 from harness.cli.command import EXCHANGE, Command
 from harness.cli.output import output, say
 from harness.cli.shared_options import add_plugin
@@ -48,9 +48,9 @@ class GradeClassCommand(Command):
         text = "a CSV of students: the column `submission`, and email, student_id, first_name, ..."
         add("--roster", metavar="FILE", default="", help=text)
         text = "write results.json for Gradescope (with --one)"
-        add("--gradescope", metavar="FILE", default="", help=text)
+        add("--gradescope", metavar="FILE", type=output_file, default="", help=text)
         text = "write result.json for Classroom 50 (with --one)"
-        add("--classroom50", metavar="FILE", default="", help=text)
+        add("--classroom50", metavar="FILE", type=output_file, default="", help=text)
 
     def run(self, arguments: argparse.Namespace) -> int:
         """Grade, write pages and tables, and print one line for each submission."""

@@ -19,9 +19,9 @@ from harness.judging.poses import frame_poses, link_poses
 from harness.judging.window import NotObservable, NotReached, Window
 from harness.language.base import (
     AngleBetween,
+    Deviation,
     Fraction,
     LinearVelocity,
-    PositiveLength,
     SpecModel,
 )
 from harness.language.expectation import Quantity
@@ -74,7 +74,7 @@ class TcpPath(ArmPredicate):
     arc: Arc | None = Field(
         default=None, description="The arc that the TCP follows, instead of the step's own path."
     )
-    max_deviation: PositiveLength = Field(
+    max_deviation: Deviation = Field(
         default=0.001, description="The largest distance to the line, arc or path [m]."
     )
     min_fraction: Fraction = Field(

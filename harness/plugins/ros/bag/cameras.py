@@ -6,11 +6,11 @@ import io
 from collections.abc import Iterator
 from typing import Any
 
-import cv2
 import numpy as np
 
 from harness.core.camera import Camera
 from harness.core.limits import PICTURE_PIXELS
+from harness.core.picture_files import colours, decoded, grey, jpeg, resized
 from harness.plugins.ros.bag.frames import optical_frames
 from harness.plugins.ros.bag.messages import header, message
 from harness.plugins.ros.bag.samples import Message
@@ -65,13 +65,8 @@ def video_frames(
 def _jpeg(picture: np.ndarray[Any, Any], camera: Camera) -> bytes:
     """A picture of a video as the camera delivers it compressed."""
     if picture.shape[:2] != (camera.height, camera.width):  # odd sizes are even in a video
-        picture = cv2.resize(picture, (camera.width, camera.height))
-    code = cv2.COLOR_RGB2GRAY if camera.is_grey else cv2.COLOR_RGB2BGR
-    options = [cv2.IMWRITE_JPEG_QUALITY, camera.jpeg_quality]
-    is_coded, content = cv2.imencode(".jpg", cv2.cvtColor(picture, code), options)
-    if not is_coded:
-        raise RuntimeError("OpenCV cannot write .jpg files here")
-    return content.tobytes()
+        picture = resized(picture, camera.width, camera.height)
+    return jpeg(grey(picture) if camera.is_grey else picture, camera.jpeg_quality)
 
 
 def compressed_image(content: bytes, camera: Camera, header: Any) -> Any:
@@ -84,11 +79,10 @@ def compressed_image(content: bytes, camera: Camera, header: Any) -> Any:
 
 
 def _raw(content: bytes, camera: Camera, header: Any) -> Any:
-    flag = cv2.IMREAD_GRAYSCALE if camera.is_grey else cv2.IMREAD_COLOR
-    picture = cv2.imdecode(np.frombuffer(content, np.uint8), flag)
+    picture = decoded(content) if camera.is_grey else colours(content)
     if picture is None:
         raise ValueError(f"a picture of {camera.name} cannot be decoded")
-    return image(picture if camera.is_grey else picture[:, :, ::-1], header)
+    return image(picture, header)
 
 
 def _depth(run: Run, capture: CaptureRecord, header: Any) -> Any:

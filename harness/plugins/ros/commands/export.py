@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.arguments import positive_number
+from harness.cli.arguments import output_path, positive_number
 from harness.cli.command import RESULTS, Command
 from harness.cli.files import refuse_existing, refusing_unwritable, run_folder, write_text
 from harness.cli.output import say
@@ -32,8 +32,8 @@ class ExportCommand(Command):
         """Add the options of `harness export`."""
         add = command.add_argument
         add("run", metavar="RUN", help="the run's report folder")
-        add("--bag", metavar="DIR", help="write a rosbag2 into this new folder")
-        add("--urdf", metavar="FILE", help="write the robot's URDF")
+        add("--bag", metavar="DIR", type=output_path, help="write a rosbag2 into this new folder")
+        add("--urdf", metavar="FILE", type=output_path, help="write the robot's URDF")
         text = "store the bag in this format (default: mcap, compressed)"
         add("--storage", choices=("mcap", "sqlite3"), default="mcap", help=text)
         text = "write joints, frames and clock at this rate (default: 100)"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -52,6 +52,7 @@ class ClientScene:
     def __init__(self, cell: Cell) -> None:
         self.cell = cell
         self._allowed: set[tuple[str, str]] = set()
+        self._rules: Change = {"pairs": []}  # of the last allowed collision matrix
 
     def apply(self, changes: Sequence[Change]) -> None:
         """Apply changes in order; those before a mistake stay.
@@ -62,6 +63,8 @@ class ClientScene:
         self.cell.sync_scene()
         for change in changes:
             getattr(self, f"_{change['change']}")(change)
+            if change["change"] in ("add", "append"):  # an object that the matrix may name
+                self._allow(self._rules)
 
     def _add(self, change: Change) -> None:
         name, cell = change["name"], self.cell
@@ -134,9 +137,12 @@ class ClientScene:
             self.cell.detach(name)
 
     def _allow(self, change: Change) -> None:
-        scene = self.cell.scene
+        scene, self._rules = self.cell.scene, change
         known = {*self.cell.description.link_names, *scene.object_names()}
         pairs = {(min(pair), max(pair)) for pair in change["pairs"] if known.issuperset(pair)}
+        pairs |= {*_by_default(change.get("defaults", {}), known)} - {
+            (min(pair), max(pair)) for pair in change.get("forbidden", ())
+        }
         pairs -= {*self.cell.description.allowed_collisions}
         scene.set_allowed(sorted(self._allowed - pairs), allowed=False)
         scene.set_allowed(sorted(pairs - self._allowed), allowed=True)
@@ -208,6 +214,14 @@ class ClientScene:
         ]
         kind = "moveit_msgs/msg/AllowedCollisionMatrix"
         return message(kind, entry_names=names, entry_values=rows)
+
+
+def _by_default(defaults: Mapping[str, bool], names: set[str]) -> Iterator[tuple[str, str]]:
+    """The pairs that may touch by the defaults of their names, both where both have one."""
+    for name, is_allowed in defaults.items():
+        for other in names if is_allowed and name in names else ():
+            if other != name and defaults.get(other, True):
+                yield min(name, other), max(name, other)
 
 
 def _pose(values: Change) -> SE3:

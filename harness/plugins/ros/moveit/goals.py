@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NoReturn
 
 import numpy as np
@@ -32,6 +33,10 @@ BOX, SPHERE = 1, 2
 HALF_TURN = 3.14
 """The least tolerance that allows any turn [rad]: clients write pi with few digits."""
 
+PLACES = 8
+"""Places that are tried for a goal of an orientation alone, besides the one where the link is: most
+of them are in reach, and one is enough."""
+
 TIGHTEST = 1e-4
 """The least tolerance of a goal [m or rad]: what inverse kinematics reaches."""
 
@@ -42,13 +47,14 @@ def goal_of(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal
     Raises:
         StepFailed: There is none, or one of them is no goal that can be planned.
     """
-    goals = tuple(_goal(cell, group, each, start) for each in constraints)
+    goals = tuple(goal for each in constraints for goal in _goals(cell, group, each, start))
     if not goals:
         _refuse("INVALID_GOAL_CONSTRAINTS", "the request has no goal_constraints")
     return goals[0] if len(goals) == 1 else AnyGoal(goals)
 
 
-def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
+def _goals(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Iterator[Goal]:
+    """A goal, or several that are alternatives."""
     joints, places = constraints.joint_constraints, constraints.position_constraints
     turns = constraints.orientation_constraints
     if constraints.visibility_constraints:
@@ -56,14 +62,21 @@ def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
     if joints:
         if places or turns:
             _refuse("UNRECOGNIZED_GOAL_TYPE", "a goal has joints, or a pose, and not both")
-        return _joint_goal(cell, group, joints, start)
-    if len(places) != 1 or len(turns) > 1:
+        yield _joint_goal(cell, group, joints, start)
+        return
+    if not 1 <= len(places) + len(turns) <= 2 or max(len(places), len(turns)) > 1:
         _refuse(
             "UNRECOGNIZED_GOAL_TYPE",
             f"a goal has {len(places)} position and {len(turns)} orientation constraints; one of"
-            " a position is needed, and one of an orientation is possible",
+            " each is possible",
         )
-    place = places[0]
+    if places:
+        yield _place_goal(cell, group, places[0], turns)
+    else:
+        yield from _turned_goals(cell, group, turns[0], start)
+
+
+def _place_goal(cell: Cell, group: str, place: Any, turns: Any) -> Goal:
     link = link_of(cell, place.link_name, group)
     middle, size = _region(cell, place)
     reach = max(TIGHTEST, min(size) / 2)
@@ -84,6 +97,35 @@ def _goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> Goal:
         orientation_tolerance=max(TIGHTEST, *tolerance),
         axis_tolerances=tolerance,
     )
+
+
+def _turned_goals(cell: Cell, group: str, turn: Any, start: FloatArray) -> Iterator[Goal]:
+    """A link is turned, wherever it is: where it is now, and elsewhere as alternatives."""
+    link, rotation, tolerance = (
+        link_of(cell, turn.link_name, group), _rotation(cell, turn), _tolerances(turn)
+    )  # fmt: skip
+    names, robot, seed = (
+        cell.description.groups[group].joint_names, cell.description, cell.current.options.seed
+    )  # fmt: skip
+    columns = [robot.joint_index[name] for name in names]
+    joints = [robot.joint_by_name[name] for name in names]
+    lower, upper = (
+        np.nan_to_num([getattr(joint, side) for joint in joints], posinf=np.pi, neginf=-np.pi)
+        for side in ("lower", "upper")
+    )
+    states = [start]
+    for drawn in np.random.default_rng(seed).uniform(lower, upper, (PLACES, len(names))):
+        states.append(start.copy())
+        states[-1][columns] = drawn
+    for state in states:
+        at = cell.kinematics.link_pose(robot.with_mimics(state), link).translation
+        yield PoseGoal(
+            link,
+            SE3(rotation, at),
+            position_tolerance=TIGHTEST,
+            orientation_tolerance=max(tolerance),
+            axis_tolerances=tolerance,
+        )
 
 
 def _joint_goal(cell: Cell, group: str, constraints: Any, start: FloatArray) -> JointGoal:
@@ -131,6 +173,12 @@ def path_constraints_of(cell: Cell, constraints: Any) -> PathConstraints | None:
         orientation = OrientationBand(body, _rotation(cell, turn), _tolerances(turn))
     for place in places:
         middle, size = _region(cell, place)
+        offset = place.target_point_offset
+        if offset.x or offset.y or offset.z:
+            _refuse("FAILURE", "path constraints of a position take no offset of the target point")
+        if place.constraint_region.primitives[0].type == SPHERE:
+            side = size[0] / math.sqrt(3)  # of the cube inside
+            size = (side, side, side)
         position = PositionBox(_body(cell, place.link_name), middle, size)
     bands = tuple(
         JointBand(str(j.joint_name), j.position - j.tolerance_below, j.position + j.tolerance_above)

@@ -132,6 +132,9 @@ class Motions:
         known, requests = self._goals[goal], self._requests
         _publish_state(goal, known, "PLANNING")
         options, cell = known.content.planning_options, requests.here.cell
+        for name in ("replan", "look_around"):
+            if getattr(options, name):
+                requests.note_once(f"`{name}` of a goal has no effect: it is planned once")
         try:
             diff = [*changes_of_scene(cell, options.planning_scene_diff)]
         except StepFailed as failure:

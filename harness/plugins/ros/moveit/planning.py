@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import operator
+from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -17,6 +20,8 @@ from harness.core.types import FloatArray
 from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
 from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.moveit.goals import arc_point_of, goal_of, path_constraints_of
+from harness.plugins.ros.moveit.kept import kept
+from harness.plugins.ros.moveit.trajectory_limits import check_constraints, slowed
 from harness.plugins.ros.moveit.values import (
     frame_of,
     link_of,
@@ -169,7 +174,9 @@ def plan_from(cell: Cell, request: Any, start: FloatArray) -> Planned:
             raise
         reason = f"{failure.message}; allowed_planning_time: {request.allowed_planning_time:g} s"
         raise StepFailed("TIMED_OUT", reason, *failure.details) from failure
-    return Planned(plan.trajectory, start)
+    if pipeline == PILZ and str(request.planner_id) != "CIRC":
+        check_constraints(cell, request, plan.trajectory, start)
+    return Planned(slowed(cell, request, plan.trajectory, start), start)
 
 
 def _budgeted(options: PlanningOptions, request: Any) -> PlanningOptions:
@@ -246,16 +253,23 @@ def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float
     link = link_of(cell, request.link_name, group)
     if path_constraints_of(cell, request.path_constraints):
         raise StepFailed("FAILURE", "path constraints of a Cartesian path are not kept")
-    if not request.waypoints or not 1e-4 <= request.max_step < np.inf:
-        raise StepFailed("FAILURE", "a Cartesian path needs waypoints and a max_step from 0.0001 m")
-    frame = frame_of(cell, str(request.header.frame_id))
-    goals = [PoseGoal(link, frame @ pose_of(each)) for each in request.waypoints]
+    if not 1e-4 <= request.max_step < np.inf:
+        raise StepFailed("FAILURE", "a Cartesian path needs a max_step from 0.0001 m")
+    if not request.waypoints:  # as MoveIt
+        return None, 0.0
+    start = positions_of(cell, request.start_state)
+    if str(request.header.frame_id).lstrip("/") == link:  # each in the frame of the one before
+        here = cell.kinematics.link_pose(start, link)
+        poses = [*accumulate(map(pose_of, request.waypoints), operator.matmul, initial=here)][1:]
+    else:
+        frame = frame_of(cell, str(request.header.frame_id))
+        poses = [frame @ pose_of(each) for each in request.waypoints]
+    goals = [PoseGoal(link, pose) for pose in poses]
     jump = JumpThreshold(
         _threshold(request.revolute_jump_threshold, 0.5),
         _threshold(request.prismatic_jump_threshold, 0.1),
     )
     path = CartesianPathOptions(float(request.max_step), PRECISION, 0.0, jump)
-    start = positions_of(cell, request.start_state)
     motion = WaypointMotion(goals, path)
     try:
         plan = cell.planner.plan(MotionRequest(group, start, motion, scaled(cell, request)))
@@ -265,7 +279,8 @@ def plan_cartesian_path(cell: Cell, request: Any) -> tuple[Planned | None, float
             raise
         return None, followed.fraction
     followed = plan.result.find(CartesianPathResult)
-    return Planned(plan.trajectory, start), followed.fraction if followed else 1.0
+    trajectory = slowed(cell, request, plan.trajectory, start)
+    return Planned(trajectory, start), followed.fraction if followed else 1.0
 
 
 def solve_pose(cell: Cell, request: Any) -> FloatArray:
@@ -276,20 +291,31 @@ def solve_pose(cell: Cell, request: Any) -> FloatArray:
     """
     cell.sync_scene()
     group, description = group_of(cell, request.group_name), cell.description
-    if request.ik_link_names or request.pose_stamped_vector:
+    stamped, name = request.pose_stamped, request.ik_link_name
+    if len(request.pose_stamped_vector) == 1:
+        [stamped], name = request.pose_stamped_vector, [*request.ik_link_names, ""][0]
+    elif request.pose_stamped_vector:
         raise StepFailed("FAILURE", "one link and one pose are solved")
-    stamped, link = request.pose_stamped, link_of(cell, request.ik_link_name, group)
+    link, constraints = (
+        link_of(cell, name, group), path_constraints_of(cell, request.constraints)
+    )  # fmt: skip
     pose = frame_of(cell, str(stamped.header.frame_id)) @ pose_of(stamped.pose)
     seed, options = positions_of(cell, request.robot_state), cell.current.options
     columns = [description.joint_index[name] for name in description.groups[group].joint_names]
     solutions = cell.kinematics.solve(group, PoseGoal(link, pose), seed, options.seed)
+    reasons = Counter[str]()
     for solution in solutions:
         row = seed.copy()
         row[columns] = solution
         row = description.with_mimics(row)
-        if not (request.avoid_collisions and cell.scene.touches(row, options.padding)):
+        broken = [each.what for each in kept(cell, constraints, row) if not each.holds]
+        if broken:
+            reasons[f"break the constraint of the {broken[0]}"] += 1
+        elif request.avoid_collisions and cell.scene.touches(row, options.padding):
+            reasons["collide"] += 1
+        else:
             return row
-    how = f"; {len(solutions)} solutions collide" if solutions else ""
+    how = "".join(f"; {count} solutions {reason}" for reason, count in reasons.items())
     raise StepFailed("NO_IK_SOLUTION", f"no joint positions reach the pose{how}")
 
 

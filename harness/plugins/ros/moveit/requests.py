@@ -22,7 +22,7 @@ from harness.plugins.ros.moveit.planning import (
     unknown_planner,
     warm_up,
 )
-from harness.plugins.ros.moveit.scene_changes import Change
+from harness.plugins.ros.moveit.scene_changes import Change, changes_of_attached
 from harness.plugins.ros.moveit.sequence import plan_sequence
 from harness.plugins.ros.moveit.values import error_code
 from harness.recording.commands import CommandRecord
@@ -80,6 +80,7 @@ class Requests:
         self._turns: deque[Callable[[], object]] = deque()
         self._work: _Work | None = None
         self._is_warm = False
+        self._noted: set[str] = set()
 
     @property
     def here(self) -> ClientScene:
@@ -183,6 +184,12 @@ class Requests:
         """Say why a request failed."""
         self._say(f"t={self.control.time:.2f} s: {failure}")
 
+    def note_once(self, text: str) -> None:
+        """Say once in a session that something which is requested has no effect."""
+        if text not in self._noted:
+            self._noted.add(text)
+            self.report(text)
+
     def change(self, read: Read, content: Any) -> bool:
         """Change the planning scene as a message says; whether it could be done."""
         try:
@@ -218,8 +225,13 @@ class Requests:
         for note in filter(None, map(unknown_planner, motions)):
             self.report(f"{note}; the default plans instead, as with MoveIt")
 
+        held = motions[0].start_state.attached_collision_objects if motions else ()
+
         def work() -> Planned:
             scene.apply([*diff])
+            for each in held:
+                if scene.cell.scene.attached().get(str(each.object.id)) != str(each.link_name):
+                    scene.apply([*changes_of_attached(scene.cell, each)])
             plan = plan_motion if items is None else plan_sequence
             return plan(scene.cell, request)
 

@@ -42,8 +42,9 @@ def changes_of_scene(cell: Cell, scene: Any) -> list[Change]:
     changes += changes_of_world(cell, scene.world)
     for each in scene.robot_state.attached_collision_objects:
         changes += changes_of_attached(cell, each)
-    if len(scene.allowed_collision_matrix.entry_names):
-        changes.append({"change": "allow", "pairs": _allowed(scene.allowed_collision_matrix)})
+    matrix = scene.allowed_collision_matrix
+    if len(matrix.entry_names) or len(matrix.default_entry_names):
+        changes.append({"change": "allow", **_allowed(matrix)})
     return changes
 
 
@@ -103,7 +104,9 @@ def changes_of_attached(cell: Cell, attached: Any) -> Iterator[Change]:
 def is_empty(scene: Any) -> bool:
     """Whether a scene says nothing, as one of an action that is left out."""
     parts = scene.world.collision_objects, scene.robot_state.attached_collision_objects
-    return not (any(parts) or scene.name or scene.allowed_collision_matrix.entry_names)
+    matrix = scene.allowed_collision_matrix
+    names = matrix.entry_names, matrix.default_entry_names
+    return not (any(parts) or scene.name or any(names))
 
 
 def _replaced(cell: Cell, scene: Any) -> Iterator[Change]:
@@ -179,19 +182,34 @@ def _shape(name: str, primitive: Any) -> Change:
     return {"kind": kind, "size": sizes, "pose": UNMOVED}
 
 
-def _allowed(matrix: Any) -> list[list[str]]:
-    """The pairs that an AllowedCollisionMatrix allows."""
+def _allowed(matrix: Any) -> Change:
+    """The pairs that an AllowedCollisionMatrix allows and forbids, and what it allows by default.
+
+    As in MoveIt, the entry of a pair counts; without one the defaults of its two names do.
+    """
     names = [str(each) for each in matrix.entry_names]
     rows = [list(each.enabled) for each in matrix.entry_values]
+    defaults = [str(each) for each in matrix.default_entry_names], [*matrix.default_entry_values]
     if len(rows) != len(names) or any(len(row) != len(names) for row in rows):
         raise StepFailed("FAILURE", "the allowed collision matrix is not square")
-    pairs = (
-        [first, second]
-        for i, first in enumerate(names)
-        for j, second in enumerate(names[:i])
-        if rows[i][j]
-    )
-    return [*pairs]
+    if len(defaults[0]) != len(defaults[1]):
+        raise StepFailed("FAILURE", "the allowed collision matrix has names without a default")
+    pairs = {
+        is_allowed: [
+            [first, second]
+            for i, first in enumerate(names)
+            for j, second in enumerate(names[:i])
+            if bool(rows[i][j]) is is_allowed
+        ]
+        for is_allowed in (True, False)
+    }
+    change: Change = {"pairs": pairs[True]}
+    if defaults[0]:
+        change |= {
+            "defaults": {n: bool(value) for n, value in zip(*defaults, strict=True)},
+            "forbidden": pairs[False],
+        }
+    return change
 
 
 def _number(operation: Any) -> int:

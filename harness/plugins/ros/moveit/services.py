@@ -11,6 +11,8 @@ from harness.core.errors import StepFailed
 from harness.plugins.ros.bag.messages import message, pose_message
 from harness.plugins.ros.endpoints import Reply
 from harness.plugins.ros.interfaces import header
+from harness.plugins.ros.moveit.goals import path_constraints_of
+from harness.plugins.ros.moveit.kept import kept
 from harness.plugins.ros.moveit.planning import (
     PLANNERS,
     Planned,
@@ -69,8 +71,10 @@ def _inverse(cell: Cell, request: Any) -> Any:
 
 def _forward(cell: Cell, request: Any) -> Any:
     kind = f"{SRV}GetPositionFK_Response"
-    tips = [arm.tcp_link for arm in cell.description.arms] or [cell.description.tcp_link]
-    names = [str(name) for name in request.fk_link_names] or tips
+    names = [str(name) for name in request.fk_link_names]
+    if not names:
+        failure = StepFailed("INVALID_LINK_NAME", "the request names no link")
+        return message(kind, error_code=error_code(failure))
     frame_id = str(request.header.frame_id) or "world"
     try:
         back = frame_of(cell, frame_id).inverse()
@@ -94,8 +98,18 @@ def _validity(cell: Cell, request: Any) -> Any:
     try:
         cell.sync_scene()
         positions = positions_of(cell, request.robot_state)
+        each = kept(cell, path_constraints_of(cell, request.constraints), positions)
     except StepFailed:
         return message(kind, valid=False)
+    results = [
+        message(
+            "moveit_msgs/msg/ConstraintEvalResult",
+            result=one.holds,
+            distance=max(0.0, one.excess),
+        )
+        for one in each
+    ]
+    is_kept = all(one.holds for one in each)
     touches = cell.scene.touches(positions)
     contacts = [
         message(
@@ -106,7 +120,8 @@ def _validity(cell: Cell, request: Any) -> Any:
         )
         for each in touches
     ]
-    return message(kind, valid=not touches, contacts=contacts)
+    valid = is_kept and not touches
+    return message(kind, valid=valid, contacts=contacts, constraint_result=results)
 
 
 def _planners(_cell: Cell, _request: Any) -> Any:
@@ -175,6 +190,8 @@ def _cartesian(requests: Requests, request: Any, reply: Reply) -> None:
         )
         reply(response)
 
+    if not request.avoid_collisions:
+        requests.note_once("Cartesian paths avoid collisions, also without `avoid_collisions`")
     requests.compute(lambda: plan_cartesian_path(cell, request), done)
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from harness.core.spatial import SE3
 from harness.language.files.source import Located
+from harness.plugins.formats.yaml_data import number, read_data, refuse
 from harness.robot.mechanism import Joint
-from harness.robot.yaml_data import number, read_data, refuse
 
 JOINTS = {
     "shoulder": "shoulder_pan_joint",

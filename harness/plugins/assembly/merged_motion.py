@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from harness.cell.cell import Cell
 from harness.core.errors import PlanningFailed
-from harness.core.trajectory import JointTrajectory, together
+from harness.core.trajectory import JointTrajectory
+from harness.core.types import FloatArray
 from harness.ports.motion_planning import MotionRequest
 from harness.ports.motions import TimedMotion
 from harness.robot.description import ALL_ARMS
@@ -70,3 +75,27 @@ class MergedMotion:
         assert self._whole is not None
         self._cell.notes.trajectory = self._whole
         self._cell.simulator.track(self._whole)
+
+
+def together(
+    motions: Sequence[tuple[JointTrajectory, float]], names: tuple[str, ...], rest: FloatArray
+) -> JointTrajectory:
+    """Motions of different joints as one.
+
+    Args:
+        motions: Each motion, and the time at which it begins [s].
+        names: The joints of the whole.
+        rest: Positions of the joints that no motion moves, shape (dof,).
+    """
+    stamps = [np.round(motion.times + delay, 9) for motion, delay in motions]
+    times = np.unique(np.concatenate([[0.0], *stamps]))
+    positions = np.tile(rest, (len(times), 1))
+    velocities, accelerations = np.zeros_like(positions), np.zeros_like(positions)
+    for motion, delay in motions:
+        columns = [names.index(name) for name in motion.joint_names]
+        rows = motion.at(times - delay)
+        moves = ((times > delay) & (times < delay + motion.duration))[:, None]
+        positions[:, columns] = rows[0]
+        velocities[:, columns] = np.where(moves, rows[1], 0.0)
+        accelerations[:, columns] = np.where(moves, rows[2], 0.0)
+    return JointTrajectory(names, times, positions, velocities, accelerations)

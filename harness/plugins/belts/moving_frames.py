@@ -13,8 +13,8 @@ from harness.cell.scene_state import StepNotes
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.trajectory import JointTrajectory
 from harness.language.step import Step
+from harness.plugins.belts.ride import Ride, ride_of
 from harness.recording.explanation import Explanation
-from harness.steps._tracker import Carried, carried
 
 SLACK = 0.1  # of a motion's duration, by which the arrival is later than it would have to be
 PLANS = 6  # that are made until one is no longer than the time to its arrival
@@ -42,7 +42,7 @@ def execute_motion(spec: Step, cell: Cell) -> None:
     cell.simulator.track(motion)
 
 
-def _meeting(spec: Step, rides: Mapping[str, Carried], cell: Cell) -> tuple[float, JointTrajectory]:
+def _meeting(spec: Step, rides: Mapping[str, Ride], cell: Cell) -> tuple[float, JointTrajectory]:
     """The earliest time found at which the arm can be where the objects are then, and its motion.
 
     Raises:
@@ -81,12 +81,24 @@ def _missed(refused: PlanningFailed | None, why: str) -> PlanningFailed:
     )
 
 
-def _rides(spec: Step, cell: Cell) -> Mapping[str, Carried]:
+def _rides(spec: Step, cell: Cell) -> Mapping[str, Ride]:
     """What carries the objects in whose frames a step has something, where that moves."""
-    if not spec.moves_arm:
-        return {}
-    found = {name: carried(name, cell) for name in sorted({*_frames(spec)} & cell.presence.keys())}
+    found = {name: _ride(name, cell) for name in sorted({*_frames(spec)} & cell.presence.keys())}
     return {name: ride for name, ride in found.items() if ride is not None}
+
+
+def _ride(name: str, cell: Cell) -> Ride | None:
+    """How an object is carried now; None where it stands or is held."""
+    presence = cell.presence[name]
+    is_free = presence.is_there and presence.obj.in_simulation and not presence.obj.is_static
+    is_held = name in cell.scene.attached() or name not in cell.scene.object_names()
+    if not is_free or is_held:
+        return None
+    try:
+        ride = ride_of(name, cell)
+    except StepFailed:
+        return None
+    return None if ride.motion.is_still else ride
 
 
 def _frames(value: object) -> Iterator[str]:
@@ -103,9 +115,7 @@ def _frames(value: object) -> Iterator[str]:
             yield from _frames(each)
 
 
-def _planned(
-    spec: Step, rides: Mapping[str, Carried], arrival: float, cell: Cell
-) -> JointTrajectory:
+def _planned(spec: Step, rides: Mapping[str, Ride], arrival: float, cell: Cell) -> JointTrajectory:
     """The motion of a step to where the objects will be after some time [s]."""
     with ExitStack() as stack:
         for name, ride in rides.items():

@@ -2,57 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
-from harness.cell.cell import Cell
 from harness.cell.program import ProgramStep
 from harness.cell.scene_state import StepNotes
-from harness.cell.together import MergedMotion
 from harness.core.errors import StepFailed
+from harness.plugins.assembly.merged_motion import MergedMotion
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
 from harness.recording.step_record import StepRecord
-
-OnStep = Callable[[ProgramStep, StepRecord | None], None]  # None: it begins
-
-
-class RunEndedError(Exception):
-    """A step failed in a way that nothing expected; carries the failure up through nesting.
-
-    Attributes:
-        failure: The failure of the innermost step.
-        summary: The summary of that step.
-    """
-
-    def __init__(self, failure: StepFailed, summary: str) -> None:
-        self.failure, self.summary = failure, summary
-        super().__init__(str(failure))
-
-
-Failure = StepFailed | RunEndedError
-End = Callable[[Failure | None], None]  # completes the record of a step
-
-
-class Runner(Protocol):
-    """Carries out steps and records them."""
-
-    cell: Cell
-    on_step: OnStep
-    records: list[StepRecord]
-
-    def run(self, steps: Sequence[ProgramStep]) -> None:
-        """Carry out steps in order.
-
-        Raises:
-            RunEndedError: One of them failed.
-        """
-        ...
-
-    def begin(self, step: ProgramStep) -> End:
-        """Begin the record of a step; returns what completes it from the cell's notes."""
-        ...
+from harness.session.coordinator import End, Failure, RunEndedError, Runner
 
 
 @dataclass

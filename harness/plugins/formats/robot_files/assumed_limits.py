@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import replace
 
 import numpy as np
@@ -65,9 +65,7 @@ def with_plausible_efforts(description: RobotDescription) -> RobotDescription:
     )
 
 
-def with_assumed_limits_listed(
-    description: RobotDescription, known: frozenset[str]
-) -> RobotDescription:
+def with_assumed_limits_listed(description: RobotDescription, known: Set[str]) -> RobotDescription:
     """The robot with notes on the velocity and acceleration limits that no file has.
 
     Args:

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from harness.language.files.source import Located
+from harness.plugins.formats.yaml_data import known_entry, number, read_data, refuse
 from harness.robot.mechanism import Joint
-from harness.robot.yaml_data import known_entry, number, read_data, refuse
 
 SOLVER_KEYS = ("kinematics_solver", "position_only_ik")
 WRAPPERS = ("/**", "ros__parameters", "robot_description_planning", "robot_description_kinematics")

@@ -1,0 +1,1 @@
+"""Puts arms on pedestals and rails, and joins several arms into one robot."""

@@ -1,0 +1,1 @@
+"""Ways in which several arms work at once."""

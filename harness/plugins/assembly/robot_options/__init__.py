@@ -1,0 +1,1 @@
+"""The options `mount` and `robots`."""

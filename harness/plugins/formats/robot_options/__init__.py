@@ -1,0 +1,1 @@
+"""The options `kinematics` and `moveit`, which name files."""

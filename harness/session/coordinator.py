@@ -1,0 +1,67 @@
+"""What carries out steps of several arms at once, as a plug-in."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from typing import ClassVar, Protocol
+
+from harness.cell.cell import Cell
+from harness.cell.program import ProgramStep
+from harness.core.errors import StepFailed
+from harness.core.registry import Plugin
+from harness.recording.step_record import StepRecord
+
+OnStep = Callable[[ProgramStep, StepRecord | None], None]  # None: it begins
+
+
+class RunEndedError(Exception):
+    """A step failed in a way that nothing expected; carries the failure up through nesting.
+
+    Attributes:
+        failure: The failure of the innermost step.
+        summary: The summary of that step.
+    """
+
+    def __init__(self, failure: StepFailed, summary: str) -> None:
+        self.failure, self.summary = failure, summary
+        super().__init__(str(failure))
+
+
+Failure = StepFailed | RunEndedError
+End = Callable[[Failure | None], None]  # completes the record of a step
+
+
+class Runner(Protocol):
+    """Carries out steps and records them."""
+
+    cell: Cell
+    on_step: OnStep
+    records: list[StepRecord]
+
+    def run(self, steps: Sequence[ProgramStep]) -> None:
+        """Carry out steps in order.
+
+        Raises:
+            RunEndedError: One of them failed.
+        """
+        ...
+
+    def begin(self, step: ProgramStep) -> End:
+        """Begin the record of a step; returns what completes it from the cell's notes."""
+        ...
+
+
+class Coordinator(Plugin, ABC):
+    """Carries out steps of different arms at once, for `parallel`."""
+
+    plugin_kind: ClassVar[str] = "coordinator"
+
+    @abstractmethod
+    def run(self, runner: Runner, steps: Sequence[ProgramStep]) -> tuple[float, ...]:
+        """Carry out the steps; returns when the first motion of each begins [s].
+
+        Raises:
+            RunEndedError: A step inside one failed, or none can go on.
+            StepFailed: The motions cannot go on at once, or the arms cannot follow them.
+        """
