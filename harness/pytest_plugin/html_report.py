@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from harness.core.amounts import amount
+from harness.core.amounts import stated_amount
 from harness.pytest_plugin.session_options import MARGIN
 from harness.reporting.notebook import verdict_table
 from harness.reporting.suite.failure_picture import deciding_picture
@@ -54,4 +54,4 @@ def _worst(cases: Sequence[SuiteCase]) -> str:
         return ""
     nearest = min(known, key=lambda case: case.share).nearest
     assert nearest is not None
-    return f"{amount(nearest.margin, nearest.unit)}: {nearest.expectation}"
+    return f"{stated_amount(nearest.margin, nearest.unit)}: {nearest.expectation}"

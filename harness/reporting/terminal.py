@@ -272,7 +272,7 @@ def verdict_line(verdict: Verdict) -> str:
         tightest = tightest_name(verdict)
         if tightest:
             required = verdict.measures[0]
-            gap = amount(abs(required.value - required.limit), required.unit)
+            gap = stated_amount(abs(required.value - required.limit), required.unit)
             text += f" by {gap} (tightest: {tightest}, by {margin})"
         else:
             text += f" by {margin}"

@@ -7,6 +7,7 @@ from harness.core.errors import RobotError
 from harness.core.kinematics import LinkPoses
 from harness.language.scenario import RobotSpec
 from harness.robot.load import load_robot
+from tests.running import run_case
 from tests.session.front_door import failures, problems, run
 
 
@@ -67,8 +68,14 @@ def test_an_arm_without_a_mount_is_what_it_was_and_a_pedestal_lifts_it():
 @pytest.mark.parametrize(
     ("mount", "message"),
     [
-        ({"axis": "y", "range": [0, 1], "name": "elbow_joint"}, "called 'elbow_joint' already"),
-        ([{"axis": "y", "range": [0, 1]}, {"axis": "x", "range": [0, 1]}], "called 'rail' already"),
+        (
+            {"axis": "y", "range": [0, 1], "name": "elbow_joint"},
+            "the robot has something called 'elbow_joint': give each rail a `name`",
+        ),
+        (
+            [{"axis": "y", "range": [0, 1]}, {"axis": "x", "range": [0, 1]}],
+            "2 rails are called 'rail': give each rail a `name`",
+        ),
     ],
 )
 def test_the_joint_of_a_rail_has_a_name_of_its_own(mount, message):
@@ -114,3 +121,21 @@ def test_an_arm_drives_along_its_rail_and_stays_within_its_limits(tmp_path):
     column = record.robot.joint_names.index("rail")
     assert record.signals.joint_positions[-1, column] > 0.7
     assert np.ptp(record.signals.joint_efforts[:, column]) > 1
+
+
+GANTRY_OF_FOUR_JOINTS = """
+robot:
+  model: open_manipulator_x
+  mount: {rail: [{name: gx, axis: x, range: [0, 1 m]}, {name: gy, axis: y, range: [0, 1 m]}]}
+steps:
+  - lin: {position: {xyz: [0.5, 0.3, 0.2]}}
+  - lin: {pose: {xyz: [0.7, 0.5, 0.15], rpy: [0, 0, 80 deg]}}
+"""
+
+
+def test_a_line_to_a_position_turns_as_it_must_and_one_to_another_turn_is_refused(tmp_path):
+    file = tmp_path / "gantry.scenario.yaml"
+    file.write_text(f"scenario: a gantry{GANTRY_OF_FOUR_JOINTS}", encoding="utf-8")
+    first, second = run_case(file).steps
+    assert (first.status, second.error_code) == ("passed", "NO_IK_SOLUTION")
+    assert "give the goal as a `position`" in "".join(second.explanation)

@@ -298,3 +298,19 @@ def test_a_pick_in_motion_is_no_step_of_two_arms_at_once(tmp_path):
 def test_arms_that_stand_apart(y, tmp_path):
     robot = PAIR.replace("[0, -0.3, 0]", f"[0, {y}, 0]")
     assert not found(tmp_path, "  - wait: 1\n", robot=robot)
+
+
+def test_a_guarded_move_at_once_with_another_motion_is_refused(tmp_path):
+    pair = "".join(
+        f"  {arm}: {{model: open_manipulator_x, base: {{xyz: [0, {y}, 0]}}}}\n"
+        for arm, y in (("left", 0.3), ("right", -0.3))
+    )
+    guarded = "{direction: {xyz: [0, 0, -1]}, force: 5 N, max_distance: 1 cm, speed: 1 cm/s}"
+    turn = "ptp: {joints: {right_joint1: -0.4}}"
+    text = at_once((f"move_until: {guarded}", "robot: left"), (turn, "robot: right"))
+    path = tmp_path / "a.scenario.yaml"
+    path.write_text(f"scenario: a test\nrobots:\n{pair}steps:\n{text}", encoding="utf-8")
+    failure = check_file(path).predicted[-1]
+    assert (
+        "`move_until` ends by what it meets, so it cannot be timed with another" in failure.message
+    )

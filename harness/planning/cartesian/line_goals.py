@@ -47,7 +47,10 @@ def end_pose(
         if solutions:
             end = task.space.whole(solutions[0])
             turned = kinematics.link_pose(end, goal.link).rotation
-    return PoseGoal(goal.link, SE3(turned, np.asarray(goal.position)), goal.position_tolerance)
+    pose = SE3(turned, np.asarray(goal.position))
+    if held.holds_tilt and not held.holds_pose:  # several turns about the vertical are possible
+        return PoseGoal(goal.link, pose, goal.position_tolerance, orientation_tolerance=np.pi)
+    return PoseGoal(goal.link, pose, goal.position_tolerance)
 
 
 def pitched(rotation: FloatArray, pitch: float) -> FloatArray:

@@ -30,7 +30,7 @@ from harness.planning.timing.profiles import resting
 from harness.ports.goals import Goal, PoseGoal
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.motions import ArcPoint
-from harness.recording.explanation import ArcResult, StraightResult
+from harness.recording.explanation import ArcResult, Explanation, StraightResult
 from harness.recording.goal_failures import IkFailure
 from harness.recording.motion_failures import DeviationFailure, DistanceFailure, TraceFailure
 from harness.recording.plan_statistics import RateStatistics, WayStatistics
@@ -115,11 +115,17 @@ class LinkMotions:
         end = self.pose(traced.positions[-1], target.link)
         if not meets_tolerance(target, end):
             shift, angle = target.pose.distance_to(end)
+            space = self.task.space
+            few = Explanation(
+                advice=f"the {len(space.joint_names)} joints of '{space.group}' do not hold every"
+                " rotation along a path: give the goal as a `position`, or turn with a `move_to`"
+            )
             raise PlanningFailed(
                 "NO_IK_SOLUTION",
                 f"at the end of the {path.name} {target.link} is {amount(shift, 'm')} and "
                 f"{amount(angle, 'rad')} from the goal",
                 IkFailure(shift, angle),
+                *(() if space.task_space.holds_pose else (few,)),
             )
         return traced
 

@@ -34,7 +34,8 @@ def reach_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> St
         text = f"{goal.link} reaches {target} as requested"
         if study.answer.task != "pose" and isinstance(goal, PoseGoal):
             shift, turn = study.branches[0].residual
-            text += f", except for {length_text(shift)} and {angle(turn)}"
+            if shift > _KEPT or turn > _KEPT:
+                text += f", except for {length_text(shift)} and {angle(turn)}"
         return StageFinding(Stage("reach", "passed", text))
     if study.answer.missed:
         return _too_few_joints(request, goal, study)

@@ -43,7 +43,12 @@ def mounted(description: RobotDescription, mount: MountSpec) -> RobotDescription
     names = [rail.name for rail in mount.rails]
     for name in names:
         if name in taken or names.count(name) > 1:
-            raise RobotOptionError("mount", f"the robot has something called '{name}' already")
+            whose = (
+                f"the robot has something called '{name}'"
+                if name in taken
+                else (f"{names.count(name)} rails are called '{name}'")
+            )
+            raise RobotOptionError("mount", f"{whose}: give each rail a `name` of its own")
     if names and not description.arm_group:
         raise RobotOptionError("mount", "a rail carries an arm, and this robot has none")
     links: list[Link] = []

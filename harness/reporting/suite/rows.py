@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from harness.core.amounts import amount
+from harness.core.amounts import stated_amount
 from harness.core.resources import with_short_names
 from harness.reporting.html.packing import Packer
 from harness.reporting.margins import used_allowance
@@ -58,7 +58,7 @@ def row_facts(
         "link": case.link(folder) + (failure_place(result) if result.page else ""),
         "share": case.share if math.isfinite(case.share) else NO_MARGIN,
         "used": used,
-        "margin": amount(nearest.margin, nearest.unit) if nearest else "",
+        "margin": stated_amount(nearest.margin, nearest.unit) if nearest else "",
         "expectation": nearest.expectation if nearest else "",
         "holds": nearest is not None and nearest.status == "passed",
         "drawn": ", ".join(f"{path} {short_value(value)}" for path, value in case.values.items()),

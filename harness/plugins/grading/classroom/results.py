@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from harness.core.amounts import amount
+from harness.core.amounts import stated_amount
 from harness.core.errors import Problem, SpecError
 from harness.judging.placed import describe
 from harness.language.expectation import ExpectationFields
@@ -69,7 +69,7 @@ class Mark:
         if verdict is None or math.isnan(verdict.margin):
             return ""
         sign = "+" if verdict.margin >= 0 else ""
-        return f"{sign}{amount(verdict.margin, verdict.unit)}"
+        return f"{sign}{stated_amount(verdict.margin, verdict.unit)}"
 
 
 @dataclass(frozen=True)
