@@ -194,7 +194,13 @@ arm, gripper = Interface("arm"), Interface("gripper")
 node.create_subscription(JointState, "joint_states", states.append, default)
 torque = node.create_client(SetBool, "dynamixel_hardware_interface/set_dxl_torque")
 said = {"home": joint_space([0.0, -1.0, 0.7, 0.3]), "init": joint_space([0.0] * 4)}
-said["open"], said["close"] = tool(0.019), tool(-0.01)
+said["close"] = tool(-0.01)
+for name, angles in (("before", [0.0, -0.442, 0.672, 0.07]), ("at", [0.0, -0.147, 0.988, -0.541])):
+    tool(0.019)
+    said[f"{name} the box"] = joint_space(angles)
+said["grip"] = tool(-0.01)[:2]
+said["lift"] = joint_space([0.0, -0.442, 0.672, 0.07])
+said["release"] = tool(0.019)
 said["angles"] = joint_space([0.5, -0.479, 0.332, 0.141])
 said["position"] = task_space([0.15, 0.05, 0.2, 0.0, 0.0, 0.0, 1.0], position_only=True)
 joint_space([0.0, -1.0, 0.7, 0.3])
