@@ -82,6 +82,15 @@ class Participant:
         peer = self._peers.get(guid[:12])
         return peer.endpoints.get(guid) if peer is not None else None
 
+    @property
+    def is_first(self) -> bool:
+        """Whether it has the first port of its domain, which others had if they were earlier."""
+        return self._sockets.is_first
+
+    def endpoint_counts(self) -> list[int]:
+        """The numbers of endpoints that are known of each peer."""
+        return [len(peer.endpoints) for peer in self._peers.values()]
+
     def spin(self, until: float, is_enough: Callable[[], bool] = lambda: False) -> None:
         """Receive, answer and announce; at least once.
 

@@ -31,6 +31,7 @@ class Sockets:
 
     Attributes:
         is_local: Whether packets from other machines are dropped, and none are sent to them.
+        is_first: Whether no other program on this machine had the first port of the domain.
         unicast: The addresses under which this participant is reached.
         announced: The addresses that hear of this participant.
     """
@@ -47,6 +48,7 @@ class Sockets:
         base = 7400 + 250 * domain
         self._multicast = self._join(base)
         self._unicast, port = self._bind(base + 10, LOOPBACK if is_local else outward)
+        self.is_first = port == base + 10
         own = (outward, LOOPBACK) if is_local else (outward,)
         self.unicast = [(each, port) for each in dict.fromkeys(own)]
         first, last = base + 10, base + 10 + 2 * NEIGHBOURS
