@@ -61,6 +61,7 @@ BUILT_IN = {
     "adhesion": "",
     "tracker": "",
     "coordinator": "",
+    "motion": "",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 

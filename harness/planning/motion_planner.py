@@ -8,12 +8,11 @@ import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
+from harness.core.registry import registry
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.cartesian_path import plan_waypoints
 from harness.planning.cartesian.link_motion import LinkMotions
-from harness.planning.cartesian.motion_sequence import plan_items
-from harness.planning.cartesian.timed_link import plan_timed_link
+from harness.planning.cartesian.motion_kind import MotionKind
 from harness.planning.collision.scene import CoalScene
 from harness.planning.constrained_motion import find_constrained_motion
 from harness.planning.diagnosis.explanation import explained
@@ -75,14 +74,11 @@ class VerifiedPlanner:
                 return self._links(request).circular(goal, point)
             case RelativeMotion(link, twist, distances):
                 return self._links(request).relative(link, twist, distances)
-            case MotionSequence(items):
-                return plan_items(self._links(request), items)
             case TimedMotion(trajectory):
                 return self._timed(request, trajectory)
-            case WaypointMotion(goals, path_options):
-                return plan_waypoints(self._links(request), goals, path_options)
-            case TimedLinkMotion() as motion:
-                return plan_timed_link(self._task(request), motion)
+            case MotionSequence() | WaypointMotion() | TimedLinkMotion() as motion:
+                kind: MotionKind = registry(MotionKind.plugin_kind).find(motion.kind)()
+                return kind.plan(motion, self._links(request))
 
     @explained
     def check_goal(self, request: MotionRequest) -> CheckedGoal:

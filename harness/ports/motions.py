@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -165,6 +165,7 @@ class RelativeMotion:
 class MotionSequence:
     """Pilz's sequence: motions blended into each other, all of them or none."""
 
+    kind: ClassVar[str] = "sequence"
     items: Sequence[SequenceItem]
 
 
@@ -175,6 +176,7 @@ class WaypointMotion:
     The plan's result has `fraction`, `largest_joint_step` [rad or m] and `deviation` [m].
     """
 
+    kind: ClassVar[str] = "waypoints"
     goals: Sequence[PoseGoal | PositionGoal]
     path_options: CartesianPathOptions
 
@@ -189,6 +191,7 @@ class TimedLinkMotion:
         duration: The time that the motion takes [s].
     """
 
+    kind: ClassVar[str] = "timed_link"
     link: str
     pose_at: Callable[[float], SE3]
     duration: float

@@ -12,13 +12,13 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.leg import Leg
-from harness.planning.cartesian.leg_run import runs_of, time_runs
 from harness.planning.cartesian.line_goals import end_pose
 from harness.planning.cartesian.linear_path import LinearPath
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.cartesian.tracing import STEP_ANGLE, STEP_LENGTH, Trace, trace
+from harness.plugins.motions.leg import Leg
+from harness.plugins.motions.leg_run import runs_of, time_runs
 from harness.ports.goals import Goal
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.motions import CartesianPathOptions

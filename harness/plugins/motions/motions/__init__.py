@@ -1,0 +1,1 @@
+"""The kinds of motions, one module for each."""

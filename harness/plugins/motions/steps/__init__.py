@@ -1,0 +1,1 @@
+"""The steps `sequence` and `cartesian_path`."""
