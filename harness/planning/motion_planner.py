@@ -12,9 +12,8 @@ from harness.core.registry import registry
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.planning.cartesian.link_motion import LinkMotions
-from harness.planning.cartesian.motion_kind import MotionKind
+from harness.planning.cartesian.motion_kind import ConstrainedMotion, MotionKind
 from harness.planning.collision.scene import CoalScene
-from harness.planning.constrained_motion import find_constrained_motion
 from harness.planning.diagnosis.explanation import explained
 from harness.planning.free_motion import find_motion
 from harness.planning.goals.goal_choice import choose_goals
@@ -95,7 +94,9 @@ class VerifiedPlanner:
         explanation = found.explanation + task.lowered_margins
         try:
             if task.held is not None:
-                return find_constrained_motion(task, task.held, found.positions, explanation)
+                kind: MotionKind = registry(MotionKind.plugin_kind).find("constrained")()
+                constrained = ConstrainedMotion(found.positions, explanation)
+                return kind.plan(constrained, LinkMotions(self.kinematics, task))
             return find_motion(task, found.positions, explanation)
         except TimingError as problem:
             raise _untimed(problem) from problem

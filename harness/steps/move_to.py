@@ -13,6 +13,7 @@ from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, path_constraints, pose_goal, resolve_goal
 from harness.cell.scope import At
 from harness.core.amounts import JointUnits
+from harness.core.registry import absent_plugins, registry
 from harness.language.base import Name
 from harness.language.goals import GOAL_KEYS, GoalFields
 from harness.language.planning import PathConstraintsSpec
@@ -128,6 +129,9 @@ def _goal_of_arms(poses: dict[str, Pose], group: str, cell: Cell) -> AnyGoal:
 
 def _check_constraints(constraints: PathConstraintsSpec, group_name: str | None, at: At) -> None:
     scope = at.scope
+    if "constrained" not in registry("motion"):
+        hint = "; ".join(absent_plugins())
+        scope.problems.add(at.key("path_constraints"), "no plug-in plans with these here", hint)
     band, box = constraints.orientation, constraints.position
     if band is not None:
         scope.check_link_or_held(band.link, at.key("path_constraints", "orientation", "link"))

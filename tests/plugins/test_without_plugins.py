@@ -139,6 +139,14 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     done = core("check", file)
     assert done.returncode == 2
     assert "formula.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
+    file.write_text(
+        "scenario: t\nrobot: open_manipulator_x\n"
+        "steps: [{move_to: {named_target: home, path_constraints: {joints: {joint1: {}}}}}]\n"
+    )
+    done = core("check", file)
+    assert done.returncode == 2
+    assert "formula.scenario.yaml:3:" in done.stdout + done.stderr
+    assert "no plug-in plans with these here" in done.stdout + done.stderr
     (tmp_path / "box.obj").write_text(OBJ)
     file.write_text(
         "scenario: t\nrobot: open_manipulator_x\nsteps: [{wait: 1}]\n"

@@ -3,11 +3,28 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from harness.core.details import Details
 from harness.core.registry import Plugin
+from harness.core.types import FloatArray
 from harness.planning.cartesian.link_motion import LinkMotions
 from harness.ports.motion_planning import MotionPlan
+
+
+@dataclass(frozen=True, eq=False)
+class ConstrainedMotion:
+    """A motion under the path constraints of its planning call.
+
+    Attributes:
+        goals: Free group positions that satisfy the constraints, nearest first.
+        explanation: How the goals were found.
+    """
+
+    goals: Sequence[FloatArray]
+    explanation: Details
 
 
 class MotionKind(Plugin, ABC):
@@ -20,9 +37,10 @@ class MotionKind(Plugin, ABC):
         """A verified motion.
 
         Args:
-            motion: What is planned, one of `harness.ports.motions`.
+            motion: What is planned: one of `harness.ports.motions`, or a `ConstrainedMotion`.
             motions: The planning call, with its straight lines and arcs.
 
         Raises:
             PlanningFailed: It is not possible.
+            TimingError: The arm cannot stand still where it starts, or at any goal.
         """

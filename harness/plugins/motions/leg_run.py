@@ -11,7 +11,6 @@ from harness.core.amounts import amount
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.curve_timing import RatedCurve, nearest_knots, time_curve
 from harness.planning.cartesian.link_motion import (
     ORIENTATION_DEVIATION,
     POSITION_DEVIATION,
@@ -22,6 +21,7 @@ from harness.planning.cartesian.tracing import Trace, off_path
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import joined, time_straight
+from harness.plugins.motions.curve_timing import RatedCurve, nearest_knots, time_curve
 from harness.plugins.motions.leg import Leg, Transition, transition
 from harness.recording.motion_failures import BlendFailure, DeviationFailure
 

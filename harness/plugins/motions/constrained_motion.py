@@ -10,7 +10,6 @@ from harness.core.details import Details
 from harness.core.errors import PlanningFailed
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
-from harness.planning.cartesian.curve_timing import RatedCurve, time_curve
 from harness.planning.search.balanced_connect import search_connect
 from harness.planning.search.planner_names import FAST_PLANNER
 from harness.planning.search.shortening import find_shortcut, path_knots, without_repetitions
@@ -20,6 +19,7 @@ from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import time_stopping, time_straight
 from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION, Defect
+from harness.plugins.motions.curve_timing import RatedCurve, time_curve
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.path_planning import PathRequest, PathResult
 from harness.recording.motion_failures import SearchFailure
