@@ -62,6 +62,7 @@ BUILT_IN = {
     "tracker": "",
     "coordinator": "",
     "motion": "",
+    "camera_recorder": "",
 }
 """Every kind of plug-in, and the package whose modules are the built-in ones."""
 

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from harness.cell.scope import Problems, Scope
 from harness.core.camera import Camera
 from harness.core.extras import install_command
+from harness.core.registry import absent_plugins, registry
 from harness.language.cameras import CameraSpec, VideoSpec
 
 
@@ -67,7 +68,10 @@ def _check_simulated(spec: CameraSpec, loc: tuple[str | int, ...], scope: Scope)
 def check_videos(videos: Sequence[VideoSpec], scope: Scope) -> dict[str, float]:
     """Frames a second of every camera that is recorded, by its name."""
     rates: dict[str, float] = {}
-    if videos and find_spec("av") is None:
+    if videos and "rendered" not in registry("camera_recorder"):
+        hint = "; ".join(absent_plugins())
+        scope.problems.add(("videos",), "no plug-in records cameras here", hint)
+    elif videos and find_spec("av") is None:
         hint = f"install it by: {install_command('video')}"
         scope.problems.add(
             ("videos",), "the Python package av, which films, is not installed", hint

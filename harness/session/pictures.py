@@ -9,10 +9,12 @@ from functools import partial
 
 import numpy as np
 
+from harness.cameras.camera_recorder import CameraRecorder
 from harness.cameras.viewpoint import OVERVIEW_STATES
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
+from harness.core.registry import registry
 from harness.judging.pictures import looks_of_expectations
 from harness.recording.drawings import Drawings
 from harness.recording.explanation import Explanation, recorded_explanation
@@ -96,10 +98,13 @@ class Pictures:
 
 
 def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
-    from harness.cameras.captures import take_pictures
-
     program = prepared.program
-    return take_pictures(program.description, program.all_objects(), run, looks, activity)
+    objects = program.all_objects()
+    return _recorder().pictures(program.description, objects, run, looks, activity)
+
+
+def _recorder() -> CameraRecorder:
+    return registry(CameraRecorder.plugin_kind).find("rendered")()
 
 
 def _shown(run: Run) -> Run:
@@ -151,10 +156,8 @@ def _drawings(
         files, meshes, note = {}, mesh_records(get_shown()), ""
     if run is None or not program.videos:
         return Drawings(meshes, (), files, note)
-    from harness.cameras.videos import record_videos  # loads a video library
-
-    videos, films = record_videos(description, objects, run, program.videos, activity=activity)
-    return Drawings(meshes, videos, files | films, note)
+    videos, films = _recorder().videos(description, objects, run, program.videos, activity)
+    return Drawings(meshes, videos, {**files, **films}, note)
 
 
 def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, bytes]:

@@ -6,7 +6,6 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from harness.cameras.captures import take_pictures
 from harness.core.camera import Camera
 from harness.core.geometry import Shape, Sphere
 from harness.core.spatial import SE3
@@ -16,6 +15,7 @@ from harness.judging.placed import PlacedExpectation
 from harness.language.cameras import looking_at
 from harness.language.markers import MarkerSpec
 from harness.language.scenario import RobotSpec
+from harness.plugins.cameras.captures import take_pictures
 from harness.recording.looks import Look, merged_looks
 from harness.robot.load import load_robot
 from harness.world.markers import plate, printed

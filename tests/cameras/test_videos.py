@@ -11,8 +11,8 @@ import pytest
 from harness.cameras.camera_scene import CameraScene
 from harness.cameras.renderer import make_renderer
 from harness.cameras.sensor import as_delivered
-from harness.cameras.videos import record_videos
 from harness.core.camera import MOST_FRAMES
+from harness.plugins.cameras.videos import record_videos
 from harness.recording.film import decoded_film
 from harness.session.observation.findings import slowed_videos
 from tests.cameras.camera_runs import ball, eye, robot, run_with

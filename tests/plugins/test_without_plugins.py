@@ -141,7 +141,8 @@ def test_what_only_a_plug_in_can_do_is_refused_at_its_place(core, tmp_path):
     assert "formula.scenario.yaml:4:48: no plug-in tracks belts here" in done.stdout + done.stderr
     file.write_text(
         "scenario: t\nrobot: open_manipulator_x\n"
-        "steps: [{move_to: {named_target: home, path_constraints: {joints: {joint1: {}}}}}]\n"
+        "steps: [{move_to: {named_target: home, path_constraints: {joints: {"
+        "joint1: {position: 0, tolerance_above: 1, tolerance_below: 1}}}}}]\n"
     )
     done = core("check", file)
     assert done.returncode == 2
