@@ -34,7 +34,7 @@ class CameraRecorder(Plugin, ABC):
         Args:
             description: The robot of the run.
             objects: All objects of the run.
-            run: The finished run.
+            run: The finished run, with all its recorded signals.
             looks: The requested pictures, in order of time.
             activity: Hears how many of them are taken.
         """
@@ -53,7 +53,7 @@ class CameraRecorder(Plugin, ABC):
         Args:
             description: The robot of the run.
             objects: All objects of the run.
-            run: The finished run.
+            run: The finished run, with all its recorded signals.
             rates: Frames per second of simulated time, by camera.
             activity: Hears how many frames are recorded.
         """
