@@ -311,6 +311,32 @@ def test_the_workflows_have_no_mistake_that_actionlint_finds():
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.skipif(not is_installed("check-jsonschema"), reason="needs check-jsonschema")
+@pytest.mark.parametrize(
+    ("schema", "file"),
+    [
+        ("gitlab-ci", ROOT / ".ci/gitlab.yml"),
+        ("gitlab-ci", Path(".gitlab-ci.yml")),
+        ("github-actions", ROOT / "action.yml"),
+        ("github-workflows", Path(".github/workflows/scenarios.yml")),
+    ],
+    ids=["gitlab-template", "gitlab-project", "action", "workflow"],
+)
+def test_pipelines_fit_the_schemas_that_services_publish(schema, file, project):
+    """The schemas are those that check-jsonschema ships."""
+
+    def fits(text):
+        Path("pipeline.yml").write_text(text)
+        command = [BINARIES / "check-jsonschema", f"--builtin-schema=vendor.{schema}"]
+        transform = ["--data-transform=gitlab-ci"] * (schema == "gitlab-ci")
+        done = subprocess.run([*command, *transform, "pipeline.yml"], check=False)
+        return done.returncode == 0
+
+    text = (project / file).read_text()
+    assert fits(text)
+    assert not fits(re.sub(r"(?m)^( *)(script|runs|runs-on):", r"\1no-\2:", text))
+
+
 @pytest.mark.nightly
 def test_a_project_installs_and_passes_in_a_fresh_environment(tmp_path, monkeypatch):
     """The requirements of the project, as pip installs them, and its commands without a change."""
