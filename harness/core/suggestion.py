@@ -9,13 +9,19 @@ from typing import Any, cast
 SYNONYMS = {
     "mass": ("weight",),
     "size": ("dimensions", "extents"),
-    "xyz": ("position", "translation", "point"),
+    "xyz": ("position", "translation", "point", "x", "y", "z", "at", "to"),
     "quat_xyzw": ("orientation", "quaternion", "quat"),
     "rpy": ("rotation", "euler", "angles"),
-    "pose": ("location", "origin", "position", "xyz", "translation"),
+    "pose": ("location", "origin", "position", "xyz", "translation", "at", "to", "target_pose"),
     "frame": ("frame_id", "reference_frame", "parent"),
     "static": ("fixed", "immovable"),
     "length": ("height",),
+    "above": ("height", "by_at_least", "min_height"),
+    "object": ("target", "item", "body", "obj"),
+    "at_most": ("max", "maximum", "below"),
+    "at_least": ("min", "minimum"),
+    "scenario": ("name", "title"),
+    "world": ("name", "title"),
 }
 """Keys of this language, and what other programs call them; verbs and predicates state theirs."""
 

@@ -248,7 +248,8 @@ class _Compiler:
         try:
             return self._objects(spec, pose, self.sources.loaded.path.parent)
         except ObjectUnusableError as unusable:
-            self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
+            if spec.name not in self.sources.doubtful:
+                self.problems.add(loc, f"object '{spec.name}': {unusable}", needs=())
             self.problems.add_unusable(spec.name)
             return ()
 

@@ -22,6 +22,7 @@ class AddObject(Step):
     short_is_list = True
 
     verb: ClassVar[str] = "add_object"
+    synonyms = ("spawn", "add", "create_object", "add_collision_object")
     moves_objects: ClassVar[bool] = True
 
     objects: Annotated[tuple[ObjectSpec, ...], Field(min_length=1)] = Field(

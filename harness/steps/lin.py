@@ -18,7 +18,7 @@ class Lin(LineFields, Step):
     """Pilz LIN: the link moves on a straight line."""
 
     verb: ClassVar[str] = "lin"
-    synonyms = ("movel", "move_linear", "line")
+    synonyms = ("movel", "move_l", "move_linear", "line")
     moves_arm: ClassVar[bool] = True
 
     def check(self, at: At) -> None:

@@ -17,6 +17,7 @@ class MoveObject(Step):
     """Put an object somewhere else, at rest."""
 
     verb: ClassVar[str] = "move_object"
+    synonyms = ("teleport", "set_model_pose", "set_entity_pose")
     moves_objects: ClassVar[bool] = True
 
     object: Name = Field(description="The name of the object.")

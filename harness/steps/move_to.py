@@ -34,7 +34,16 @@ class MoveTo(GoalFields, Step):
     """
 
     verb: ClassVar[str] = "move_to"
-    synonyms = ("move", "goto", "go_to", "movej", "set_named_target", "set_pose_target")
+    synonyms = (
+        "move",
+        "go",
+        "goto",
+        "go_to",
+        "movej",
+        "move_j",
+        "set_named_target",
+        "set_pose_target",
+    )
     moves_arm: ClassVar[bool] = True
     goal_keys: ClassVar[tuple[str, ...]] = (*GOAL_KEYS, "any_of", "poses")
 

@@ -102,6 +102,7 @@ class Pick(Step):
     short = "object"
 
     verb: ClassVar[str] = "pick"
+    synonyms = ("pick_and_place", "pickup", "pick_up")
     results = (GraspChoice,)
 
     object: Name = Field(description="The name of the object.")

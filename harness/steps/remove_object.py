@@ -19,6 +19,7 @@ class RemoveObject(Step):
     short_is_list = True
 
     verb: ClassVar[str] = "remove_object"
+    synonyms = ("delete", "remove", "despawn", "delete_object")
     moves_objects: ClassVar[bool] = True
 
     objects: Annotated[tuple[Name, ...], Field(min_length=1)] = Field(

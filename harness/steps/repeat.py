@@ -26,6 +26,7 @@ class Repeat(Step):
     """Run the same steps several times; an `id` inside gets `#1`, `#2` ... appended to it."""
 
     verb: ClassVar[str] = "repeat"
+    synonyms = ("loop", "for")
     results = (Times,)
 
     times: Annotated[Count, Field(ge=1, le=1000)] = Field(

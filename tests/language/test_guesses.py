@@ -45,6 +45,13 @@ def test_several_robots_have_names():
         f"{HEAD}  - place: {{object: a, pose: {{xyz: [0, 0, 0], rotate: up}}}}\n",
         f"objects: [{BOX % 'frictions_of: 7 deg'}]\n{HEAD}  - settle\n",
         f"{HEAD}  - settle\nexpect:\n  - conveyor: 3\n",
+        f"{HEAD}  - settle\nexpect:\n  - collision_free: true\n",
+        f"{HEAD}  - settle\nexpect:\n  - no_contact: false\n",
+        f"{HEAD}  - place: {{object: a, at: [0, 0, 1]}}\n",
+        f"{HEAD}  - move_to: {{xyz: [0, 0, 1]}}\n",
+        f"{HEAD}  - gripper: 0.01\n",
+        f"{HEAD}  - move_to: [0, 0, 0]\n",
+        f"{HEAD}  - assert: {{lifted: a}}\n",
     ],
 )
 def test_a_guess_brings_no_second_problem(text):
@@ -60,6 +67,45 @@ def test_a_guess_brings_no_second_problem(text):
 )
 def test_mistakes_below_a_slip_of_the_pen_and_a_known_synonym_are_reported_too(text, second):
     assert [message for message, _ in messages(text)][1].startswith(second)
+
+
+@pytest.mark.parametrize(
+    ("step", "advice"),
+    [
+        ("gripper: 0.01", "write `{position: 0.01}` or `{width: 0.01}`"),
+        ("place: {object: a, at: [0, 0, 1]}", "write `pose: {xyz: [0, 0, 1]}`"),
+        ("ptp: {position: {at: [0, 0, 1]}}", "did you mean `xyz`?"),
+        ("lin: {location: [0, 0, 1]}", "keys: named_target"),
+        ("check: {lifted: a}", "below `expect:`"),
+        ("placed: a", "below `expect:`"),
+        ("spawn: a", "did you mean `add_object`?"),
+        ("delete_object: a", "did you mean `remove_object`?"),
+        ("allow_collisions: [a, b]", "keys: pairs, during"),
+        ("move_relative: {direction: {xyz: 1}, distance: 1}", "write `[1, ...]`"),
+    ],
+)
+def test_the_first_advice_can_be_followed(step, advice):
+    assert advice in messages(f"{HEAD}  - {step}\n")[0][1]
+
+
+@pytest.mark.parametrize(
+    ("expected", "advice"),
+    [
+        ("collision_free: true", "write `never: collision`"),
+        ("moved: a", "did you mean `displaced`?"),
+        ("near: {object: a}", "did you mean `placed`?"),
+        ("duration: {max: 3}", "did you mean `at_most`?"),
+        ("lifted: {object: a, height: 1}", "did you mean `above`?"),
+    ],
+)
+def test_what_other_programs_call_an_expectation_is_answered_with_its_word(expected, advice):
+    assert advice in messages(f"{HEAD}  - settle\nexpect: [{{{expected}}}]\n")[0][1]
+
+
+def test_the_title_of_a_file_is_its_key_scenario():
+    assert messages("name: x\nrobot: ur3e\nsteps: [settle]\n")[0][1].startswith(
+        "did you mean `scenario`?"
+    )
 
 
 @pytest.mark.parametrize(

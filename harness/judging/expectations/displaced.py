@@ -25,6 +25,7 @@ class Displaced(ObjectPredicate):
     """
 
     sentence = "{object} is displaced[ by at least {at_least}]"
+    synonyms = ("moved", "pushed")
     quantities = (DISTANCE,)
     opposite = "static"
     is_change = True

@@ -21,6 +21,7 @@ class DurationCheck(Predicate):
 
     word = "duration"
     short = "at_most"
+    synonyms = ("time", "max_time", "max_duration")
     some_of = ("at_most", "at_least")
     sentence = "duration is[ at least {at_least}][ at most {at_most}]"
     quantities = (DURATION,)

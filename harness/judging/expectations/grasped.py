@@ -60,7 +60,7 @@ class Grasped(ArmPredicate, ObjectPredicate):
     sentence = "{object} is grasped"
     quantities = (FINGERS, BETWEEN, HELD, SLIP, TURN)
     is_proposed = True
-    synonyms = ("held", "holding")
+    synonyms = ("held", "holding", "picked", "gripped")
     opposite = "released"
 
     min_force: Annotated[Force, Field(ge=0)] = Field(

@@ -71,6 +71,7 @@ class Placed(ObjectPredicate):
     """
 
     sentence = "{object} is placed[ on {on}][ at {pose}]"
+    synonyms = ("at_pose", "near", "object_pose", "resting")
     quantities = (SUPPORT, SPEED, TURNING, CONTACT, ATTACHED, POSITION, LEAN, ORIENTATION)
     is_proposed = True
     goes_with: ClassVar[Mapping[str, tuple[str, ...]]] = {"tolerance": ("pose",)}

@@ -83,7 +83,13 @@ def _unknown(
     problems: list[Problem],
 ) -> str | None:
     """Refuse a word; the valid one that it misspells, to go on as if the file said that."""
+    if kind == "verb" and (expected := _expectation_in(word, content)):
+        hint = f"write it below `expect:`, under this step or in column 1: `- {expected}: ...`"
+        problems.append(place.problem(f"`{word}` is no step", hint))
+        return None
     temporal = with_temporal_word(word) if kind == "predicate" else None
+    is_flag = isinstance(content.value, bool)
+    content = Located(None, content.place) if is_flag else content
     if temporal is not None:
         before, predicate = temporal
         hint = f"write `{before}: {_with_content(predicate, content)}`"
@@ -93,7 +99,7 @@ def _unknown(
             other = _with_content(PREDICATES[predicate].opposite, content).strip("{}")
             hint += f", which excludes it at every moment, or `{other}`"
         problems.append(place.problem(f"no predicate is called `{word}`", hint))
-        return predicate
+        return None if is_flag else predicate
     if word in EXPECTATIONS and kind == "predicate":
         message = f"`{word}` cannot stand inside a temporal word; a predicate can"
     elif word in ("do", "check"):
@@ -105,6 +111,15 @@ def _unknown(
     hints = plugin_hints(word, words, kind, is_misspelt=is_misspelt)
     problems.append(place.problem(message, "; ".join(hints)))
     return near if is_misspelt else None
+
+
+def _expectation_in(word: str, content: Located) -> str:
+    """The expectation that a word among the steps is, or has as its content; empty if neither."""
+    if word in EXPECTATIONS:
+        return word
+    inner = [*content.value] if isinstance(content.value, dict) else [content.value]
+    is_one = len(inner) == 1 and word in ("assert", "expect", "check", "verify", "require")
+    return next((each for each in inner if is_one and each in EXPECTATIONS), "")
 
 
 def _is_misspelt(word: str, near: str, content: Located, model: object) -> bool:

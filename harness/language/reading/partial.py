@@ -106,6 +106,8 @@ class PartialReader:
                     unreadable[name] = _UNREADABLE
                     at = (*loc, spelling(name, info))
                     value = self._value(annotation, data[keys[0]], at, is_needed)
+                    if value is ABSENT:  # what is called so lacks a part
+                        self.words.update(texts(data.get("name")))
                 values[name] = value
             elif is_needed:
                 unreadable[name] = _UNREADABLE

@@ -32,6 +32,7 @@ from harness.language.language import (
 )
 from harness.language.reading.names import UNTIL_USAGE, Words, take_apart, wrong_way_round
 from harness.language.reading.partial import PartialReader, texts
+from harness.language.reading.wording import on_one_line, written_under
 from harness.language.scenario import RobotSpec, Scenario
 from harness.language.step import STEPS, TAG, Step
 
@@ -168,7 +169,9 @@ class _Shaper:
         home = "" if near else _place_of(key, {each: keys_of(model)[each] for each in inside})
         known = did_you_mean(key, inside, "keys") if inside else "it has no keys"
         advice = model.unknown_key_hint(key, cast("dict[str, Any]", item.plain()))
-        hint = advice or "; ".join(filter(None, [home, known]))
+        field = keys_of(model).get(near or "")
+        nested = "" if field is None else _nested(key, near or "", item.mapping()[key].value, field)
+        hint = advice or nested or "; ".join(filter(None, [home, known]))
         self.problems.append(place.problem(message, hint))
         return near
 
@@ -176,8 +179,8 @@ class _Shaper:
         """A value under the key that was probably intended; its mistakes count for a slip alone."""
         count = len(self.problems)
         shaped = self.field(entry.value, keys_of(model)[near])
-        is_sure = is_slip(key, near) or key in SYNONYMS.get(near, ())
-        if key in model.not_yet or not is_sure:
+        is_meant = key in SYNONYMS.get(near, ()) and _can_be(entry.value, keys_of(model)[near])
+        if key in model.not_yet or not (is_slip(key, near) or is_meant):
             del self.problems[count:]
             self.guessed.update(_places(shaped))
         return Entry(entry.key, shaped)
@@ -260,9 +263,12 @@ class _Shaper:
 
     def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
         message = f"`{found.word}` takes a mapping, not {value_text(content.plain())}"
-        keys = [key for key in keys_of(model) if key not in (*KEYS_BY_VERB, *KEYS_BY_PREDICATE)]
+        outside = KEYS_BY_VERB if issubclass(model, Step) else KEYS_BY_PREDICATE
+        keys = [key for key in keys_of(model) if key not in outside]
         hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
+        hint = written_under(model, keys, content.plain()) or hint
         self.problems.append(content.place.problem(message, hint))
+        self.guessed.update(_places(Located(None, found.entry.key)))  # nothing is missing there
 
     def _put(self, entries: dict[str, Entry], key: str, entry: Entry) -> None:
         if key in entries:
@@ -270,6 +276,26 @@ class _Shaper:
             self.problems.append(entry.key.problem(f"`{key}` is here twice", first))
         else:
             entries[key] = entry
+
+
+def _nested(key: str, near: str, value: Located, field: FieldInfo) -> str:
+    """How to write a value under a key that takes a mapping: `position: [...]` of an object."""
+    models = [] if isinstance(value.value, dict) else _models_in(field.annotation)
+    inner = nearest(key, keys_of(models[0])) if models else None
+    written = on_one_line(value.plain())
+    if not inner or not written:
+        return ""
+    return f"did you mean `{near}`? write `{near}: {{{inner}: {written}}}`"
+
+
+def _can_be(item: Located, field: FieldInfo) -> bool:
+    """Whether a value is no number or text in place of a list, and no list in place of a model."""
+    kinds = [bare(each) for each in branches(bare(field.annotation)) or (field.annotation,)]
+    if isinstance(item.value, dict):
+        return True
+    if isinstance(item.value, list):
+        return not any(map(is_model, kinds))
+    return not any(is_model(kind) or get_origin(kind) in (tuple, list, dict) for kind in kinds)
 
 
 def _place_of(key: str, siblings: Mapping[str, FieldInfo]) -> str:
@@ -308,11 +334,18 @@ def expanded(item: Located, model: type[SpecModel]) -> Located:
         items_are_models = model.short_is_list and _list_of_models(model)
         if not items_are_models or model.short in item.value or not item.value:
             return item
-    elif not model.short or item.value is None:
+    elif not model.short or item.value is None or _is_no_name(item.value, model):
         return item
     if model.short_is_list and not isinstance(item.value, list):
         item = Located([item], item.place)
     return Located({model.short: Entry(item.place, item)}, item.place)
+
+
+def _is_no_name(value: object, model: type[SpecModel]) -> bool:
+    """Whether a bare value cannot be the name that a model's short form takes."""
+    if isinstance(value, str) or bare(keys_of(model)[model.short].annotation) is not str:
+        return False
+    return isinstance(value, list) or bool(written_under(model, keys_of(model), value))
 
 
 def course_words(robot: Located) -> Located:

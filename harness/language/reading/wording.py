@@ -137,17 +137,22 @@ def _mapping(error: ErrorDetails, context: dict[str, Any], value: str) -> tuple[
     name = context.get("class_name")
     given: object = error["input"]
     values = cast("list[object]", given) if isinstance(given, list) else []
-    if name is None and values and (first := _flow(values[0])):
+    if name is None and values and (first := on_one_line(values[0])):
         return message, f"write a name before each value: `{{NAME: {first}, ...}}`"
     models = [model for model in _models(SpecModel) if model.__name__ == name]
     if len(models) != 1 or error["input"] is None:
         return message, ""
-    keys = {field.alias or key: key for key, field in models[0].model_fields.items()}
-    fitting = [key for key in keys if _fits(models[0], {key: error["input"]})]
-    written = _flow(error["input"])
-    if fitting and written:
-        return message, "write " + " or ".join(f"`{{{key}: {written}}}`" for key in fitting[:3])
-    return message, f"keys: {', '.join(keys)}"
+    keys = [field.alias or key for key, field in models[0].model_fields.items()]
+    return message, written_under(models[0], keys, error["input"]) or f"keys: {', '.join(keys)}"
+
+
+def written_under(model: type[SpecModel], keys: Iterable[str], value: object) -> str:
+    """How to write a bare value as a mapping, by the keys that it fits; empty if none is known."""
+    written = on_one_line(value)
+    fitting = [key for key in keys if _fits(model, {key: value})] if written else []
+    return (
+        f"write {' or '.join(f'`{{{key}: {written}}}`' for key in fitting[:3])}" if fitting else ""
+    )
 
 
 def _models(base: type[SpecModel]) -> Iterator[type[SpecModel]]:
@@ -171,18 +176,20 @@ def _list(error: ErrorDetails, _: dict[str, Any], value: str) -> tuple[str, str]
     if isinstance(given, dict):
         axes = cast("dict[str, object]", given)
         if list(axes) in (["x", "y", "z"], ["x", "y", "z", "w"], ["roll", "pitch", "yaw"]):
-            return message, f"write `{_flow(list(axes.values()))}`"
+            return message, f"write `{on_one_line(list(axes.values()))}`"
         return message, "begin every item with `- `"
     items = re.split(r"[\s,;]+", given.strip()) if isinstance(given, str) else []
     is_numbers = len(items) > 1 and all(re.fullmatch(r"[-+.\de]+", item) for item in items)
-    written = ", ".join(items) if is_numbers else _flow(given)
+    written = ", ".join(items) if is_numbers else on_one_line(given)
+    if error["type"] == "tuple_type" and re.match(r"[-+.]?\d", written) and not is_numbers:
+        written += ", ..."  # lists of numbers have several items
     return message, f"write `[{written}]`" if written else ""
 
 
-def _flow(value: object) -> str:
+def on_one_line(value: object) -> str:
     """A value on one line of YAML; empty for what is long or has parts of its own."""
     if isinstance(value, list):
-        items = [_flow(item) for item in cast("list[object]", value)]
+        items = [on_one_line(item) for item in cast("list[object]", value)]
         text = f"[{', '.join(items)}]" if items and all(items) else ""
     else:
         text = str(value) if isinstance(value, str | int | float) else ""

@@ -45,6 +45,7 @@ class CartesianPath(Step):
     """
 
     verb: ClassVar[str] = "cartesian_path"
+    synonyms = ("follow_path", "follow_trajectory", "compute_cartesian_path")
     moves_arm: ClassVar[bool] = True
     has_corners: ClassVar[bool] = True
 
