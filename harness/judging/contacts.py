@@ -136,11 +136,12 @@ def attached(run: Run, name: str) -> BoolArray:
 
 
 def welded(run: Run, name: str) -> BoolArray:
-    """Samples at which a grasp with `mode: weld` has an object fixed to the hand, shape (N,)."""
-    times = run.signals.times
+    """Samples at which a grasp with `mode: weld` has an object fixed to a hand, shape (N,)."""
+    times, links = run.signals.times, own_links(run.robot)
     mask = np.zeros(len(times), dtype=bool)
     for record in run.attachments:
-        if name in (record.object, record.represents) and record.welded:
+        is_own = name in (record.object, record.represents) and record.link in links
+        if is_own and record.welded:
             begin, end = record.welded
             mask |= (times >= begin) & (times < end)
     return mask

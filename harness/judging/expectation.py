@@ -192,8 +192,10 @@ class Predicate(Expectation, PredicateFields):
         if terms.word == "at_end" and here is not None and here.any() and not here[-1]:
             raise NotReached("what it is about was not there any more at the end")
         answer = decide(terms, window, margins)
-        if answer.status == "passed" and terms.word == "at_end" and (why := self.unchanged(window)):
-            return replace(answer, warnings=(VerdictWarning(ALREADY_TRUE, why),))
+        if answer.status == "passed" and terms.word == "at_end":
+            of_its_arm = replace(window, run=of_arm(run, self.arm_in(window)))
+            if why := self.unchanged(of_its_arm):
+                return replace(answer, warnings=(VerdictWarning(ALREADY_TRUE, why),))
         return answer
 
     def terms(self, step: str) -> Terms:

@@ -316,9 +316,9 @@ def raised_by_hand(run: Run, name: str, held: BoolArray) -> FloatArray:
     return raised
 
 
-def weld_note(run: Run, name: str) -> str:
-    """The note in a verdict about an object that a grasp with `mode: weld` fixes in the physics."""
-    return "; welded to the hand by `mode: weld`" if welded(run, name).any() else ""
+def weld_note(run: Run, name: str, sample: int) -> str:
+    """The note in a verdict about an object that a grasp with `mode: weld` fixes at a sample."""
+    return "; welded to the hand by `mode: weld`" if welded(run, name)[sample] else ""
 
 
 def gripped(run: Run, name: str) -> BoolArray:

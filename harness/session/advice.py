@@ -22,11 +22,14 @@ def advice(failure: StepFailed, cell: Cell) -> str:
     if failure.details.find(Explanation) is not None:
         return ""
     if is_grasp:
-        return (
+        start = (
             "bring the TCP to the object first (a `move_to` above it, then `lin`), or give `pick`"
-            f" another `grasp_pose`; the pads of the closed gripper are {1e3 * least_gap(cell):.1f}"
-            " mm apart, and hold nothing thinner"
+            " another `grasp_pose`; "
         )
+        if cell.gripper.cups:
+            return start + "every cup needs a face under the whole of its rim"
+        gap = f"{1e3 * least_gap(cell):.1f} mm"
+        return f"{start}the pads of the closed gripper are {gap} apart, and hold nothing thinner"
     if control is not None:
         return _about_contacts(control, cell)
     if failure.details.find(UnrestFailure) is not None:

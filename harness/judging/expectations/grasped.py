@@ -125,7 +125,7 @@ class Grasped(ArmPredicate, ObjectPredicate):
                 if measure.name == HELD.name and measure.value < measure.limit:
                     pressed, least = amounts(measure.value, HOLD_TIME, "s")
                     brief = f"; pressed for {pressed} so far, a grasp takes {least}"
-                return f"{forces}; {drift}{brief}{weld_note(run, name)}"
+                return f"{forces}; {drift}{brief}{weld_note(run, name, window.start + index)}"
             sample = window.start + index
             where = _where_pressed(run, name, sample)
             belief = _planners_belief(run, name, sample)

@@ -127,7 +127,7 @@ class Lifted(ArmPredicate, ObjectPredicate):
             text = (
                 f"{name} rose {rose}, but {why}: {pressed}" if why else f"lifted {rose}: {pressed}"
             )
-            text += weld_note(run, name)
+            text += weld_note(run, name, sample)
             if not record.in_simulation:
                 text += f"; {name} is not in the physics"
             measures = [measured(HEIGHT, gained, self.above, ">=", time, name), *more]

@@ -37,15 +37,16 @@ class Released(ArmPredicate, ObjectPredicate):
         name = self.object
         parts = released_parts(window, name)
         force, hold = (part.values for part in parts)
+        who = window.run.robot.selected_arm or "the robot"
 
         def text(index: int, _: Measure) -> str:
             belief = "attached in the planning scene" if hold[index] else "not attached"
             touch = f"touches {name} with {amount(float(force[index]), 'N')}"
-            return f"the robot {touch if force[index] else f'does not touch {name}'}; {belief}"
+            return f"{who} {touch if force[index] else f'does not touch {name}'}; {belief}"
 
         return all_of(window, parts, text, present=window.cut(present(window.run, name)))
 
     def unchanged(self, window: Window) -> str:
         if was_in_robot(window.run, self.object, slice(window.stop)):
             return ""
-        return f"the robot never touched {self.object}"
+        return f"{window.run.robot.selected_arm or 'the robot'} never touched {self.object}"

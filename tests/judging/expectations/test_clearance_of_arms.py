@@ -1,11 +1,17 @@
 """`clearance` by the names of arms: between two of them, and of one to objects."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from harness.judging.contacts import was_in_robot, welded
 from harness.judging.expectations.clearance import Clearance
 from harness.judging.expectations.collision import Collision
 from harness.judging.expectations.in_contact import InContact
+from harness.judging.expectations.released import Released
+from harness.judging.hands import of_arm
+from harness.judging.hold import weld_note
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from tests.steps.test_several_arms import PAIR, box
@@ -88,3 +94,25 @@ def test_no_object_may_have_the_name_of_an_arm(tmp_path):
     path.write_text(f"scenario: a test\n{PAIR}{objects}steps:\n  - wait: 1\n", encoding="utf-8")
     [problem] = check_file(path).problems
     assert problem.message == "'left' is the name of an arm"
+
+
+def test_what_an_arm_let_go_says_nothing_of_the_arm_that_never_had_it(run):
+    late = slice(len(run.signals.times) - 1, None)
+    assert was_in_robot(run, "a", late)
+    verdict = Released(object="a", by="right").verdict(run, "")
+    assert verdict.status == "passed"
+    assert "right does not touch a" in verdict.reason
+    assert [each.message for each in verdict.warnings] == ["right never touched a"]
+    assert Released(object="a", by="left").verdict(run, "").status == "failed"
+
+
+def test_a_weld_to_one_hand_is_none_to_the_other(run):
+    [record] = run.attachments
+    begin, end = float(run.signals.times[-200]), float(run.signals.times[-100])
+    run = replace(run, attachments=(replace(record, welded=(begin, end)),))
+    assert welded(run, "a").sum() == 100
+    assert welded(of_arm(run, "left"), "a").sum() == 100
+    assert not welded(of_arm(run, "right"), "a").any()
+    assert weld_note(run, "a", -150)
+    assert not weld_note(run, "a", -50)
+    assert not weld_note(of_arm(run, "right"), "a", -150)

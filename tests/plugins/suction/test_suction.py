@@ -51,6 +51,7 @@ def test_a_rim_over_an_edge_says_how_much_of_it_touches(tmp_path):
     assert "no suction cup holds 'plate': cup: 2 of 4 quarters of the rim touch" in (
         result.steps[0].message
     )
+    assert "every cup needs a face under the whole of its rim" in result.steps[0].explanation[-1]
     result = run(tmp_path, ["gripper: on", "wait: 0.2"], "  - grasped: plate\n", x=0.04)
     [verdict] = result.verdicts
     assert verdict.status == "failed"
