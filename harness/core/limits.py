@@ -19,6 +19,8 @@ YAML_LEVELS = 50  # of lists and mappings inside each other
 XML_FILE = 16 * MB  # the largest robot descriptions are under 1 MB
 XML_ELEMENTS = 200_000  # of one file
 XML_ATTRIBUTES = 200  # of one element; MuJoCo's reader takes hours for a million
+LONGEST_NAME = 100  # characters of a link, joint, group or object
+
 XML_LEVELS = 200  # of elements inside each other
 
 XACRO_FILES = 64 * MB  # of all files of a rendering

@@ -18,6 +18,7 @@ from pydantic import (
     model_validator,
 )
 
+from harness.core.limits import LONGEST_NAME
 from harness.language.colors import color_of_name
 from harness.language.files.mistakes import MistakeError
 from harness.language.units import quantity
@@ -183,7 +184,7 @@ def kind_of(value: Any) -> str:
     return "many" if isinstance(value, dict | list | tuple | BaseModel) else "one"
 
 
-Name = Annotated[str, Field(min_length=1, max_length=100)]
+Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
 
 
 def _ros_name(name: str) -> str:

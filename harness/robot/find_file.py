@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -30,6 +31,8 @@ def find_file(name: str, key: str, base_dir: Path, given: Sequence[Path]) -> Pat
         return path
     path = base_dir / expanded(name)
     if not is_file(path):
+        if os.path.lexists(path):  # a folder, a pipe, or links in a circle
+            raise RobotOptionError(key, f"{path} is no file that can be read")
         near = difflib.get_close_matches(path.name, _names(path.parent), 1)
         hint = f"; did you mean '{near[0]}'?" if near else ""
         raise RobotOptionError(key, f"there is no file {path}{hint}")

@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 from harness.core.errors import Problem, SpecError
 from harness.core.inputs import read_input
-from harness.core.limits import XML_ATTRIBUTES, XML_ELEMENTS, XML_FILE, XML_LEVELS
+from harness.core.limits import LONGEST_NAME, XML_ATTRIBUTES, XML_ELEMENTS, XML_FILE, XML_LEVELS
 from harness.language.files.source import Place, Source
 
 QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")
@@ -62,6 +62,13 @@ class XmlElement:
         if name not in self.attributes:
             self.refuse(f"<{self.tag}> lacks its attribute '{name}'")
         return self.attributes[name]
+
+    def name(self) -> str:
+        """Its `name`, which must be there and of a length that every file can hold."""
+        name = self.need("name")
+        if len(name) > LONGEST_NAME:
+            self.refuse(f"a name has at most {LONGEST_NAME} characters, this one {len(name)}")
+        return name
 
     def problem(self, message: str, hint: str = "", *, at: str = "") -> Problem:
         """A mistake at the element, or at the value of its attribute `at`."""
@@ -169,6 +176,10 @@ class _Reader:
             reason = expat.errors.messages.get(error.code, "")
             message = f"not well-formed XML: {reason or expat.ErrorString(error.code)}"
             raise SpecError([place.problem(message, self._still_open())]) from error
+        except (LookupError, ValueError) as error:  # the encoding that it declares
+            raise SpecError(
+                [Place(self._quoted(), 1, 1).problem(str(error), "write the file in UTF-8")]
+            ) from error
         assert self._root is not None
         return self._root
 

@@ -111,7 +111,7 @@ def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
         tuple(_group(item) for item in root.findall("group")),
         tuple(
             NamedState(
-                item.need("name"),
+                item.name(),
                 item.get("group"),
                 {
                     joint.need("name"): bounded_number(joint, "value")
@@ -164,7 +164,7 @@ def has_several_values(joint: XmlElement) -> bool:
 
 def _group(item: XmlElement) -> SrdfGroup:
     return SrdfGroup(
-        item.need("name"),
+        item.name(),
         tuple(joint.need("name") for joint in item.findall("joint")),
         tuple(link.need("name") for link in item.findall("link")),
         tuple((c.need("base_link"), c.need("tip_link")) for c in item.findall("chain")),

@@ -77,7 +77,7 @@ def read_joint(element: XmlElement) -> Joint:
     Raises:
         SpecError: It has a mistake.
     """
-    name = element.need("name")
+    name = element.name()
     kind = _kind(element, name)
     parent, child = element.find("parent"), element.find("child")
     if parent is None or child is None:

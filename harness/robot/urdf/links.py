@@ -94,7 +94,7 @@ class LinkReader:
         Raises:
             SpecError: It has a mistake.
         """
-        name = element.need("name")
+        name = element.name()
         inertial = element.find("inertial")
         shape = partial(self._shape, link=name)
         visuals = collected(shape, element.findall("visual"))
