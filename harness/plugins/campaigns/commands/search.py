@@ -124,7 +124,10 @@ def _search(arguments: argparse.Namespace) -> tuple[SearchResult, Written, int]:
 
 
 class _Progress:
-    """The status line of a search: what it does, and how many runs it has made."""
+    """The status line of a search: what it does, and how many runs it has made.
+
+    In a pipe or a file, stages and runs that fail are lines on standard error: a search takes long.
+    """
 
     def __init__(self, runs: int) -> None:
         self._runs = runs
@@ -135,14 +138,24 @@ class _Progress:
 
     def stage(self, text: str) -> None:
         """Show what the search does next."""
+        if text != self._stage:
+            self._log(f"{text}: {self._done} of {self._runs} runs, {self._failed} failed")
         self._stage = text
         self._show()
 
     def run(self, number: int, result: CaseResult) -> None:
         """Count a run."""
         self._done = number
+        from harness.reporting.suite.cause import cause_of
+
         self._failed += result.outcome != "passed"
+        if (cause := cause_of(result)) is not None:
+            self._log(f"run {number} {result.outcome}: {cause.text}")
         self._show()
+
+    def _log(self, text: str) -> None:
+        if not sys.stdout.isatty():
+            complain(text)
 
     def _show(self) -> None:
         failed = f"; {self._failed} failed" if self._failed else ""

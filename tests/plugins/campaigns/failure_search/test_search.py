@@ -91,7 +91,9 @@ def test_every_kind_of_failure_is_shrunk_to_the_parameter_that_causes_it(tmp_pat
     assert set(causes) == {("x",), ("y",)}
     assert causes[("x",)]["x"] == pytest.approx(0.3, abs=0.005)
     assert causes[("y",)]["y"] == pytest.approx(-0.4, abs=0.005)
-    printed = capsys.readouterr().out
+    printed, log = capsys.readouterr()
+    assert "searching: " in log, "a search that is not watched on a terminal says what it does"
+    assert "failed: " in log
     headings = re.findall(r"FAILED in \d+ runs?: (.*) \(line (\d+)\)", printed)
     assert {*headings} == {
         ("failed: formula always (x(ball) < 0.3)", "9"),
