@@ -9,6 +9,8 @@ from harness.core.errors import Problem
 from harness.reporting.result import CaseResult
 from harness.reporting.terminal import root_failures
 
+LONGEST = 160  # characters of a message by which failures are grouped: a line of the page
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -71,4 +73,4 @@ def short_problem(problem: Problem) -> str:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= 80 else f"{text[:79]}…"
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"

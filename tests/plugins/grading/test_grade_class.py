@@ -83,6 +83,14 @@ def test_students_see_margins_of_hidden_cases_and_not_the_cases(graded):
     assert not (graded / "hidden/perfect").exists()
 
 
+def test_the_page_of_the_class_shows_how_points_are_distributed(graded):
+    text = (graded / "index.html").read_text()
+    parts = re.findall(r'class="hidden">([\d.]+) to ([\d.]+) points: (\d+) submission', text)
+    assert len(parts) == 10
+    counted = {low: int(count) for low, _, count in parts if count != "0"}
+    assert counted == {"0": 3, "1.8": 1, "3.6": 1, "5.4": 1}
+
+
 def test_the_page_of_the_class_shows_what_cost_most_and_what_only_hidden_cases_show(graded):
     text = (graded / "index.html").read_text()
     order = [text.index(f">{name} <span") for name in (EXERCISE, "the arm was up")]

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import base64
 import os
+from collections import Counter
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from urllib.parse import quote
 
@@ -21,6 +23,9 @@ FOLDER = Path(__file__).with_name("page")
 PAGE = "index.html"
 MOST_PICTURES = 4
 LARGEST_PICTURE = 10**6  # [bytes]
+TENTHS = 10
+ROUNDING = 1e-9  # of a tenth: sums of points such as 0.1 + 0.2 belong to the tenth they begin
+FEWEST_DRAWN = 5  # submissions; the points of fewer are read from the table
 
 PROTECTS = {
     "user": "Each program ran as a user of its own, in a copy of its submission: it can change"
@@ -84,6 +89,17 @@ def losses(grade: ClassGrade) -> list[Loss]:
     return sorted(found, key=lambda each: -each.lost)
 
 
+def distribution(grade: ClassGrade) -> list[tuple[float, float, int]]:
+    """The lower and upper end of each tenth of the points, and its number of submissions."""
+    points = sum(each.points for each in grade.criteria)
+    ends = [points * tenth / TENTHS for tenth in range(TENTHS + 1)]
+    counts = Counter(
+        min(TENTHS - 1, int(TENTHS * each.earned / points + ROUNDING)) if points else TENTHS - 1
+        for each in grade.students
+    )
+    return [(low, high, counts[place]) for place, (low, high) in enumerate(pairwise(ends))]
+
+
 def _class_html(grade: ClassGrade, folder: Path) -> str:
     students, cases = grade.students, len(grade.assignment.model.hidden)
     links = {
@@ -103,6 +119,7 @@ def _class_html(grade: ClassGrade, folder: Path) -> str:
         mean=sum(each.earned for each in students) / len(students),
         full=sum(each.is_full for each in students),
         losses=losses(grade),
+        distribution=distribution(grade) if len(students) >= FEWEST_DRAWN else [],
         cases=cases,
         tables=TABLES,
         protects=PROTECTS[grade.confinement],
