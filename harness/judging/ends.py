@@ -6,7 +6,8 @@ import math
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
-from harness.judging.expectation import Expectation
+from harness.judging.contacts import was_in_robot
+from harness.judging.expectation import Expectation, Predicate
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation, as_expectation, check_expectation
 from harness.language.expectation import ExpectationFields
@@ -30,7 +31,12 @@ def check_end(until: ExpectationFields, at: At) -> None:
 
 
 def holds_now(
-    until: ExpectationFields, cell: Cell, simulator: RecordingSimulator, *, since: tuple[float, int]
+    until: ExpectationFields,
+    cell: Cell,
+    simulator: RecordingSimulator,
+    *,
+    since: tuple[float, int],
+    looked: int = 0,
 ) -> bool:
     """Whether an expectation passes that ends the current step.
 
@@ -39,12 +45,22 @@ def holds_now(
         cell: The cell in which the step runs.
         simulator: The simulator of the cell, whose record is read.
         since: Time [s] and sample at which the step began.
+        looked: The last sample at which it was found not to hold; 0 before the first look.
     """
     current, (begin, first) = cell.current, since
     placed = PlacedExpectation.of(until, current.id, current.line)
+    if looked and _lacks_touch(placed.spec, _run_from(looked, (), cell, simulator)):
+        return False
     skipped = _not_read(placed.spec, first, simulator.timestep)
     times = begin, simulator.time, first - skipped, simulator.sample_count - skipped
     step = StepRecord(current.id, current.path, "", "", current.line, "passed", *times)
+    return judge(_run_from(skipped, (step,), cell, simulator), [placed])[0].status == "passed"
+
+
+def _run_from(
+    first: int, steps: tuple[StepRecord, ...], cell: Cell, simulator: RecordingSimulator
+) -> Run:
+    """What the simulator has recorded from a sample on."""
     objects = (
         ObjectRecord.of(
             presence.obj,
@@ -53,7 +69,7 @@ def holds_now(
         )
         for presence in cell.presence.values()
     )
-    run = Run(
+    return Run(
         scenario="",
         file="",
         case="",
@@ -61,11 +77,18 @@ def holds_now(
         robot=cell.description,
         objects=tuple(objects),
         attachments=tuple(cell.attachments),
-        steps=(step,),
-        signals=simulator.finish(skipped),
+        steps=steps,
+        signals=simulator.finish(first),
         unrecorded=("clearances", "planned_clearances"),
     )
-    return judge(run, [placed])[0].status == "passed"
+
+
+def _lacks_touch(spec: Expectation, run: Run) -> bool:
+    """Whether an expectation that needs the robot's touch cannot hold at a sample of a run."""
+    name = getattr(spec, "object", None)
+    if not isinstance(spec, Predicate) or not spec.needs_touch or spec.during or name is None:
+        return False
+    return not was_in_robot(run, str(name), slice(None))
 
 
 def _not_read(spec: Expectation, first: int, timestep: float) -> int:

@@ -127,11 +127,13 @@ class Predicate(Expectation, PredicateFields):
         is_opposed: Whether its measures show its violation: contacts of a collision.
         is_change: Whether it holds because something changed since the run began, so that a window
             in which it holds from the first sample on shows nothing of the change.
+        needs_touch: Whether it holds only at samples at which the robot touches its `object`.
     """
 
     word: ClassVar[str] = ""
     is_opposed: ClassVar[bool] = False
     is_change: ClassVar[bool] = False
+    needs_touch: ClassVar[bool] = False
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:

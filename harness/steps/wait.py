@@ -73,7 +73,9 @@ class Wait(Step):
             return  # without physics it holds at once
         timeout = self.timeout or DEFAULT_TIMEOUT
         since = begin, _ = simulator.time, simulator.sample_count - 1
-        while not holds_now(self.until, cell, simulator, since=since):
+        looked = 0
+        while not holds_now(self.until, cell, simulator, since=since, looked=looked):
+            looked = simulator.sample_count - 1
             elapsed = simulator.time - begin
             left = timeout - elapsed
             if left < simulator.timestep / 2:

@@ -15,7 +15,9 @@ from harness.judging.expectations.upright import Upright
 from harness.judging.judge import judge
 from harness.judging.placed import PlacedExpectation
 from harness.recording.read_run import read_run
+from harness.simulation.mujoco_simulator import MujocoSimulator
 from tests.judging.expectations.test_clearance_of_arms import TOWARDS
+from tests.running import run_case
 
 
 @pytest.fixture
@@ -68,3 +70,33 @@ def test_the_verdict_of_a_late_step_needs_no_more(spec, run):
 
 def test_what_may_read_everything_says_so():
     assert Lifted(object="a").looks_back() is None
+
+
+@pytest.mark.parametrize("word", ["grasped", "lifted"])
+def test_a_wait_for_what_needs_a_touch_reads_what_is_new_while_nothing_touches(
+    word, tmp_path, monkeypatch
+):
+    read, finish = [], MujocoSimulator.finish
+    monkeypatch.setattr(
+        MujocoSimulator,
+        "finish",
+        lambda self, first=0: (read.append(first), finish(self, first))[1],
+    )
+    path = tmp_path / "wait.scenario.yaml"
+    path.write_text(
+        f"""
+scenario: nothing touches
+robot: {{model: open_manipulator_x}}
+objects: [{{name: box, box: {{size: [3 cm, 3 cm, 5 cm]}}, pose: {{xyz: [0.2, 0, 0.025]}}}}]
+steps:
+  - wait: 0.5
+  - wait: {{until: {{{word}: box}}, timeout: 0.5}}
+    expect_error: TIMED_OUT
+""",
+        encoding="utf-8",
+    )
+    assert run_case(path).outcome == "passed"
+    looks = read[:-1]  # the last one is of the whole run
+    assert len(looks) > 10
+    assert looks[0] == 0
+    assert all(first > 450 for first in looks[1:]), "samples of 1 ms before the wait"

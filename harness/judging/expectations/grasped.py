@@ -62,6 +62,7 @@ class Grasped(ArmPredicate, ObjectPredicate):
     is_proposed = True
     synonyms = ("held", "holding", "picked", "gripped")
     opposite = "released"
+    needs_touch = True
 
     min_force: Annotated[Force, Field(ge=0)] = Field(
         default=0.05, description="The smallest force on each side [N]."

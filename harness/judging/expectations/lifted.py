@@ -72,6 +72,7 @@ class Lifted(ArmPredicate, ObjectPredicate):
     sentence = "{object} is lifted[ by at least {above}]"
     quantities = (HEIGHT, FINGERS, OTHERS, HELD, CARRIED, MOTION)
     is_change = True
+    needs_touch = True
 
     above: PositiveLength = Field(
         default=0.01, description="The height of its lowest point above that at its own start [m]."

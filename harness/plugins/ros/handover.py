@@ -43,6 +43,7 @@ class HandOver(ABC):
         self.cell = ExternalCell(simulator, prepared.program.controllers)
         self.robot = prepared.program.description
         self.scene: ClientScene | None = None
+        self._looked = 0
 
     @property
     def commands(self) -> tuple[CommandRecord, ...]:
@@ -99,7 +100,9 @@ class HandOver(ABC):
         until, cell = request.until, request.cell
         if not isinstance(until, ExpectationFields) or not isinstance(cell, Cell):
             return False
-        return holds_now(until, cell, self.simulator, since=(begin, first))
+        looked, self._looked = self._looked, self.simulator.sample_count - 1
+        looked = looked if looked > first else 0  # of an earlier step
+        return holds_now(until, cell, self.simulator, since=(begin, first), looked=looked)
 
 
 def _end_text(end: CommandRecord) -> str:
