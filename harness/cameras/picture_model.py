@@ -16,7 +16,7 @@ from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.robot.description import RobotDescription
 
-SOLID_GROUP = 0
+SOLID_GROUP = 0  # group of MuJoCo's geoms that a renderer shows or hides
 TRANSLUCENT_GROUP = 1
 FLOOR_GROUP = 2
 FLOOR, EYE = "floor", "eye"

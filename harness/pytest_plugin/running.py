@@ -38,7 +38,7 @@ from harness.suite.request import SuiteRequest
 from harness.suite.sampling import Sampling
 from harness.suite.warm import ServerStartError
 
-LISTED_SAMPLES = 3
+LISTED_SAMPLES = 3  # in full in pytest's output; the rest is counted
 CLEANED = pytest.StashKey[bool]()
 
 

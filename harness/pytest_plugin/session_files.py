@@ -19,7 +19,7 @@ from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.suite.outcome import EXIT_CODES
 
 CACHED = "armharness/margins"
-MOST_LINES = 5
+MOST_LINES = 5  # of changed margins below a session; the rest is counted
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ MANIFEST = "package.xml"
 DEEPEST = 4  # levels of folders in which packages are sought
 HIGHEST = 3
 """Levels above a robot's file at which a folder of a package's name is taken as the package."""
-MOST_FOLDERS = 5_000
+MOST_FOLDERS = 5_000  # below a path; more is no collection of packages
 DESCRIPTIONS = ("urdf", "xacro", "robots")  # Usual folders of the descriptions in a package
 
 LARGEST_MANIFEST = 200_000  # [bytes] of a package.xml that is read

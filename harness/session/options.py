@@ -16,7 +16,7 @@ parameters."""
 
 DEFAULT_SCALING = 0.3  # of the joint limits: the course's default plan request
 DEFAULT_PADDING = 0.002  # [m]
-DEFAULT_STATE_CHECKS = 2_000_000
+DEFAULT_STATE_CHECKS = 2_000_000  # of one search, as long as tens of seconds
 
 
 def merged_options(

@@ -51,7 +51,7 @@ from harness.steps._approach import (
 from harness.steps._tracker import check_track, tracker
 from harness.steps.release import Release, refuse_other_holder
 
-REFINEMENTS = 4
+REFINEMENTS = 4  # rounds in which a pose and the joints that reach it settle
 PUT_DOWN_GAP = 0.001  # [m] above the target, so that the support is touched when the fingers open
 DEEPEST_OPENING = 0.002  # [m], of the opening gripper; deeper, nothing is put down
 TURNS_OF_ROUND = 8  # tried about the vertical of what is round

@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from harness.recording.run import Outcome
 
 EXIT_CODES: dict[Outcome, int] = {"passed": 0, "failed": 1, "invalid": 2, "error": 3}
-USAGE_EXIT_CODE = 2
-INTERRUPTED_EXIT_CODE = 130
+USAGE_EXIT_CODE = 2  # as argparse's
+INTERRUPTED_EXIT_CODE = 130  # 128 and SIGINT, as shells have it
 
 
 def exit_code(outcomes: Iterable[Outcome]) -> int:

@@ -30,8 +30,8 @@ import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
-FRAME_BYTES = 8
-FDS_PER_JOB = 2
+FRAME_BYTES = 8  # of a message's length in front of it
+FDS_PER_JOB = 2  # a pipe for messages and a file for what is printed
 
 
 def main() -> None:

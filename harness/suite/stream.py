@@ -34,7 +34,7 @@ LEFT_OUT = "armharness-left-out/1"
 INPUTS = "armharness-inputs/1"
 CHECK = ',"check":"'  # how the end of a line begins that has the checksum of the text before it
 
-CHECK_DIGITS = 16
+CHECK_DIGITS = 16  # hexadecimal, of a SHA-256: 64 bits show damage
 FILE = "results.jsonl"
 
 

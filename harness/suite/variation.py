@@ -22,7 +22,7 @@ from harness.suite.distribution import Distribution, read_distribution
 if TYPE_CHECKING:
     from harness.language.variation import CaseKeys
 
-LONGEST_NAME = 60
+LONGEST_NAME = 60  # [characters] of a value in a case's name
 
 
 @dataclass(frozen=True)

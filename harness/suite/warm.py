@@ -45,8 +45,8 @@ REPORT_MODULES = (
 )
 """What a report needs besides; a single case imports it after its outcome is known."""
 
-STOP_SECONDS = 5.0
-LOG_TAIL_BYTES = 4000
+STOP_SECONDS = 5.0  # of wall time until a server that does not end is killed
+LOG_TAIL_BYTES = 4000  # a screen of what a process printed last
 
 
 class ServerStartError(HarnessError):

@@ -21,8 +21,8 @@ from harness.robot.description import RobotDescription
 from harness.robot.mechanism import Joint
 from harness.robot.random_positions import sample_robot_positions
 
-KINEMATIC_SAMPLES = 20
-IK_SAMPLES = 100
+KINEMATIC_SAMPLES = 20  # random configurations in which the libraries must agree
+IK_SAMPLES = 100  # random reachable poses: a share in percent
 OnProgress = Callable[[str, int, int], None]  # the check, its parts that are done, all parts
 ALONG_AN_AXIS = math.cos(math.radians(5))  # least cosine of a direction with an axis
 

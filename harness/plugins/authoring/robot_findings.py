@@ -23,10 +23,10 @@ from harness.robot.solids import box_corners, coal_geometry
 
 AGREEMENT = 1e-9  # [m], of the two libraries, and in parts of a quaternion and of the mass
 
-ENOUGH_SOLVED = 0.9
+ENOUGH_SOLVED = 0.9  # share of reachable poses; less is reported
 TOO_OFTEN = 0.9  # share of colliding configurations of a wrong, not a crowded, description
 
-PLACEHOLDER_EFFORT = 1000.0
+PLACEHOLDER_EFFORT = 1000.0  # [N or N m], which exporters write where they know none
 MOST_TURNS = 10  # Turns of a revolute joint from which its limits are in degrees in all likelihood
 SHOWN_EXCESS = 5e-5  # [m], of a mesh's collision shapes that is said of each mesh
 LARGEST_LINK = 10.0  # Length of a shape from which it is in millimetres in all likelihood [m]

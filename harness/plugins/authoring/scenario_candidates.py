@@ -41,7 +41,7 @@ arm holds a light box still, and the lightest boxes turn when fingers push them.
 SLIDING = 0.3  # friction of a box that a jaw pushes to the palm; with more it jams on the stand
 GRAVITY = 9.81  # [m/s^2]
 GAP_STEP = 1e-3  # [m], of the gap between pads over which a transmission is measured
-MOTIONS = 10
+MOTIONS = 10  # random joint goals of a generated test
 
 MARGIN = 0.02  # Distance of joint goals from the limits, as a share of the range
 DIGITS = 4  # Decimals of joint positions in the file

@@ -14,7 +14,7 @@ from harness.core.errors import Problem, SpecError
 from harness.plugins.ros.rtps.sockets import NetworkError
 
 VARIABLE = "ROS_DOMAIN_ID"
-MOST_DOMAINS = 232
+MOST_DOMAINS = 232  # the highest whose ports are below 65536
 CHOICES = range(20, 101)  # their ports are below those that Linux gives to clients
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from harness.core.types import FloatArray, IntArray
 
 Array = np.ndarray[Any, Any]
-ALIGNMENT = 8
+ALIGNMENT = 8  # [bytes], of an array of doubles in the page's data
 LEVEL = 7  # deflate level: 9 takes twice as long and saves a hundredth
 
 
@@ -65,7 +65,7 @@ def zigzag(values: Array) -> Array:
     return coded.astype(np.uint32 if len(coded) and coded.max() > 0xFFFF else np.uint16)
 
 
-MISSING = 65535
+MISSING = 65535  # the largest number of 16 bits, in place of NaN
 LARGEST = MISSING - 1
 
 

@@ -15,8 +15,8 @@ from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.reporting.html.packing import Packer
 
-TCP_POINTS = 1500
-PLAN_POINTS = 150
+TCP_POINTS = 1500  # of a drawn path: as many as a page has pixels across
+PLAN_POINTS = 150  # of a planned path, which bends at few places
 
 
 def pack_tcp_path(run: Run, packer: Packer) -> None:

@@ -15,9 +15,9 @@ KINDS = {"color": "", "depth_preview": "depth", "segmentation_preview": "segment
 """Kinds of files that can be looked at, and how the page calls them."""
 WIDEST_VIDEO = 320  # [pixels], in the page; the file in the folder has the camera's size
 LARGEST_VIDEO = 1_500_000  # a larger one stays in the run's folder [bytes]
-MOST_IMAGES = 40
+MOST_IMAGES = 40  # of a camera in the page, each of about 30 kB; the folder has all
 WIDEST = 480  # [pixels]
-QUALITY = 75
+QUALITY = 75  # [%] of WebP
 
 
 def pack_cameras(stored: StoredRun, packer: Packer) -> list[dict[str, Any]]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from harness.core.types import FloatArray
 
-MOST_SERIES = 10
+MOST_SERIES = 10  # curves of a plot that colours keep apart
 
 
 @dataclass(frozen=True, eq=False)

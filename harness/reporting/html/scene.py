@@ -26,9 +26,9 @@ from harness.reporting.html.first_view import FARTHEST, first_view, rounded
 from harness.reporting.html.packing import Packer, differences, zigzag
 
 FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0  # poses a second, with straight lines between them
-MOST_FRAMES = 6000
-STILL = 1e-5
-FULL = 32700
+MOST_FRAMES = 6000  # poses of a link in the page: two minutes at the fastest rate
+STILL = 1e-5  # [m], and of a quaternion's parts: what moves less is drawn as fixed
+FULL = 32700  # of 16 bits with a sign, less a reserve for rounding
 
 MeshKey = tuple[Path, tuple[float, float, float]]
 
@@ -216,8 +216,8 @@ def line_of(source: str, name: str) -> int:
     return next((number for number, line in enumerate(lines, 1) if defines.search(line)), 0)
 
 
-SMALLEST = 1e-9
-STEPS = 65535
+SMALLEST = 1e-9  # [m], extent of a flat mesh, by which it is divided
+STEPS = 65535  # of a mesh's extent, in 16 bits
 
 
 def pack_mesh(mesh: MeshRecord, number: int, packer: Packer) -> dict[str, Any]:

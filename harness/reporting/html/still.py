@@ -7,7 +7,7 @@ from pathlib import Path
 from harness.core.picture_files import colours, resized, webp
 
 CAPTION_SHARE = 26 / 480  # of a still's height: the strip below with words too small for a page
-QUALITY = 70
+QUALITY = 70  # [%] of WebP
 
 
 def small_still(file: Path, width: int) -> bytes | None:

@@ -111,7 +111,7 @@ def _short(value: str) -> str:
     return value.replace("\\", "/").rstrip("/").rpartition("/")[2] or value
 
 
-PICTURES = 6
+PICTURES = 6  # of steps in the summary, failed ones first: a row of the page
 WIDTH = 360  # [pixels]
 WHY = "-why"  # how names of pictures end that show what explains a failure
 

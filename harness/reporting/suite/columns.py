@@ -18,7 +18,7 @@ from harness.core.quantity import split_quantity
 from harness.core.types import FloatArray
 from harness.reporting.suite.record import SuiteCase
 
-PASSED = -1
+PASSED = -1  # in place of the number of a group of failures
 ABSENT, WORD = -1, -2
 
 

@@ -41,8 +41,8 @@ HUES: dict[ColorName, tuple[float, float]] = {
 """From, to on the colour circle [deg]."""
 
 PIXELS = Quantity("pixels", "px", "at least `min_area`")
-LEAST_OPACITY = 0.1
-LEAST_PICTURES = 3
+LEAST_OPACITY = 0.1  # of an object that a picture can show
+LEAST_PICTURES = 3  # of a window; the verdict of fewer has a warning
 VISIBLE = Quantity("visible share", "1", "of an object: at least `min_visible`")
 
 

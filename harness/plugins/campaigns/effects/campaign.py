@@ -26,10 +26,10 @@ from harness.reporting.suite.tables import one_run_lines
 
 MOST_POINTS = 10_000  # on the map; of more, an even choice of the passed and of the failed
 
-MOST_CAUSES = 10
-MOST_HISTOGRAMS = 12
-BINS = 24
-MOST_FILES = 5
+MOST_CAUSES = 10  # with a colour of their own; the rest is one group
+MOST_HISTOGRAMS = 12  # of quantities on the page, the decisive ones first
+BINS = 24  # of a histogram, about 10 pixels wide each
+MOST_FILES = 5  # named above the map
 WIDTH, HEIGHT = 260, 64  # [pixels]
 
 

@@ -12,9 +12,9 @@ from harness.core.proportion import wilson_interval
 from harness.core.types import FloatArray, IntArray
 from harness.reporting.suite.columns import VariedQuantity
 
-CONFIDENCE = 0.95
+CONFIDENCE = 0.95  # of the intervals of a curve
 RUNS_OF_A_POINT = 5  # at least; a proportion of fewer runs has an interval of nearly everything
-MOST_POINTS = 8
+MOST_POINTS = 8  # of a curve 300 pixels wide
 WIDTH, HEIGHT = 300, 90  # [pixels]
 
 

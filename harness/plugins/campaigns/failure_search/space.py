@@ -19,8 +19,6 @@ from harness.suite.variation import Variation
 TAIL = 0.001  # share of a normal distribution beyond each end of its range
 RESOLUTION = 0.005  # largest step in which a number is shrunk, as a share of its range
 
-MIDDLE = 0.5
-
 Point = tuple[Any, ...]  # one value for each parameter, as a scenario file writes it
 
 
@@ -138,7 +136,7 @@ def search_space(
 
 def _nominal(value: Any, distribution: Distribution) -> Any:
     """The file's value in the unit of the distribution; without one, the distribution's middle."""
-    middle = distribution.at(MIDDLE)
+    middle = distribution.at(0.5)
     if isinstance(distribution, Choice):
         return middle if value is None else value
     try:

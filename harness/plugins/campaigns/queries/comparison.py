@@ -16,7 +16,7 @@ from harness.suite.discovery import UsageError
 LEVEL = 0.05  # probability of calling equal campaigns different
 POWER = 0.8  # probability with which the smallest detectable drop would have been detected
 
-MOST_NAMES = 5
+MOST_NAMES = 5  # of cases in a sentence
 RUNS = "FROM main.runs a, second.runs b"
 
 

@@ -17,7 +17,7 @@ from harness.suite.discovery import UsageError
 from harness.suite.stream import FILE, StreamEntry, entry_of, left_out_of, lines_of
 
 DATABASE = "results.sqlite"
-VERSION = 4
+VERSION = 4  # of the tables; a database of another one is made again
 BATCH = 2000  # lines that are inserted together; this many are in memory
 
 SCHEMA = """
@@ -37,7 +37,7 @@ CREATE TABLE journal (bytes INTEGER, lines INTEGER, head TEXT);
 CREATE INDEX runs_by_name ON all_runs (name, seed, file);
 INSERT INTO journal VALUES (0, 0, '');
 """
-HEAD_BYTES = 200
+HEAD_BYTES = 200  # of the journal, by which a replaced one is noticed
 
 
 @contextmanager

@@ -19,7 +19,7 @@ COLUMNS = (
     *("file", "name", "outcome", "cause", "reason", "seed", "digest", "sim_time"),
     *("expectation", "margin", "unit", "share", "report"),
 )
-ROWS_TOGETHER = 10_000
+ROWS_TOGETHER = 10_000  # in memory
 NUMBERS = ("seed", "sim_time", "margin", "share")
 
 

@@ -17,7 +17,7 @@ from harness.core.files import replaced
 from harness.core.printable import counted
 from harness.suite.discovery import SUFFIX, UsageError
 
-MOST_NOTES = 20
+MOST_NOTES = 20  # printed; the rest is counted
 
 
 class ImportCommand(Command):

@@ -21,7 +21,7 @@ from harness.robot.srdf.srdf import write_srdf
 from harness.robot.urdf.write import package_name, write_urdf
 
 WIDTH = 100  # characters of a line
-DIGITS = 10
+DIGITS = 10  # of numbers in written files: below a nanometre
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from harness.reporting.terminal import causes, failure_place
 
 FOLDER = Path(__file__).with_name("page")
 PAGE = "index.html"
-MOST_PICTURES = 4
+MOST_PICTURES = 4  # of a submission's page, the failed steps first
 LARGEST_PICTURE = 10**6  # [bytes]
 TENTHS = 10
 ROUNDING = 1e-9  # of a tenth: sums of points such as 0.1 + 0.2 belong to the tenth they begin

@@ -18,8 +18,8 @@ from harness.plugins.ros.rtps.sockets import Sockets
 from harness.plugins.ros.rtps.wire import Address, Sample
 from harness.plugins.ros.rtps.writer import Serves, Writer, serves_all
 
-ANNOUNCE_EVERY = 1.0
-REMIND_EVERY = 0.1
+ANNOUNCE_EVERY = 1.0  # [s], of a participant to others
+REMIND_EVERY = 0.1  # [s], heartbeats of a writer until all is acknowledged
 DISCOVERY_PAIRS = (
     (wire.PUBLICATIONS_WRITER, wire.PUBLICATIONS_READER),
     (wire.SUBSCRIPTIONS_WRITER, wire.SUBSCRIPTIONS_READER),

@@ -14,7 +14,7 @@ from harness.plugins.ros.rtps.wire import Address
 
 GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"
-MOST_PARTICIPANTS = 120
+MOST_PARTICIPANTS = 120  # of a domain: more ports would be those of the next one
 NEIGHBOURS = 32  # participants here that are announced to one by one: some hear no multicast
 BUFFER = 2**22  # bytes that the kernel keeps of what is sent and received
 MOST_AT_ONCE = 256  # datagrams of a socket that are read before the other socket has its turn
