@@ -6,28 +6,42 @@ import sys
 import pytest
 
 from docs import ROOT
-from tests.beginning import ENVIRONMENT, as_before_tests
+from tests.beginning import BEGINNING, as_before_tests
 
 TESTS = """\
 import os, signal, sys, tempfile
 
-def test_environment(): os.environ["NEW"] = "a"
-def test_folder(tmp_path): os.chdir(tmp_path)
-def test_path(): sys.path.insert(0, "somewhere")
-def test_signals(): signal.signal(signal.SIGTERM, signal.SIG_IGN)
-def test_temporary(): tempfile.tempdir = "/elsewhere"
-def test_umask(): os.umask(0o77)
-def test_what_is_put_back(monkeypatch, tmp_path):
-    monkeypatch.setenv("NEWER", "a")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(tmp_path)
+def state():
+    os.umask(umask := os.umask(0))
+    return (dict(os.environ) | {"PYTEST_CURRENT_TEST": ""}, os.getcwd(), list(sys.path),
+            signal.getsignal(signal.SIGTERM), tempfile.tempdir, umask)
+
+BEFORE = state()
+
+def test_a_change(tmp_path):
+    os.environ["NEW"] = "a"
+    os.environ.pop("PATH")
+    (tmp_path / "gone").mkdir()
+    os.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    sys.path.insert(0, "somewhere")
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    tempfile.tempdir = "/elsewhere"
+    os.umask(0o77)
+
+def test_after_it():
+    for now, before in zip(state(), BEFORE):
+        assert now == before
 """
 
 
-def test_a_test_that_changes_its_process_is_an_error(pytester, monkeypatch):
+def test_no_test_changes_what_the_next_one_finds(pytester, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     pytester.makepyfile(TESTS)
-    pytester.runpytest_subprocess("-p", "tests.beginning").assert_outcomes(passed=7, errors=6)
+    in_order = ("-p", "no:randomly")
+    put_back = pytester.runpytest_subprocess(*in_order, "-p", "tests.beginning")
+    put_back.assert_outcomes(passed=2)
+    pytester.runpytest_subprocess(*in_order).assert_outcomes(passed=1, failed=1)
 
 
 @pytest.mark.parametrize("is_removed", [False, True])
@@ -42,7 +56,7 @@ def test_what_tests_share_starts_where_the_process_began(tmp_path, monkeypatch, 
     with as_before_tests():
         assert os.getcwd() == str(ROOT)  # noqa: PTH109
         assert "OF_A_TEST" not in os.environ
-        assert os.environ["PATH"] == ENVIRONMENT["PATH"]
+        assert os.environ["PATH"] == BEGINNING.environment["PATH"]
         assert str(folder) not in sys.path
     assert os.environ["OF_A_TEST"] == "1"
     assert sys.path[0] == str(folder)
