@@ -68,6 +68,23 @@ def wait_for(page, expression):
         page.wait_for_timeout(20)
 
 
+def go_to(page, place):
+    """Change what follows `#` in a page's address, and wait until the page is there."""
+    go = """(place) => new Promise((done) => {
+      addEventListener("hashchange", () => done(null), { once: true });
+      location.hash = place;
+    })"""
+    page.evaluate(go, place)
+
+
+def put_back(page, place):
+    """Go to a place of a report page that tests share, with nothing focused or zoomed by others."""
+    page.keyboard.press("Escape")
+    number = page.evaluate("window.visits = (window.visits ?? 0) + 1")
+    go_to(page, f"{place}&visit={number}")
+    page.evaluate("document.querySelector('#unzoom').click(), document.activeElement.blur()")
+
+
 def wait_for_frame(page):
     """Wait until a page has drawn what it was about to draw."""
     frame = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from harness.recording.read_run import read_run
-from tests.reporting.browser import visits, wait_for, wait_for_frame
+from tests.reporting.browser import put_back, visits, wait_for, wait_for_frame
 
 PICTURE = """() => {
   const canvas = document.querySelector('#view canvas');
@@ -41,11 +41,7 @@ def shared(browser, failed_run):
 @pytest.fixture
 def opened(shared):
     """The page that tests share, at its beginning and with nothing zoomed."""
-    shared.page.keyboard.press("Escape")
-    number = shared.page.evaluate("window.visits = (window.visits ?? 0) + 1")
-    shared.page.evaluate(f"location.hash = '#t=0&tab=expect&visit={number}'")
-    shared.page.evaluate("document.querySelector('#unzoom').click()")
-    wait_for(shared.page, "document.querySelector('#track').ariaValueNow === '0.000'")
+    put_back(shared.page, "#t=0&tab=expect")
     return shared
 
 

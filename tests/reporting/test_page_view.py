@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from harness.recording.read_run import read_run
-from tests.reporting.browser import visits, wait_for, wait_for_frame
+from tests.reporting.browser import put_back, visits, wait_for, wait_for_frame
 from tests.reporting.test_page import picture
 
 NESTED = """\
@@ -37,11 +37,8 @@ def shared(browser, nested_run):
 
 @pytest.fixture
 def page(shared):
-    number = shared.page.evaluate("window.visits = (window.visits ?? 0) + 1")
-    shared.page.evaluate(f"location.hash = '#t=0.5&visit={number}'")
-    shared.page.evaluate("document.querySelector('#unzoom').click()")
+    put_back(shared.page, "#t=0.5")
     shared.page.click("#sides button:text('iso')")
-    wait_for(shared.page, "document.querySelector('#track').ariaValueNow === '0.500'")
     return shared.page
 
 
