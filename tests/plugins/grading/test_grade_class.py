@@ -111,6 +111,11 @@ def test_no_cell_of_a_table_covers_another_one(graded, browser, width):
             opened.goto((graded / name).as_uri())
             assert opened.evaluate(covering) == [], name
             assert opened.evaluate("document.documentElement.scrollWidth") == width
+        opened.goto((graded / "index.html").as_uri())
+        heights = opened.eval_on_selector_all(
+            ".distribution i", "bars => bars.map(bar => bar.getBoundingClientRect().height)"
+        )
+        assert heights[0] == pytest.approx(3 * heights[3], rel=0.02), "3 submissions and 1"
 
 
 def test_tables_for_other_programs_have_everybody(graded):
