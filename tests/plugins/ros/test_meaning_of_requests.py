@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.handover import replay
+from harness.plugins.ros.moveit.planning import motion_text
 from harness.plugins.ros.moveit.values import NUMBERS
 from tests.plugins.ros.bridging import bridge, scenario
 from tests.plugins.ros.move_group_client import (
@@ -18,6 +19,7 @@ from tests.plugins.ros.move_group_client import (
     pose,
     pose_goal,
     primitive,
+    request,
     stamped,
 )
 
@@ -185,7 +187,7 @@ def test_waypoints_in_the_frame_of_the_link_follow_each_other(client, said):
     assert any("also without `avoid_collisions`" in note for note in said)
 
 
-def test_a_goal_of_an_orientation_alone_turns_the_link(client):
+def test_a_goal_of_an_orientation_alone_turns_the_link(client, said):
     goal = pose_goal(pose(HERE, (0.0, 1.0, 0.0, 0.0)), tolerance=0.02)
     goal.position_constraints = []
     moved = client.move_to(goal)
@@ -196,9 +198,11 @@ def test_a_goal_of_an_orientation_alone_turns_the_link(client):
     level = pose_goal(pose(HERE, (0.0, np.sin(np.pi / 4), 0.0, np.cos(np.pi / 4))), tolerance=0.05)
     level.position_constraints = []
     assert client.move_to(level, plan_only=True).result.error_code.val == SUCCESS
-    assert (
-        client.move_to(level, **PILZ).result.error_code.val == NUMBERS["INVALID_GOAL_CONSTRAINTS"]
-    )
+    refused = client.move_to(level, **PILZ).result.error_code
+    assert refused.val == NUMBERS["INVALID_GOAL_CONSTRAINTS"]
+    assert any("Pilz takes one goal" in note for note in said)
+    text = motion_text(request(level, **PILZ))
+    assert text == f" by {PILZ['pipeline_id']} LIN: {TCP} turned"
 
 
 def test_path_constraints_and_speeds_limit_motions_that_have_one_path(client):

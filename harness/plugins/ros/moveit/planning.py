@@ -121,8 +121,10 @@ def _goal_text(constraints: Any) -> str:
         for each in constraints.position_constraints
         for at in each.constraint_region.primitive_poses[:1]
     ]
+    turns = [f"{each.link_name} turned" for each in constraints.orientation_constraints]
     joints = len(constraints.joint_constraints)
-    return ", ".join([*places, *([counted(joints, "joint")] if joints else [])]) or "no position"
+    named = [*(places or turns), *([counted(joints, "joint")] if joints else [])]
+    return ", ".join(named) or "nothing"
 
 
 def warm_up(cell: Cell) -> None:
