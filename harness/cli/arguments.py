@@ -12,7 +12,7 @@ from harness.core.printable import printable
 from harness.core.suggestion import did_you_mean, nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from _typeshed import SupportsWrite
 
@@ -24,8 +24,19 @@ SYNONYMS = {
     "-j": ("-n", "--jobs", "--workers", "--parallel", "--numprocesses"),
     "-k": ("--filter", "--select", "--keyword"),
     "--set": ("-D", "--param", "--override", "--define"),
+    "run": ("test", "simulate", "execute", "play", "start"),
+    "check": ("validate", "lint", "verify", "plan"),
+    "new": ("init", "create"),
+    "view": ("open", "show", "report"),
+    "--help": ("help",),
+    "--version": ("version",),
 }
-"""Options, and what other programs call them."""
+"""Options and commands, and what other programs call them."""
+
+
+def _synonym(word: str, known: Iterable[str]) -> str | None:
+    """The option or command that other programs call so."""
+    return next((each for each in known if word in SYNONYMS.get(each, ())), None)
 
 
 class Parser(argparse.ArgumentParser):
@@ -44,7 +55,11 @@ class Parser(argparse.ArgumentParser):
             from harness.core.registry import absent_plugins  # takes time
 
             words = [str(each) for each in action.choices]
-            hints = [did_you_mean(str(value), words, "valid words"), *absent_plugins()]
+            options = self._option_string_actions if action.nargs == argparse.PARSER else ()
+            near = _synonym(str(value), (*words, *options))
+            hint = did_you_mean(str(value), words, "valid words")
+            hint = f"did you mean `{near}`? valid words: {', '.join(words)}" if near else hint
+            hints = [hint, *absent_plugins()]
             raise argparse.ArgumentError(action, f"'{value}' is not valid; {'; '.join(hints)}")
 
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -62,8 +77,7 @@ class Parser(argparse.ArgumentParser):
             return f"unexpected argument '{arguments[0]}'"
         name = options[0].partition("=")[0]
         known = {each for action in self._actions for each in action.option_strings}
-        synonym = next((each for each, others in SYNONYMS.items() if name in others), None)
-        near = synonym if synonym in known else nearest(name, sorted(known))
+        near = _synonym(name, known) or nearest(name, sorted(known))
         hint = f"did you mean {near}? " if near else ""
         return f"there is no option {name}; {hint}`{self.prog} --help` lists the options"
 

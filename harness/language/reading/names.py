@@ -119,7 +119,8 @@ def _expectation_in(word: str, content: Located) -> str:
         return word
     inner = [*content.value] if isinstance(content.value, dict) else [content.value]
     is_one = len(inner) == 1 and word in ("assert", "expect", "check", "verify", "require")
-    return next((each for each in inner if is_one and each in EXPECTATIONS), "")
+    texts = (each for each in inner if is_one and isinstance(each, str))
+    return next((each for each in texts if each in EXPECTATIONS), "")
 
 
 def _is_misspelt(word: str, near: str, content: Located, model: object) -> bool:

@@ -56,8 +56,7 @@ class NewCommand(Command):
             say_text("\n".join(registry("starter").find(arguments.assignment)().write(file)))
             return 0
         if not file.name.endswith(SUFFIX):
-            stem = file.name.removesuffix(".yaml").removesuffix(".yml")
-            better = file.with_name(f"{stem}{SUFFIX}")
+            better = file.with_name(f"{file.stem}{SUFFIX}")
             raise UsageError(f"the name of a scenario ends in {SUFFIX}: try '{better}'")
         if file.exists():
             raise UsageError(f"'{file}' exists already; nothing was written")
