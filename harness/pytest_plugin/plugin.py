@@ -100,6 +100,8 @@ def pytest_configure(config: pytest.Config) -> None:
         _load_plugins(modules)
     if reporters := config.getoption("--harness-reporter"):
         _check_reporters(config, reporters)
+    if config.getoption("--harness-report-dir") and (folder := report_root(config)):
+        _check_folder(folder)
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(SessionResults(config), "armharness-session")
 
@@ -112,6 +114,16 @@ def _load_plugins(modules: list[str]) -> None:
             load_plugin(module)
     except PluginError as error:
         raise pytest.UsageError(str(error)) from error
+
+
+def _check_folder(folder: Path) -> None:
+    from harness.suite.discovery import UsageError
+    from harness.suite.folders import refuse_unwritable
+
+    try:
+        refuse_unwritable(folder, "--harness-report-dir: ")
+    except UsageError as error:
+        raise pytest.UsageError(str(error)) from None
 
 
 def _check_reporters(config: pytest.Config, reporters: list[str]) -> None:

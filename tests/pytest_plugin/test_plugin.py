@@ -129,6 +129,16 @@ def test_reports_go_where_they_are_requested(pytester, write):
     assert not (pytester.path / "reports").exists()
 
 
+@pytest.mark.parametrize("place", ["notes.txt", "notes.txt/reports", "x" * 256])
+def test_a_report_folder_that_cannot_be_written_is_refused_before_anything_runs(pytester, place):
+    pytester.makefile(".txt", notes="notes")
+    result = run(pytester, "--harness-report-dir", place)
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(
+        [f"ERROR: --harness-report-dir: nothing can be written into '{place}'*"]
+    )
+
+
 @pytest.mark.nightly
 def test_xdist_and_this_process_give_the_same_digest(pytester, write):
     write(holds=HOLDS, again=HOLDS)
