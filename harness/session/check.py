@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 from harness.cell.program import Program
 from harness.core.errors import Problem, SpecError
-from harness.judging.expectation import Mechanisms
-from harness.judging.placed import describe
 from harness.language.files.source import Loc
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.varied_paths import as_json, choices
@@ -18,7 +15,6 @@ from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure
 from harness.reporting.explanation import explanation_lines
 from harness.robot.link_masses import mass_notes
-from harness.session.explain import explain
 from harness.session.predict import predict, touches_at_start, unexpected
 from harness.session.prepare import prepare
 from harness.session.start import overlap_note, start_physics
@@ -121,18 +117,3 @@ def _loc(program: Program, path: str) -> Loc:
     while path not in program.step_locs and "." in path:
         path = path.rpartition(".")[0]
     return program.step_locs.get(path, ("steps",))
-
-
-def explain_file(
-    path: Path, *, overrides: Mapping[str, str] | None = None, seed: int | None = None
-) -> str:
-    """The program as text: every number resolved, composite steps expanded.
-
-    Raises:
-        SpecError: With every problem of the file.
-    """
-    prepared = prepare(path, overrides, seed)
-    program = prepared.program
-    records, poses = predict(program, prepared.ports)
-    mechanisms = Mechanisms.of(program.description, program.world.objects)
-    return explain(program, records, poses, partial(describe, mechanisms=mechanisms))

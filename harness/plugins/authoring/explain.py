@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -11,10 +13,14 @@ from harness.core.amounts import point_text
 from harness.core.printable import printable
 from harness.core.spatial import SE3, xyzw_from_wxyz
 from harness.core.world import World
+from harness.judging.expectation import Mechanisms
+from harness.judging.placed import describe
 from harness.language.expectation import ExpectationFields
 from harness.ports.motion_planning import PlanningOptions
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
+from harness.session.predict import predict
+from harness.session.prepare import prepare
 
 Describe = Callable[[ExpectationFields], str]
 
@@ -110,3 +116,18 @@ def _pose(pose: SE3) -> str:
         for part in (pose.translation, quat)
     )
     return f"{{xyz: [{xyz}], quat_xyzw: [{quat_xyzw}]}}"
+
+
+def explain_file(
+    path: Path, *, overrides: Mapping[str, str] | None = None, seed: int | None = None
+) -> str:
+    """The program as text: every number resolved, composite steps expanded.
+
+    Raises:
+        SpecError: With every problem of the file.
+    """
+    prepared = prepare(path, overrides, seed)
+    program = prepared.program
+    records, poses = predict(program, prepared.ports)
+    mechanisms = Mechanisms.of(program.description, program.world.objects)
+    return explain(program, records, poses, partial(describe, mechanisms=mechanisms))

@@ -26,7 +26,7 @@ class ExplainCommand(Command):
     def run(self, arguments: argparse.Namespace) -> int:
         """Print the program of each file."""
         files = discover(arguments.paths)
-        from harness.session.check import explain_file
+        from harness.plugins.authoring.explain import explain_file
 
         for file in files:
             overrides = dict(arguments.overrides)
