@@ -57,6 +57,7 @@ BUILT_IN = {
     "reporter": "harness.reporting.reporters",
     "observer": "",
     "suite_section": "",
+    "suite_reporter": "",
     "grip": "",
     "adhesion": "",
     "tracker": "",

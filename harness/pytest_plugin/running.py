@@ -27,7 +27,7 @@ from harness.recording.verdict import Verdict
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
 from harness.reporting.suite.failure_picture import picture_of
-from harness.reporting.suite.junit import case_properties, sample_properties
+from harness.reporting.suite.properties import case_properties, sample_properties
 from harness.reporting.suite.record import SuiteCase
 from harness.reporting.terminal import causes
 from harness.suite.cases import run_here, run_isolated

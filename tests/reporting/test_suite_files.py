@@ -8,13 +8,13 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from harness.plugins.ci.suite_reporters.junit import JunitReporter
 from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import StepLine
 from harness.reporting.sampled import SampledRate
 from harness.reporting.suite.cause import cause_of, short_lines
 from harness.reporting.suite.github import error_annotations, job_summary
 from harness.reporting.suite.history import history_of
-from harness.reporting.suite.junit import JunitWriter
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
 from harness.reporting.suite.write import write_suite
 from harness.reporting.terminal import causes, failure_place, root_failures
@@ -50,7 +50,7 @@ SCHEMA = {
 
 def junit_xml(record):
     """The JUnit document of a suite as text."""
-    writer, text = JunitWriter(record), io.BytesIO()
+    writer, text = JunitReporter(record), io.BytesIO()
     for case in record.cases:
         writer.add(case)
     writer.write(text)

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from harness.core.files import replaced, writing
 from harness.plugins.ci.document import read_document
+from harness.plugins.ci.suite_reporters.junit import SAMPLE
 from harness.recording.verdict import Verdict
-from harness.reporting.suite.junit import SAMPLE
 from harness.reporting.suite.record import SuiteCase
 from harness.suite.discovery import UsageError
 from harness.suite.header import read_header

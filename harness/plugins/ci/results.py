@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from harness.plugins.ci.document import read_document
+from harness.plugins.ci.suite_reporters.junit import SAMPLE
 from harness.recording.run import Outcome
-from harness.reporting.suite.junit import SAMPLE
 from harness.reporting.suite.record import FORMAT, SuiteCase
 from harness.reporting.suite.write import RESULTS
 from harness.suite.discovery import UsageError

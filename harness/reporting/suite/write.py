@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from harness.core.files import replaced, writing
+from harness.core.registry import registry
 from harness.reporting.suite.columns import Columns
 from harness.reporting.suite.history import History
-from harness.reporting.suite.junit import JunitWriter
 from harness.reporting.suite.page import MOST_ROWS, suite_html
 from harness.reporting.suite.record import SuiteCase, SuiteRecord, results_json
+from harness.reporting.suite.suite_reporter import SuiteReporter
 
 PAGE = "index.html"
-JUNIT = "junit.xml"
 RESULTS = "results.json"
 
 
@@ -25,7 +25,7 @@ def write_suite(
     *,
     on_case: Callable[[int, SuiteCase], None] | None = None,
 ) -> tuple[Path, Columns]:
-    """Write page, JUnit XML and results; each is whole or as it was.
+    """Write page, results and the files of reporters; each is whole or as it was.
 
     The cases are read once, and not kept.
 
@@ -39,11 +39,14 @@ def write_suite(
     Raises:
         HarnessError: A file cannot be written.
     """
-    junit, columns = JunitWriter(record), Columns(most_listed=MOST_ROWS)
+    columns = Columns(most_listed=MOST_ROWS)
+    kinds: list[type[SuiteReporter]] = [*registry(SuiteReporter.plugin_kind).values()]
+    reporters = [kind(record) for kind in kinds]
 
     def read() -> Iterator[SuiteCase]:
         for number, case in enumerate(record.cases):
-            junit.add(case)
+            for reporter in reporters:
+                reporter.add(case)
             columns.add(case)
             if on_case is not None:
                 on_case(number, case)
@@ -53,8 +56,9 @@ def write_suite(
         with replaced(folder / RESULTS) as file:
             for part in results_json(record, exit_code, read()):
                 file.write(part.encode())
-        with replaced(folder / JUNIT) as file:
-            junit.write(file)
+        for reporter in reporters:
+            with replaced(folder / reporter.file) as file:
+                reporter.write(file)
     return write_suite_page(folder, record, columns, history), columns
 
 

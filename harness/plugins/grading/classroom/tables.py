@@ -10,11 +10,12 @@ from pathlib import Path
 
 from harness.core.errors import Problem, SpecError
 from harness.core.files import replaced, writing
+from harness.core.registry import registry
 from harness.language.files.yaml_file import read_text
 from harness.plugins.grading.classroom.results import ClassGrade, StudentGrade
 from harness.reporting.result import CaseResult
-from harness.reporting.suite.junit import JunitWriter
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.suite_reporter import SuiteReporter
 
 TABLES = ("grades.csv", "nbgrader.csv", "moodle.csv", "canvas.csv", "junit.xml")
 PERSON = ("student_id", "first_name", "last_name", "email", "canvas_id", "sis_id", "login")
@@ -79,7 +80,8 @@ def write_tables(grade: ClassGrade, folder: Path) -> None:
             file.write(_csv(rows(grade)).encode())
     results = [SuiteCase(result) for each in grade.students for result in _named(each)]
     is_full = all(each.is_full for each in grade.students)
-    junit = JunitWriter(SuiteRecord("passed" if is_full else "failed", results))
+    kind: type[SuiteReporter] = registry(SuiteReporter.plugin_kind).find("junit")
+    junit = kind(SuiteRecord("passed" if is_full else "failed", results))
     for case in results:
         junit.add(case)
     with writing(folder), replaced(folder / "junit.xml") as file:

@@ -6,7 +6,6 @@ There is no one schema; what is written here is in all that are in use: `testsui
 
 from __future__ import annotations
 
-import math
 import re
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
@@ -14,16 +13,16 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from tempfile import SpooledTemporaryFile
-from typing import IO
+from typing import IO, ClassVar
 from xml.sax.saxutils import escape
 
 from harness.core.printable import printable, printable_lines
 from harness.recording.run import Outcome
-from harness.recording.verdict import Verdict
-from harness.reporting.margins import margin_share, worst
 from harness.reporting.result import CaseResult
 from harness.reporting.sampled import SampledRate, rate_text
+from harness.reporting.suite.properties import case_properties
 from harness.reporting.suite.record import SuiteCase, SuiteRecord
+from harness.reporting.suite.suite_reporter import SuiteReporter
 from harness.reporting.terminal import causes, report_link
 
 NAME = "armharness"
@@ -57,12 +56,15 @@ class _Counts:
         )
 
 
-class JunitWriter:
-    """Writes JUnit XML case by case, one `testsuite` for each scenario file; times are wall times.
+class JunitReporter(SuiteReporter):
+    """JUnit XML, one `testsuite` for each scenario file; times are wall times.
 
     What is written so far is in a file without a name. Samples may fail where a success rate is
     required: the rate is a `testcase` of its own, with the `failure` when it is not confirmed.
     """
+
+    name: ClassVar[str] = "junit"
+    file: ClassVar[str] = "junit.xml"
 
     def __init__(self, record: SuiteRecord) -> None:
         """Begin a document."""
@@ -177,47 +179,6 @@ def _case(case: SuiteCase, *, may_fail: bool) -> bytes:
 
 def _seconds(result: CaseResult) -> float:
     return sum(result.wall_times.values())
-
-
-def case_properties(case: SuiteCase) -> list[tuple[str, str]]:
-    """Name and value of everything that a later reader needs besides the outcome."""
-    result = case.result
-    found = [("seed", str(result.seed)), ("digest", result.digest)]
-    found.append(("simulated", f"{result.sim_time:.3f} s"))
-    found += [("verifies", each) for each in case.verifies]
-    found += [(f"value:{path}", str(value)) for path, value in case.values.items()]
-    found += [
-        (f"margin:{verdict.expectation}", _margin(verdict))
-        for verdict in result.verdicts
-        if not math.isnan(verdict.margin)
-    ]
-    if case.nearest is not None:
-        found.append(("worst_margin", case.nearest.expectation))
-    return found
-
-
-def sample_properties(cases: Sequence[SuiteCase]) -> list[tuple[str, str]]:
-    """Properties of samples together: seed and digest of each, the smallest margins by sample."""
-    found = [("verifies", each) for case in cases[:1] for each in case.verifies]
-    found += [(f"seed:{case.result.case}", str(case.result.seed)) for case in cases]
-    found += [(f"digest:{case.result.case}", case.result.digest) for case in cases]
-    least: dict[str, tuple[Verdict, str]] = {}
-    for case in cases:
-        for verdict in case.result.verdicts:
-            if math.isnan(verdict.margin):
-                continue
-            known = least.setdefault(verdict.expectation, (verdict, case.result.case))
-            if margin_share(verdict) < margin_share(known[0]):
-                least[verdict.expectation] = (verdict, case.result.case)
-    found += [(f"margin:{name}", f"{_margin(each)} ({c})") for name, (each, c) in least.items()]
-    nearest = worst([verdict for verdict, _ in least.values()])
-    if nearest is not None:
-        found.append(("worst_margin", nearest.expectation))
-    return found
-
-
-def _margin(verdict: Verdict) -> str:
-    return f"{verdict.margin:.6g} {verdict.unit}".removesuffix(" 1")
 
 
 def _attachments(result: CaseResult) -> list[str]:

@@ -1,0 +1,1 @@
+"""Files of suites for pipelines, one module for each."""
