@@ -27,6 +27,7 @@ from moveit_msgs.srv import (
     SetPlannerParams,
 )
 from rclpy.action import ActionClient
+from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSPresetProfiles, QoSProfile
 from sensor_msgs.msg import JointState
@@ -174,13 +175,15 @@ def task_space(pose, position_only, tolerance=0.05):
 
 
 def tool(value):
-    """The buttons of the gripper; what still moves after two seconds is stopped."""
+    """The buttons of the gripper; what still moves after two seconds is stopped.
+
+    The seconds are simulated ones here, so that a busy machine does not matter.
+    """
     current(GRIPPER)
 
     def stop(ended):
-        end = time.monotonic() + 2
-        while time.monotonic() < end:
-            time.sleep(0.01)
+        end = node.get_clock().now() + Duration(seconds=2)
+        until(lambda: ended.done() or node.get_clock().now() >= end, "time")
         if not ended.done():
             gripper.stop()
 
