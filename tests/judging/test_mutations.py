@@ -458,7 +458,7 @@ def test_every_signal_of_a_run_is_read_by_some_predicate():
     for_people = {"clearance_links"}  # which link it was
     of_held = {"slides"}  # of what is held alone; `test_excused_force` corrupts it
     of_cups = {"pulls"}  # of what suction holds; `test_suction` lets cups leak
-    of_belts = {"surfaces"}  # of surfaces that move; `test_formula` reads their velocity
+    of_belts = {"surfaces"}  # of surfaces that move; `test_conveyor` reads their velocity
     assert recorded - read == for_people | of_held | of_cups | of_belts
 
 
