@@ -2,7 +2,7 @@
 
 import pytest
 
-from harness.cli.main import main
+from tests.running import exit_code
 
 SCENARIO = "scenario: A\nrobot: open_manipulator_x\nsteps: [{wait: 0.1 s}]\n"
 RUN = ["run", "a.scenario.yaml"]
@@ -47,11 +47,7 @@ def folder(tmp_path, monkeypatch):
 
 def refusal(arguments, capsys):
     """What a command prints that ends with exit code 2."""
-    try:
-        code = main(arguments)
-    except SystemExit as end:
-        code = end.code
-    printed = capsys.readouterr()
+    code, printed = exit_code(*arguments), capsys.readouterr()
     assert (code, printed.out) == (2, "")
     return printed.err.splitlines()[-1]
 
@@ -89,7 +85,7 @@ def test_an_output_in_a_folder_that_takes_none_is_refused(command, capsys):
 
 
 def test_a_device_is_an_output_file():
-    assert main(["schema", "--write", "/dev/null"]) == 0
+    assert exit_code("schema", "--write", "/dev/null") == 0
 
 
 def test_a_damaged_baseline_is_refused_before_it_is_updated(folder, capsys):

@@ -114,7 +114,7 @@ def test_ends_may_be_a_millionth_off_and_must_be_at_rest(place):
             found = defect(checker=bounds, positions=((place, joint), shifted[1]))
             assert found.details.plain()["broken"] == name
             assert found.details.plain()["distance"] == pytest.approx(1.1e-6)
-            assert f"trajectory's {name} is 0.0000630 deg of " in found.message
+            assert f"trajectory's {name} is 6.303e-05 deg of " in found.message
             assert defect(velocities=((place, joint), sign * 0.9e-9)) is None
             found = defect(velocities=((place, joint), sign * 1.1e-9))
             assert found.details.plain()["broken"] == f"rest at {name}"

@@ -12,6 +12,7 @@ from harness.recording.read_run import read_run
 from tests.judging.synthetic_run import make_run, step
 from tests.reporting.browser import visits, wait_for_frame
 from tests.reporting.test_page import picture
+from tests.running import exit_code
 
 ONE = """\
 scenario: two turns
@@ -137,7 +138,7 @@ def test_equal_runs_have_no_page_but_on_request(folders, tmp_path, monkeypatch, 
     assert main(["compare", *map(str, folders), "--no-page"]) == 1
     assert not (tmp_path / "reports").exists()
     (tmp_path / "file").write_text("")
-    assert main(["compare", *map(str, folders), "--page", "file/a.html"]) == 2
+    assert exit_code("compare", *folders, "--page", "file/a.html") == 2
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from tests.running import exit_code
 
 SCENARIO = "scenario: Wait\nrobot: open_manipulator_x\nsteps: [{wait: 2 ms}]\n"
 LONG = "a" * 300
@@ -50,7 +51,7 @@ def harness(*words, **environment):
     ],
 )
 def test_a_name_that_is_too_long_is_wrong_usage(words, capsys):
-    assert main([*words]) == 2
+    assert exit_code(*words) == 2
     said = capsys.readouterr().err
     assert LONG[:60] in said
     assert "Traceback" not in said

@@ -17,6 +17,7 @@ from harness.cli.main import main
 from harness.plugins.ros.bag.write import BagOptions, write_bag
 from harness.recording.read_run import read_run
 from tests.plugins.ros.bag_runs import decoded, everything
+from tests.running import exit_code
 
 RELIABLE, BEST_EFFORT, TRANSIENT_LOCAL, VOLATILE = 1, 2, 1, 2
 """Of rmw's enumerations, which rosbag2 writes as numbers up to Jazzy."""
@@ -406,12 +407,12 @@ def test_frames_are_published_raw_too_when_requested(folder, tmp_path):
         (["{run}/nowhere", "--bag", "{tmp}/bag"], "is not the folder of a run: it has no run.json"),
         (["{run}", "--bag", "{run}/bag"], "exists already; nothing was written (--force"),
         (["{run}", "--bag", "{run}", "--force"], "is a folder and no bag; it is not replaced"),
-        (["{run}", "--bag", "/proc/nowhere/bag"], "cannot write '/proc/nowhere'"),
+        (["{run}", "--bag", "/proc/nowhere/bag"], "'/proc/nowhere/bag' cannot be written"),
     ],
 )
 def test_wrong_use_of_export_is_reported_and_writes_nothing(folder, tmp_path, capsys, words, said):
     names = {"run": folder, "tmp": tmp_path}
-    assert main(["export", *(word.format(**names) for word in words)]) == 2
+    assert exit_code("export", *(word.format(**names) for word in words)) == 2
     assert said in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
