@@ -171,7 +171,7 @@ EACH = {
     "named_target": "{state: mogi_home}",
     "joints": "{positions: {elbow_joint: 0}}",
     "gripper": "{named_target: open}",
-    "tcp_pose": "{pose: {xyz: [0, 0, 1]}, tolerance: {position: 1 m}, position_only: true}",
+    "tcp_pose": "{pose: {xyz: [0, 0, 1]}, tolerance: {position: 99 cm}, position_only: true}",
     "tcp_path": "{line: {start: {xyz: [0, 0, 1]}, end: {xyz: [1, 0, 1]}}}",
     "path_length": "{at_most: 10 m}",
     "duration": "{at_most: 60 s}",
