@@ -79,7 +79,7 @@ def test_a_world_of_many_objects_is_run_and_judged(count, tmp_path):
     file = tmp_path / "many.scenario.yaml"
     file.write_text(
         "scenario: many objects\nrobot: open_manipulator_x\nobjects:\n" + "".join(rows)
-        + "steps: [{STEP}, {move_to: {joints: {joint1: 0.5}}}]\n"
+        + "steps: [{move_to: {joints: {joint1: 0.5}}}]\n"
         "expect: [{never: collision}, {always: within_limits}]\n"
     )  # fmt: skip
     result = run_case(file, report_dir=tmp_path / "run")
