@@ -139,7 +139,7 @@ class _Progress:
     def stage(self, text: str) -> None:
         """Show what the search does next."""
         if text != self._stage:
-            self._log(f"{text}: {self._done} of {self._runs} runs, {self._failed} failed")
+            self._log(f"{text}: {self._done} runs so far, {self._failed} failed")
         self._stage = text
         self._show()
 
