@@ -104,7 +104,10 @@ def test_without_the_package_every_name_is_a_located_error(tmp_path):
         assert f"{kind} of a plug-in that is not installed needs `--plugin`" in words
     out = harness(tmp_path, "run", "all.scenario.yaml", "--reporter", "verdict_table", code=2)
     words = " ".join(out.split())
-    assert "--reporter: there is no reporter 'verdict_table'; known: film, green, html, rosbag" in words
+    assert (
+        "--reporter: there is no reporter 'verdict_table'; known: film, green, html, rosbag"
+        in words
+    )
     assert "a reporter of a plug-in that is not installed needs `--plugin`" in words
 
 
