@@ -61,7 +61,7 @@ def every_command(page):
             continue
         for line in shown(block["text"]) if shows else commands(block["text"]):
             for part in re.split(r"\s(?:&&|\|)\s|;\s", line):
-                known = re.sub(r"\s>.*", "", re.sub(r"\$\w+", "2", part))  # variables of a shell
+                known = re.sub(r"\s2?>.*", "", re.sub(r"\$\w+", "2", part))  # variables of a shell
                 if words := shlex.split(known, comments=True):
                     yield words
 
