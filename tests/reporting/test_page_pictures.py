@@ -63,7 +63,9 @@ def write(folder, run, drawings=NO_DRAWINGS):
     return file
 
 
-def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
+@pytest.mark.nightly(but=["pictures"])
+@pytest.mark.parametrize("cameras", [[1], [0, 1]], ids=["pictures", "videos"])
+def test_pictures_and_videos_follow_the_clock(visit, tmp_path, cameras):
     captures = (
         CaptureRecord("wrist", 0.5, 50, "look", files={"color": "a.png"}),
         CaptureRecord("wrist", 1.5, 150, "look again", files={"color": "b.png"}),
@@ -82,7 +84,7 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
     assert captions.count() == 2
     for moment, colour, label in ((0.7, 0, "wrist · look"), (1.7, 1, "wrist · look again")):
         go_to(page, f"#t={moment}")
-        for number in (0, 1):
+        for number in cameras:
             shown = f"({SHOWN})({number})"
             wait_for(page, f"{shown}[{colour}] > 180 && {shown}[{1 - colour}] < 90")
         assert captions.nth(1).inner_text() == label

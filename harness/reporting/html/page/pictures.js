@@ -4,6 +4,9 @@ import { byId, element } from "./dom.js";
 import { indexAt } from "./payload.js";
 import { seconds } from "./units.js";
 
+/** When a video is drawn again after a seek [ms]: its picture may arrive after the event. */
+const LATE = [50, 250, 1000];
+
 /**
  * @typedef {object} CameraHead
  * @property {string} name
@@ -43,6 +46,7 @@ function followVideo(payload, clock, { buffer, type, start }, canvas) {
   video.src = URL.createObjectURL(new Blob([payload.buffer(buffer)], { type }));
   const draw = () => fit(canvas, video, video.videoWidth, video.videoHeight);
   for (const event of ["loadeddata", "seeked", "timeupdate"]) video.addEventListener(event, draw);
+  video.addEventListener("seeked", () => LATE.forEach((delay) => setTimeout(draw, delay)));
   if (video.requestVideoFrameCallback) {
     const again = () => {
       draw();
