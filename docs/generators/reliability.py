@@ -5,7 +5,8 @@ from collections import Counter
 from typing import Any
 
 from docs import ROOT
-from harness.core.limits import READERS, READING_MEMORY
+from docs.generators.readers import READERS
+from harness.core.limits import READING_MEMORY
 
 ENDS = ("passed", "failed", "skipped")
 RECORDS = ROOT / "tests" / "campaigns" / "records.json"

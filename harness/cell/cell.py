@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from harness.cell.holding import Holding
 from harness.cell.program import ProgramStep, step_seed, with_arm
+from harness.cell.runner import Runner
 from harness.core.camera import Camera
 from harness.core.errors import StepFailed
 from harness.core.trajectory import JointTrajectory
@@ -23,15 +24,13 @@ class Cell(Holding):
     """Everything that steps work with: robot, planning, physics, and the state of the scene.
 
     Attributes:
-        run_steps: Carries out steps that the current one is made of.
-        run_together: Carries out motions of different arms at once; returns when each begins [s].
+        runner: Carries out steps that the current one is made of.
         allowed: Pairs of bodies that `allow_collisions` around the step allows, outermost first.
         faults: The faults that were injected, in words, and the line of each in the file.
     """
 
     planner: MotionPlanner
-    run_steps: Callable[[Sequence[ProgramStep]], None]
-    run_together: Callable[[Sequence[ProgramStep]], tuple[float, ...]]
+    runner: Runner
     allowed: list[Sequence[tuple[str, str]]] = field(
         default_factory=list[Sequence[tuple[str, str]]]
     )
@@ -76,7 +75,7 @@ class Cell(Holding):
         """Run the steps that the current one is made of; its own notes go on after them."""
         current, notes = self.current, self.notes
         try:
-            self.run_steps(current.children if children is None else children)
+            self.runner.run(current.children if children is None else children)
         finally:
             self.step, self.notes = current, notes
 

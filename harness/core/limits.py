@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 MB, MIB, GB = 10**6, 2**20, 10**9
 
 READING_MEMORY = GB
@@ -73,93 +71,3 @@ RTPS_PARTIAL = 4  # samples of one writer of which fragments are missing
 RTPS_MEMORY = 4 * RTPS_SAMPLE  # of the samples of one writer that wait
 RTPS_PEERS = 120  # as many as a domain has ports for
 RTPS_ENDPOINTS = 2000  # of one peer; a robot with MoveIt has 300
-
-
-@dataclass(frozen=True)
-class Reader:
-    """Bounds of one kind of file.
-
-    Attributes:
-        reads: The kinds of files that it reads.
-        size: Largest size, in words.
-        counted: What is counted while they are read, and the largest number.
-    """
-
-    reads: str
-    size: str
-    counted: str
-
-
-def _of(number: float) -> str:
-    """A size in words."""
-    if number % MIB == 0:
-        return f"{number / 2**30:g} GiB" if number >= 2**30 else f"{number / MIB:g} MiB"
-    return f"{number / MB:g} MB"
-
-
-READERS = (
-    Reader(
-        "scenario, world, `robot.yaml`, `assignment.yaml`, `joint_limits.yaml` and other YAML",
-        _of(YAML_FILE),
-        f"{YAML_VALUES:,} values, with aliases expanded and included files;"
-        f" {YAML_LEVELS} levels; no tags but units",
-    ),
-    Reader(
-        "URDF, SRDF, SDF, MJCF, `package.xml`",
-        _of(XML_FILE),
-        f"{XML_ELEMENTS:,} elements, {XML_ATTRIBUTES} attributes of one, {XML_LEVELS} levels;"
-        f" no DOCTYPE; MJCF: {MJCF_FILES} files, {MJCF_COPIES:,} copies;"
-        f" SDF: {SDF_MODELS:,} models",
-    ),
-    Reader("xacro", f"{_of(XACRO_FILES)} of all files", f"{XACRO_STEPS:,} steps of a rendering"),
-    Reader(
-        "meshes (STL, OBJ, DAE, PLY, GLB)",
-        _of(MESH_FILE),
-        f"{COLLADA_NODES:,} nodes of a COLLADA scene",
-    ),
-    Reader(
-        "MoveIt scenes (`.scene`)",
-        _of(SCENE_FILE),
-        f"{SCENE_SHAPES:,} shapes of an object, {SCENE_CORNERS:,} vertices of a mesh",
-    ),
-    Reader(
-        "recordings (MCAP, sqlite3, ROS 1)",
-        f"any; {_of(BAG_FILE)} if compressed as a whole, {_of(BAG_RECORD)} for a message or chunk",
-        f"{BAG_NUMBERS:,} numbers of joints and frames, {BAG_TOPICS:,} topics,"
-        f" {BAG_SIGNALS:,} numbers of the judged signals",
-    ),
-    Reader("CSV of joint values", _of(CSV_FILE), f"{BAG_NUMBERS:,} numbers"),
-    Reader(
-        "folders of runs",
-        f"{_of(RUN_DOCUMENT)} for `run.json`, {_of(RUN_ARRAYS)} of arrays unpacked,"
-        f" {_of(PICTURE_FILE)} for a picture or video",
-        f"{PICTURE_PIXELS:,} pixels of a picture",
-    ),
-    Reader(
-        "results of suites: shards, streams, conditions, baselines",
-        f"{_of(RESULTS_DOCUMENT)}; streams: any",
-        f"{_of(RESULTS_LINE)} for one line",
-    ),
-    Reader(
-        "submissions of a class",
-        "`limits` of the assignment, counted while they are unpacked",
-        f"{SUBMISSION_FILES:,} files; archives in archives: one level",
-    ),
-    Reader(
-        "messages to the studio",
-        _of(STUDIO_MESSAGE),
-        f"{STUDIO_PAGES} pages, {STUDIO_REQUESTS} requests that wait",
-    ),
-    Reader(
-        "requests to `harness mcp`",
-        f"{MCP_TEXT:,} characters",
-        f"one process each, {MCP_COMMANDS} at the same time",
-    ),
-    Reader(
-        "ROS 2 messages on the network (RTPS)",
-        _of(RTPS_SAMPLE),
-        f"{RTPS_WAITING:,} samples of a writer that wait, {RTPS_PARTIAL} of them in fragments;"
-        f" {RTPS_PEERS} participants",
-    ),
-)
-"""What `docs/explanation/reliability.md` shows."""

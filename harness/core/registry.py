@@ -61,7 +61,6 @@ BUILT_IN = {
     "grip": "",
     "adhesion": "",
     "tracker": "",
-    "coordinator": "",
     "motion": "",
     "camera_recorder": "",
 }

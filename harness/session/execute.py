@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 
 from harness.cell.cell import Cell
 from harness.cell.program import Program, ProgramStep
+from harness.cell.runner import End, Failure, OnStep, RunEndedError
 from harness.cell.scene_state import Belief, Presence, StepNotes
 from harness.core.details import Details
 from harness.core.errors import StepFailed
-from harness.core.registry import registry
 from harness.ports.external import ExternalControl
 from harness.ports.planning import PlanningPorts
 from harness.ports.simulation import Simulator
@@ -20,7 +20,6 @@ from harness.recording.run import AttachmentRecord, ObjectRecord
 from harness.recording.step_record import StepRecord, StepStatus
 from harness.recording.step_results import SceneChange
 from harness.session.advice import advice
-from harness.session.coordinator import Coordinator, End, Failure, OnStep, RunEndedError
 from harness.steps import _tracker
 
 
@@ -41,10 +40,10 @@ class Execution:
 
 @dataclass
 class _Runner:
-    cell: Cell
     on_step: OnStep
     keep_going: bool
     timestep: float
+    cell: Cell = field(init=False)
     records: list[StepRecord] = field(default_factory=list[StepRecord])
     depth: int = 0
 
@@ -52,11 +51,6 @@ class _Runner:
         """Carry out steps in order; the first unexpected failure ends it."""
         for step in steps:
             self._run_step(step)
-
-    def run_together(self, steps: Sequence[ProgramStep]) -> tuple[float, ...]:
-        """Carry out steps of different arms at once; returns when each of them begins [s]."""
-        coordinator: Coordinator = registry(Coordinator.plugin_kind).find("rounds")()
-        return coordinator.run(self, steps)
 
     def begin(self, step: ProgramStep) -> End:
         """Begin the record of a step; returns what completes it from the cell's notes."""
@@ -142,15 +136,15 @@ class ProgramExecution:
         """
         self.program = program
         self.ended_early = ""
-        self.cell = Cell(
+        self._runner = _Runner(on_step, keep_going, program.world.timestep)
+        self.cell = self._runner.cell = Cell(
             robot=program.description,
             scene=ports.scene,
             kinematics=ports.kinematics,
             planner=ports.planner,
             simulator=simulator,
             later_objects=program.later_objects,
-            run_steps=lambda steps: self._runner.run(steps),
-            run_together=lambda steps: self._runner.run_together(steps),
+            runner=self._runner,
             cameras=program.cameras,
             external=external,
         )
@@ -159,7 +153,6 @@ class ProgramExecution:
             self.cell.believe(obj.name, obj.pose)
             if obj.in_planning:
                 ports.scene.add_object(obj, obj.pose)
-        self._runner = _Runner(self.cell, on_step, keep_going, program.world.timestep)
 
     @property
     def records(self) -> list[StepRecord]:

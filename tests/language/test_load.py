@@ -11,9 +11,9 @@ from harness.judging.expectations.never import Never
 from harness.judging.expectations.until import Until
 from harness.judging.expectations.within_limits import WithinLimits
 from harness.language.reading.load import bundled_worlds, load_scenario, load_world, parse_scenario
-from harness.steps.add_object import AddObject
-from harness.steps.allow_collisions import AllowCollisions
-from harness.steps.clear_objects import ClearObjects
+from harness.plugins.scene.steps.add_object import AddObject
+from harness.plugins.scene.steps.allow_collisions import AllowCollisions
+from harness.plugins.scene.steps.clear_objects import ClearObjects
 from harness.steps.gripper import Gripper
 from harness.steps.move_to import MoveTo
 from harness.steps.wait import Wait

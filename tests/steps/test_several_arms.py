@@ -7,9 +7,9 @@ import pytest
 from harness.judging.expectations.grasped import Grasped
 from harness.judging.expectations.lifted import Lifted
 from harness.judging.expectations.released import Released
+from harness.plugins.assembly.steps.parallel import Delays
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
-from harness.steps.parallel import Delays
 
 PAIR = """\
 robots:

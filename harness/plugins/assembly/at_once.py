@@ -6,13 +6,14 @@ from collections.abc import Generator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
+from harness.cell.cell import Cell
 from harness.cell.program import ProgramStep
+from harness.cell.runner import End, Failure, RunEndedError
 from harness.cell.scene_state import StepNotes
 from harness.core.errors import StepFailed
 from harness.plugins.assembly.merged_motion import MergedMotion
 from harness.recording.goal_failures import CollisionFailure, TouchRecord
 from harness.recording.step_record import StepRecord
-from harness.session.coordinator import End, Failure, RunEndedError, Runner
 
 
 @dataclass
@@ -56,8 +57,8 @@ class AtOnce:
     that move no arm, such as `grasp`, follow the motions of their round.
     """
 
-    def __init__(self, runner: Runner, steps: Sequence[ProgramStep]) -> None:
-        self._runner, self._cell = runner, runner.cell
+    def __init__(self, cell: Cell, steps: Sequence[ProgramStep]) -> None:
+        self._runner, self._cell = cell.runner, cell
         self._around = self._cell.step, self._cell.notes
         self._branches = [self._branch(step) for step in steps]
 

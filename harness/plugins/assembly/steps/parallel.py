@@ -13,6 +13,7 @@ from harness.cell.scope import At
 from harness.core.details import Detail
 from harness.language.files.source import Loc
 from harness.language.step import STEPS, AnyStep, Block, Step
+from harness.plugins.assembly.at_once import AtOnce
 from harness.steps.gripper import Gripper
 
 
@@ -99,5 +100,5 @@ class Parallel(Step):
                     target, effort = child.spec.command(cell)
                     cell.simulator.start_gripper(target, effort, cell.gripper.joint)
                 return cell.run_children(sorted(children, key=lambda each: each is child))
-        cell.report(Delays(cell.run_together(children)))
+        cell.report(Delays(AtOnce(cell, children).run()))
         return None

@@ -1,15 +1,12 @@
-"""What carries out steps of several arms at once, as a plug-in."""
+"""What carries out the steps that a step is made of, and how a step ends."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar, Protocol
+from typing import Protocol
 
-from harness.cell.cell import Cell
 from harness.cell.program import ProgramStep
 from harness.core.errors import StepFailed
-from harness.core.registry import Plugin
 from harness.recording.step_record import StepRecord
 
 OnStep = Callable[[ProgramStep, StepRecord | None], None]  # None: it begins
@@ -35,7 +32,6 @@ End = Callable[[Failure | None], None]  # completes the record of a step
 class Runner(Protocol):
     """Carries out steps and records them."""
 
-    cell: Cell
     on_step: OnStep
     records: list[StepRecord]
 
@@ -50,18 +46,3 @@ class Runner(Protocol):
     def begin(self, step: ProgramStep) -> End:
         """Begin the record of a step; returns what completes it from the cell's notes."""
         ...
-
-
-class Coordinator(Plugin, ABC):
-    """Carries out steps of different arms at once, for `parallel`."""
-
-    plugin_kind: ClassVar[str] = "coordinator"
-
-    @abstractmethod
-    def run(self, runner: Runner, steps: Sequence[ProgramStep]) -> tuple[float, ...]:
-        """Carry out the steps; returns when the first motion of each begins [s].
-
-        Raises:
-            RunEndedError: A step inside one failed, or none can go on.
-            StepFailed: The motions cannot go on at once, or the arms cannot follow them.
-        """

@@ -1,1 +1,0 @@
-"""Ways in which several arms work at once."""

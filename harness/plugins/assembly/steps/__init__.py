@@ -1,0 +1,1 @@
+"""Steps of several arms, one module for each."""

@@ -1,0 +1,1 @@
+"""MoveIt's operations on the planning scene: objects that come and go, are attached, may touch."""

@@ -1,0 +1,1 @@
+"""Steps that change the planning scene, one module for each."""
