@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from harness.core.activity import Activity
@@ -14,46 +15,25 @@ from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.robot.description import RobotDescription
 
+Captures = tuple[tuple[CaptureRecord, ...], Mapping[str, bytes]]
+Videos = tuple[tuple[VideoRecord, ...], Mapping[str, bytes]]
+"""Both with the files by path in the run's folder."""
 
+
+@dataclass(frozen=True, eq=False)
 class CameraRecorder(Plugin, ABC):
-    """Draws what the cameras of a finished run saw."""
+    """Draws what the cameras of a finished run saw, of the robot and of all objects."""
 
     plugin_kind: ClassVar[str] = "camera_recorder"
 
-    @abstractmethod
-    def pictures(
-        self,
-        description: RobotDescription,
-        objects: Sequence[WorldObject],
-        run: Run,
-        looks: Sequence[Look],
-        activity: Activity,
-    ) -> tuple[tuple[CaptureRecord, ...], Mapping[str, bytes]]:
-        """The requested pictures, and their files by path in the run's folder.
-
-        Args:
-            description: The robot of the run.
-            objects: All objects of the run.
-            run: The finished run, with all its recorded signals.
-            looks: The requested pictures, in order of time.
-            activity: Hears how many of them are taken.
-        """
+    description: RobotDescription
+    objects: Sequence[WorldObject]
+    run: Run
 
     @abstractmethod
-    def videos(
-        self,
-        description: RobotDescription,
-        objects: Sequence[WorldObject],
-        run: Run,
-        rates: Mapping[str, float],
-        activity: Activity,
-    ) -> tuple[tuple[VideoRecord, ...], Mapping[str, bytes]]:
-        """A video of each camera, and the files by path in the run's folder.
+    def pictures(self, looks: Sequence[Look], activity: Activity) -> Captures:
+        """The requested pictures, in order of time; `activity` hears how many are taken."""
 
-        Args:
-            description: The robot of the run.
-            objects: All objects of the run.
-            run: The finished run, with all its recorded signals.
-            rates: Frames per second of simulated time, by camera.
-            activity: Hears how many frames are recorded.
-        """
+    @abstractmethod
+    def videos(self, rates: Mapping[str, float], activity: Activity) -> Videos:
+        """A video of each camera, by its frames per second of simulated time."""

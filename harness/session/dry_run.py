@@ -32,22 +32,17 @@ class DryFaults:
     """The Faults port without physics: nothing breaks."""
 
     def set_friction(self, name: str, sliding: float) -> float:
-        del name
         return sliding
 
     def weaken_gripper(self, share: float, joint: str = "") -> float:
-        del joint
         return share
 
     def stall_joint(self, joint: str) -> bool:
-        del joint
         return False
 
-    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None:
-        del forces, duration
+    def push(self, forces: Mapping[str, FloatArray], duration: float) -> None: ...
 
     def disturb_sensors(self, deviation: float, seed: int) -> float:
-        del seed
         return deviation
 
     def delay_commands(self, latency: float) -> float:
@@ -108,21 +103,17 @@ class DrySimulator:
             self._positions[self._description.joint_index[name]] = position
         self._positions = self._description.with_mimics(self._positions)
 
-    def use_controller(self, controller: JointController | None) -> None:
-        del controller
+    def use_controller(self, controller: JointController | None) -> None: ...
 
     def force_on_robot(self, span: float, held: Collection[str]) -> float:
         """What a guarded move waits for happens."""
-        del span, held
         return float("inf")
 
     def wrench(self, sensor: str, span: float) -> FloatArray:
         """What a guarded move waits for happens."""
-        del sensor, span
         return np.full(6, np.inf)
 
     def tare(self, sensor: str, duration: float, payload: Payload | None = None) -> FloatArray:
-        del sensor, duration, payload
         return np.zeros(6)
 
     def command_gripper(
@@ -134,7 +125,6 @@ class DrySimulator:
         expected: ExpectedGrasp | None = None,
         joint: str = "",
     ) -> GripperResult:
-        del max_effort, timeout
         grippers = {gripper.joint: gripper for gripper in self._description.grippers}
         if not grippers:
             raise RuntimeError("the robot has no gripper")
@@ -159,14 +149,11 @@ class DrySimulator:
             between=touched,
         )
 
-    def start_gripper(self, position: float, max_effort: float, joint: str = "") -> None:
-        del position, max_effort, joint
+    def start_gripper(self, position: float, max_effort: float, joint: str = "") -> None: ...
 
-    def hold(self, duration: float) -> None:
-        del duration
+    def hold(self, duration: float) -> None: ...
 
     def settle(self, max_velocity: float, timeout: float) -> bool:
-        del max_velocity, timeout
         return True
 
     def add_object(self, name: str, pose: SE3) -> None:
@@ -182,11 +169,9 @@ class DrySimulator:
         return self._surfaces[name]
 
     def drive_surface(self, name: str, motion: SurfaceMotion, duration: float) -> None:
-        del duration
         self._surfaces[name] = motion
 
-    def weld(self, name: str, link: str) -> None:
-        del name, link
+    def weld(self, name: str, link: str) -> None: ...
 
     def unweld(self, name: str, believed: SE3 | None = None) -> None:
         if believed is not None:

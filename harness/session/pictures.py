@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from harness.cameras.camera_recorder import CameraRecorder
+from harness.cameras.camera_recorder import CameraRecorder, Captures
 from harness.cameras.viewpoint import OVERVIEW_STATES
 from harness.core.activity import Activity
 from harness.core.details import Details
@@ -20,7 +20,7 @@ from harness.recording.drawings import Drawings
 from harness.recording.explanation import Explanation, recorded_explanation
 from harness.recording.looks import Look, looks_of_steps, merged_looks
 from harness.recording.run import Run
-from harness.recording.signals import CaptureRecord, Signals
+from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
 from harness.session.background import Background, Later
 from harness.session.prepare import Prepared
@@ -28,8 +28,6 @@ from harness.session.run_request import RunRequest
 
 FOLDER = "images"
 MOST_EXPLAINED = 100  # most failed steps of which the state that explains them is drawn, 0.2 s each
-Captures = tuple[tuple[CaptureRecord, ...], Mapping[str, bytes]]
-"""The pictures of the scenario's cameras, and the files by path in the run's folder."""
 
 
 class Pictures:
@@ -98,13 +96,12 @@ class Pictures:
 
 
 def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
-    program = prepared.program
-    objects = program.all_objects()
-    return _recorder().pictures(program.description, objects, run, looks, activity)
+    return _recorder(prepared, run).pictures(looks, activity)
 
 
-def _recorder() -> CameraRecorder:
-    return registry(CameraRecorder.plugin_kind).find("rendered")()
+def _recorder(prepared: Prepared, run: Run) -> CameraRecorder:
+    kind: type[CameraRecorder] = registry(CameraRecorder.plugin_kind).find("rendered")
+    return kind(prepared.program.description, prepared.program.all_objects(), run)
 
 
 def _shown(run: Run) -> Run:
@@ -156,7 +153,7 @@ def _drawings(
         files, meshes, note = {}, mesh_records(get_shown()), ""
     if run is None or not program.videos:
         return Drawings(meshes, (), files, note)
-    videos, films = _recorder().videos(description, objects, run, program.videos, activity)
+    videos, films = _recorder(prepared, run).videos(program.videos, activity)
     return Drawings(meshes, videos, {**files, **films}, note)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from harness.cameras.camera_recorder import Captures
 from harness.core.versions import library_versions
 from harness.language.reading.resolve import resolved_text
 from harness.ports.simulation import RecordingSimulator
@@ -17,7 +18,7 @@ from harness.session.observation.contacts import contact_records
 from harness.session.observation.findings import findings_of, notes_of_files, overlap_findings
 from harness.session.observation.observe import observed_signals, report_findings
 from harness.session.observation.observer import observed
-from harness.session.pictures import Captures, with_picture_names
+from harness.session.pictures import with_picture_names
 from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 

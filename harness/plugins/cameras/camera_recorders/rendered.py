@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
-from harness.cameras.camera_recorder import CameraRecorder
+from harness.cameras.camera_recorder import CameraRecorder, Captures, Videos
 from harness.core.activity import Activity
-from harness.core.world import WorldObject
 from harness.recording.looks import Look
-from harness.recording.run import Run
-from harness.recording.signals import CaptureRecord, VideoRecord
-from harness.robot.description import RobotDescription
 
 
 class RenderedCameras(CameraRecorder):
@@ -19,28 +15,14 @@ class RenderedCameras(CameraRecorder):
 
     name: ClassVar[str] = "rendered"
 
-    def pictures(
-        self,
-        description: RobotDescription,
-        objects: Sequence[WorldObject],
-        run: Run,
-        looks: Sequence[Look],
-        activity: Activity,
-    ) -> tuple[tuple[CaptureRecord, ...], Mapping[str, bytes]]:
+    def pictures(self, looks: Sequence[Look], activity: Activity) -> Captures:
         """Pictures of the ray renderer, which are the same on every machine."""
         from harness.plugins.cameras.captures import take_pictures
 
-        return take_pictures(description, objects, run, looks, activity)
+        return take_pictures(self.description, self.objects, self.run, looks, activity)
 
-    def videos(
-        self,
-        description: RobotDescription,
-        objects: Sequence[WorldObject],
-        run: Run,
-        rates: Mapping[str, float],
-        activity: Activity,
-    ) -> tuple[tuple[VideoRecord, ...], Mapping[str, bytes]]:
+    def videos(self, rates: Mapping[str, float], activity: Activity) -> Videos:
         """Videos of the fastest renderer of the machine."""
         from harness.plugins.cameras.videos import record_videos  # loads a video library
 
-        return record_videos(description, objects, run, rates, activity=activity)
+        return record_videos(self.description, self.objects, self.run, rates, activity=activity)
