@@ -11,7 +11,7 @@ from harness.cameras.caption import captioned_jpeg
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
 from harness.cameras.picture_model import PictureModel, build_picture_model
 from harness.cameras.renderer import render_overview
-from harness.cameras.stills import HEIGHT, WIDTH
+from harness.cameras.stills import HEIGHT, LINK_RADIUS, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
@@ -19,8 +19,6 @@ from harness.recording.explanation import NearestState, recorded_explanation
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 from harness.robot.description import RobotDescription
-
-ARM_SIZE = 0.12  # radius around a link's origin that the view contains [m]
 
 
 def draw_failure(
@@ -90,7 +88,7 @@ def _in_view(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Centres and radii of the bodies that the view contains: the arm and the marks."""
     points = [poses[link.name].translation for link in description.links if link.name != "world"]
-    radii = [ARM_SIZE] * len(points)
+    radii = [LINK_RADIUS] * len(points)
     for each in marks:
         points.append(each.pose.translation)
         radii.append(max(bounding_radius(shape) for shape in each.shapes))

@@ -8,21 +8,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from harness.cameras.camera_scene import floor_height, scene_poses
-from harness.cameras.caption import DARK, RED, captioned_jpeg
+from harness.cameras.caption import DARK, RED, captioned_jpeg, strip_height
 from harness.cameras.picture_model import build_picture_model, undrawn
 from harness.cameras.renderer import make_renderer
-from harness.cameras.viewpoint import OVERVIEW_STATES, Viewpoint, fit_viewpoint
+from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.recording.run import Run
+from harness.recording.touched import touched_objects
 from harness.robot.description import RobotDescription
 
-WIDTH, HEIGHT = 640, 480  # [pixels]
+WIDTH, HEIGHT = 640, 480 - strip_height()  # [pixels], without the caption
 SHADOW_SIZE = 1024  # [pixels]
 MOST_STEPS = 400  # that are drawn, at 20 to 100 ms each: the first and the last ones
-FARTHEST_IN_VIEW = 1.3  # [m]; objects farther from the base may be outside the view
+LINK_RADIUS = 0.07  # [m] around a link's frame, which a view contains: the arms' joints
+LARGE_OBJECT = 0.6  # [m]: a table widens no view
 UNSEEN = 5e-4  # [m], a motion that a picture does not show, below half a pixel; directions too
 
 INK = {"passed": (40, 130, 60), "expected error": (40, 130, 60), "failed": RED}
@@ -85,11 +87,10 @@ class StepRenderer:
             )
 
     def draw(self, run: Run, activity: Activity = unobserved) -> Stills:
-        """Draw a JPEG of every executed step, 640 x 480."""
+        """Draw a JPEG of every executed step, 640 x 480 with its caption."""
         steps = [step for step in run.steps if step.status != "not reached"]
         if not steps or not len(run.signals.times):
             return Stills()
-        view = overview(self._description, self._objects, run).view
         files: dict[str, bytes] = {}
         shown: dict[str, SE3] = {}
         picture = np.empty(0)
@@ -101,6 +102,7 @@ class StepRenderer:
             poses = scene_poses(self._description, self._objects, run, sample, step)
             if not looks_alike(poses, shown):
                 self._picture.pose(poses)
+                view = overview(self._description, self._objects, run, [sample]).view
                 picture, shown = self._renderer.render(view), poses
             files[f"{number:02d}-{step.slug}.jpg"] = captioned_jpeg(
                 picture,
@@ -129,31 +131,36 @@ def looks_alike(poses: Mapping[str, SE3], others: Mapping[str, SE3]) -> bool:
 
 
 def overview(
-    description: RobotDescription, world_objects: Sequence[WorldObject], run: Run
+    description: RobotDescription,
+    world_objects: Sequence[WorldObject],
+    run: Run,
+    samples: Sequence[int],
+    size: tuple[int, int] = (WIDTH, HEIGHT),
 ) -> Viewpoint:
-    """A view that contains the robot in all its recorded states and the objects around it."""
-    last = len(run.signals.times) - 1
+    """A view that is filled by the robot and what it touched, in all of the given samples.
+
+    Args:
+        size: Width and height of the picture [pixels].
+    """
     points: list[np.ndarray] = []
     radii: list[float] = []
-    link_sizes = {
-        link.name: max((bounding_radius(shape) for shape in link.collisions), default=0.03)
-        for link in description.links
+    touched = touched_objects(run)
+    sizes = {
+        obj.name: max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
+        for obj in world_objects
+        if obj.name in touched
     }
-    for sample in np.unique(np.linspace(0, last, OVERVIEW_STATES).astype(int)):
-        poses = description.link_poses(run.signals.joint_positions[sample])
-        for name, size in link_sizes.items():
-            if name != "world":
-                points.append(poses[name].translation)
-                radii.append(min(size, 0.15))
-    base = description.link_poses(run.signals.joint_positions[0])[description.base_link]
-    for sample in (0, last):
-        scene = scene_poses(description, world_objects, run, int(sample))
-        for obj in world_objects:
-            size = max((bounding_radius(shape) for shape in obj.shapes), default=0.0)
-            pose = scene.get(obj.name)
-            if pose is None or not size < 0.6:
+    for sample in samples:
+        scene = scene_poses(description, world_objects, run, sample)
+        arm = [scene[link.name].translation for link in description.links if link.name != "world"]
+        points += arm
+        radii += [LINK_RADIUS] * len(arm)
+        reach = np.ptp(arm, axis=0).max() if arm else 0.0
+        for name, radius in sizes.items():
+            if name not in scene or radius >= LARGE_OBJECT:
                 continue
-            if np.linalg.norm(pose.translation - base.translation) < FARTHEST_IN_VIEW:
-                points.append(pose.translation)
-                radii.append(size)
-    return fit_viewpoint(np.array(points), np.array(radii), WIDTH, HEIGHT)
+            place = scene[name].translation
+            if np.linalg.norm(np.array(arm) - place, axis=1).min() < max(reach, LARGE_OBJECT):
+                points.append(place)
+                radii.append(radius)
+    return fit_viewpoint(np.array(points), np.array(radii), *size)

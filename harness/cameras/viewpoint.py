@@ -13,7 +13,7 @@ from harness.core.types import FloatArray
 AZIMUTH, ELEVATION = 146.0, -24.0  # [deg]: from the front right of a robot that faces +x
 FIELD_OF_VIEW = 38.0  # [deg], vertical
 FILLED = 0.86  # share of the picture that the fitted spheres may fill
-OVERVIEW_STATES = 40  # that an overview is fitted to, besides the ends of steps
+CLOSEST = 0.4  # [m] from what is seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,14 +83,14 @@ def fit_viewpoint(points: FloatArray, radii: FloatArray, width: int, height: int
     """
     rotation = _camera_rotation(AZIMUTH, ELEVATION)
     local = points @ rotation
-    low = (local - radii[:, None]).min(axis=0)
-    high = (local + radii[:, None]).max(axis=0)
-    middle = 0.5 * (low + high)
     slope = FILLED * np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
     slopes = np.array([slope * width / height, slope])
-    offsets = np.abs(local - middle)[:, :2] + radii[:, None]
-    needed = (offsets / slopes).max(axis=1) + (local[:, 2] - middle[2])
-    return Viewpoint(rotation @ middle, max(0.4, float(needed.max())))
+    reach = radii[:, None] + slopes * local[:, 2:]
+    high, low = (reach + local[:, :2]).max(axis=0), (reach - local[:, :2]).max(axis=0)
+    centre = 0.5 * (high - low)  # where the farthest spheres of both sides touch the edges
+    depth = 0.5 * (local[:, 2].min() + local[:, 2].max())
+    distance = float((0.5 * (high + low) / slopes).max()) - depth
+    return Viewpoint(rotation @ np.array([*centre, depth]), max(CLOSEST, distance))
 
 
 def _camera_rotation(azimuth: float, elevation: float) -> FloatArray:

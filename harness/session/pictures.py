@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from harness.cameras.camera_recorder import CameraRecorder, Captures
-from harness.cameras.viewpoint import OVERVIEW_STATES
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
@@ -107,13 +106,12 @@ def _recorder(prepared: Prepared, run: Run) -> CameraRecorder:
 def _shown(run: Run) -> Run:
     """The run with the samples and the signals that pictures of its steps show.
 
-    These are the ends of the steps, the samples after them, and `OVERVIEW_STATES` others.
+    These are the ends of the steps and the samples after them.
     """
     signals, none = run.signals, np.empty(0)
     last = len(signals.times) - 1
     ends = np.clip([step.end_index - 1 for step in run.steps], 0, last).astype(np.int64)
-    spread = np.linspace(0, last, OVERVIEW_STATES).astype(np.int64)
-    rows = np.unique(np.concatenate([ends, np.minimum(ends + 1, last), spread]))[: last + 1]
+    rows = np.unique(np.concatenate([ends, np.minimum(ends + 1, last)]))
     new_ends = np.searchsorted(rows, ends) + 1
     moved = signals.times[rows], signals.joint_positions[rows], none, none, none, none, none
     poses = {name: poses[rows] for name, poses in signals.object_poses.items()}

@@ -39,7 +39,7 @@ def draw(description, run, sample, backend):
     except RuntimeError as error:
         pytest.skip(str(error))
     try:
-        return renderer.render(overview(description, OBJECTS, run).view)
+        return renderer.render(overview(description, OBJECTS, run, range(4)).view)
     finally:
         renderer.close()
 
@@ -60,7 +60,7 @@ def mean_colour(picture, viewpoint, point):
 @pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
 def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
     run = a_run(ur3e)
-    viewpoint = overview(ur3e, OBJECTS, run)
+    viewpoint = overview(ur3e, OBJECTS, run, range(4))
     place = RED_BOX.pose.translation
     raised = place + np.array([0, 0, 0.2])
     red, green, blue = mean_colour(draw(ur3e, run, 0, backend), viewpoint, place)
@@ -75,7 +75,7 @@ def test_objects_are_drawn_where_they_were_recorded(ur3e, backend):
 @pytest.mark.parametrize("backend", ["egl", "osmesa", "rays"])
 def test_an_object_of_the_planner_alone_is_translucent(ur3e, backend):
     run = a_run(ur3e)
-    viewpoint = overview(ur3e, OBJECTS, run)
+    viewpoint = overview(ur3e, OBJECTS, run, range(4))
     place = IMAGINED.pose.translation
     ghost = mean_colour(draw(ur3e, run, 0, backend), viewpoint, place)
     floor = mean_colour(draw(ur3e, run, 2, backend), viewpoint, place)
@@ -263,6 +263,22 @@ def test_the_overview_holds_every_point():
     assert rows.max() < SIZE[1]
     filled = max(np.ptp(columns) / SIZE[0], np.ptp(rows) / SIZE[1])
     assert filled > 0.7
+
+
+@pytest.mark.parametrize("objects", [(), OBJECTS])
+@pytest.mark.parametrize("size", [(640, 480), (960, 400)])
+def test_an_overview_is_filled_by_the_arm_and_what_moved(ur3e, objects, size):
+    """A table, and what stands far away, make neither small; a link's frame is in the picture."""
+    far = replace(RED_BOX, name="far", pose=SE3.from_xyz_rpy((4, 4, 0.1)))
+    run = a_run(ur3e)
+    view = overview(ur3e, (*objects, far), run, range(4), size).view
+    focal = 0.5 * size[1] / np.tan(np.radians(view.field_of_view) / 2)
+    frames = [pose.translation for pose in ur3e.link_poses(run.signals.joint_positions[0]).values()]
+    box = [RED_BOX.pose.apply(np.array([0, 0, 0.2]))] if objects else []
+    local = np.array([view.pose.inverse().apply(point) for point in (*frames, *box)])
+    seen = np.abs(focal * local[:, :2] / local[:, 2:]) / np.array(size) * 2
+    assert seen.max() < 1
+    assert np.ptp(focal * local[:, 1] / local[:, 2]) > 0.55 * size[1]
 
 
 @pytest.mark.nightly

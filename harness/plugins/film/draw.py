@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 
 import numpy as np
 
 from harness.cameras.camera_scene import floor_height, scene_poses
-from harness.cameras.caption import DARK, RED, captioned
+from harness.cameras.caption import DARK, RED, captioned, strip_height
 from harness.cameras.picture_model import build_picture_model
 from harness.cameras.renderer import make_renderer
 from harness.cameras.stills import INK, overview
@@ -23,6 +23,8 @@ from harness.recording.stored_run import StoredRun
 SIZE = 960, 540  # [pixels]: slides and phones show it whole
 RATE = 15.0  # frames per second of simulated time
 MOST_FRAMES = 900  # a minute, drawn in two minutes of processor time; of longer runs fewer a second
+LINES = 2  # of a caption
+FITTED = 40  # samples, which the view of a film contains
 
 
 def draw_film(
@@ -45,7 +47,9 @@ def draw_film(
     from harness.recording.film import encoded_film
 
     rate = min(rate, MOST_FRAMES / max(stored.run.duration, 1e-9))
-    with closing(ReplayRenderer(stored, size)) as renderer:
+    last = len(stored.run.signals.times) - 1
+    fitted = np.unique(np.linspace(0, last, FITTED).astype(int)).tolist()
+    with closing(ReplayRenderer(stored, size, fitted)) as renderer:
         return encoded_film(renderer.pictures(rate, activity), rate, size)
 
 
@@ -54,25 +58,33 @@ def draw_moment(stored: StoredRun, size: tuple[int, int] = SIZE) -> bytes:
     moment = deciding_moment(stored)
     times = stored.run.signals.times
     sample = min(int(np.searchsorted(times, moment.time - 1e-9)), len(times) - 1)
-    with closing(ReplayRenderer(stored, size)) as renderer:
+    with closing(ReplayRenderer(stored, size, [sample])) as renderer:
         return jpeg(renderer.picture(Frame(sample, None, moment)))
 
 
 class ReplayRenderer:
     """Draws recorded samples of a saved run from one side."""
 
-    def __init__(self, stored: StoredRun, size: tuple[int, int]) -> None:
-        """Load the shapes and the graphics library."""
+    def __init__(self, stored: StoredRun, size: tuple[int, int], fitted: Sequence[int]) -> None:
+        """Load the shapes and the graphics library.
+
+        Args:
+            size: Width and height in pixels.
+            fitted: The samples that the view contains.
+        """
         self._stored, run = stored, stored.run
         self._objects = [_object(record) for record in run.objects]
         floor = floor_height(run.robot, self._objects)
         width, height = size
+        self._letters = max(8, height // 30)  # 18 of 540, which a phone shows legibly
+        height -= strip_height(self._letters, LINES)
+        size = width, height
         self._picture = build_picture_model(
             run.robot, self._objects, floor_height=floor, width=width, height=height
         )
         self._picture.model.vis.quality.offsamples = 0  # half of the time on a processor
         self._renderer = make_renderer(self._picture, width, height, "auto")
-        self._view = overview(run.robot, self._objects, run).view
+        self._view = overview(run.robot, self._objects, run, fitted, size).view
 
     def pictures(self, rate: float, activity: Activity = unobserved) -> Iterator[np.ndarray]:
         """The captioned pictures of a film, RGB."""
@@ -89,7 +101,9 @@ class ReplayRenderer:
         self._picture.pose(scene_poses(run.robot, self._objects, run, frame.sample))
         pixels = self._renderer.render(self._view)
         text, status, ink = self._words(frame)
-        return captioned(pixels, text, ink=ink, status=status, status_ink=ink)
+        return captioned(
+            pixels, text, ink=ink, status=status, status_ink=ink, size=self._letters, lines=LINES
+        )
 
     def _words(self, frame: Frame) -> tuple[str, str, tuple[int, int, int]]:
         """Caption and status below the picture, and their colour."""

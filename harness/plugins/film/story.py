@@ -61,7 +61,7 @@ def deciding_moment(stored: StoredRun) -> Moment:
 
 
 def _failures(stored: StoredRun) -> list[Moment]:
-    """Steps and expectations that failed, by their times."""
+    """Steps and expectations that failed, in the order in which a page lists them."""
     failed = [step for step in stored.run.steps if step.status == "failed"]
     steps = [
         Moment(each.end_time, f"{each.error_code} {each.message}".strip(), is_good=False)
@@ -73,7 +73,7 @@ def _failures(stored: StoredRun) -> list[Moment]:
         for each in stored.verdicts
         if each.status == "failed" and np.isfinite(each.time)
     ]
-    return sorted([*steps, *verdicts], key=lambda moment: moment.time)
+    return [*steps, *verdicts]
 
 
 def _sentence(verdict: Verdict) -> str:
@@ -88,7 +88,7 @@ def frames_of(stored: StoredRun, rate: float) -> Iterator[Frame]:
         rate: Frames per second of simulated time.
     """
     run, times = stored.run, stored.run.signals.times
-    due = _failures(stored)
+    due = sorted(_failures(stored), key=lambda moment: moment.time)
     count = int(np.floor(run.duration * rate + 1e-6)) + 1
     for number in range(count):
         is_last = number == count - 1

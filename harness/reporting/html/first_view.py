@@ -10,6 +10,7 @@ import numpy as np
 from harness.core.geometry import Plane, bounding_radius
 from harness.core.types import FloatArray
 from harness.recording.run import ObjectRecord, Run
+from harness.recording.touched import touched_objects
 
 FARTHEST = 20.0  # [m]; what fell off the world is drawn there
 LARGE = 0.6  # [m]: a table does not widen the first view
@@ -37,7 +38,7 @@ def first_view(
     arm = max(float(np.linalg.norm(points - base, axis=1).max(initial=0.0)) for points in near)
     away = np.array(explained or [base]) - base
     near.append(base + away * np.clip(OUTSIDE * arm / _lengths(away), 0, 1)[:, None])
-    touched = {*named, *_touched(run)}
+    touched = {*named, *touched_objects(run)}
     wide: list[FloatArray] = []
     for obj in run.objects:
         if any(isinstance(shape.geometry, Plane) for shape in obj.looks):
@@ -54,15 +55,6 @@ def first_view(
 
 def _lengths(vectors: FloatArray) -> FloatArray:
     return np.maximum(np.linalg.norm(vectors, axis=1), 1e-9)
-
-
-def _touched(run: Run) -> set[str]:
-    """Objects that the robot touched or carried; where there are none, those that can move."""
-    links = set(run.robot.link_names)
-    pairs = [contact.pair for contact in run.contacts if links & set(contact.pair)]
-    touched = {name for pair in pairs for name in pair if name not in links}
-    touched |= {held.represents for held in run.attachments}
-    return touched or {obj.name for obj in run.objects if not obj.is_static}
 
 
 def _outermost(points: FloatArray) -> list[list[float]]:

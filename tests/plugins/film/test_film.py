@@ -65,11 +65,11 @@ def test_every_picture_names_the_step_that_runs():
     assert min(shown.count("one"), shown.count("two")) >= 9
 
 
-def test_the_deciding_moment_is_the_first_failure_or_else_the_least_room():
+def test_the_deciding_moment_is_the_first_listed_failure_or_else_the_least_room():
     passed = [verdict("passed", 0.3, 0.2), verdict("passed", 0.6, 0.9), verdict("passed", 0.9, 0.4)]
     assert deciding_moment(stored(lift_run(), *passed)).time == 0.6
     failed = [*passed, verdict("failed", 1.5), verdict("failed", 1.2)]
-    assert deciding_moment(stored(lift_run(), *failed, outcome="failed")).time == 1.2
+    assert deciding_moment(stored(lift_run(), *failed, outcome="failed")).time == 1.5
     end = deciding_moment(stored(lift_run()))
     assert (end.time, end.is_good) == (lift_run().duration, True)
     picture = cv2.imdecode(np.frombuffer(draw_moment(stored(lift_run()), (320, 180)), np.uint8), 1)

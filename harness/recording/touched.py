@@ -1,0 +1,25 @@
+"""The objects of a run that pictures and views are about."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.recording.run import Run
+
+MOVED = 0.01  # [m]: farther than objects settle
+
+
+def touched_objects(run: Run) -> set[str]:
+    """Objects that the robot touched or carried, or that moved; without any, those that can."""
+    links = set(run.robot.link_names)
+    pairs = [contact.pair for contact in run.contacts if links & set(contact.pair)]
+    touched = {name for pair in pairs for name in pair if name not in links}
+    touched |= {held.represents for held in run.attachments}
+    touched |= {name for name, poses in run.signals.object_poses.items() if _moves(poses[:, :3])}
+    return touched or {obj.name for obj in run.objects if not obj.is_static}
+
+
+def _moves(places: FloatArray) -> bool:
+    known = places[np.isfinite(places).all(axis=1)]
+    return len(known) > 0 and bool((np.ptp(known, axis=0) > MOVED).any())
