@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from harness.core.error_text import error_text
 from harness.core.errors import HarnessError, SpecError
@@ -25,7 +26,9 @@ from harness.reporting.progress_events import (
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
 from harness.suite.case_runner import case_runner
+from harness.suite.discovery import SUFFIX
 from harness.suite.environment import prepare_process
+from harness.suite.header import read_header
 from harness.suite.leftovers import clean_leftovers
 from harness.suite.server import preload
 from harness.suite.warm import REPORT_MODULES, Ended, Heard, WarmServer
@@ -62,7 +65,10 @@ def run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseRes
         notify(Working(text, is_slow=True))
 
     with reported_to(slow):
-        return replace(_run_job(job, notify), inputs=inputs_read())
+        result = _run_job(job, notify)
+        if result.outcome == "invalid":
+            result = replace(result, title=stated_title(job))
+        return replace(result, inputs=inputs_read())
 
 
 def _run_job(job: RunRequest, notify: Callable[[ProgressEvent], None]) -> CaseResult:
@@ -275,7 +281,18 @@ def progress_text(event: ProgressEvent) -> str:
 
 def error_result(job: RunRequest, message: str) -> CaseResult:
     """The outcome of a case in which the harness, or a native library, broke."""
-    title = job.file.name.removesuffix(".scenario.yaml")
     return CaseResult(
-        str(job.file), job.case, title, "error", seed=job.seed or 0, message=message.rstrip()
+        job.shown_file,
+        job.case,
+        stated_title(job),
+        "error",
+        seed=job.seed or 0,
+        message=message.rstrip(),
     )
+
+
+def stated_title(job: RunRequest) -> str:
+    """The title that a file states, whatever else is wrong with it; else its name."""
+    title = read_header(job.file, job.overrides, job.text).title
+    name = Path(job.shown_file).name
+    return name if name == title + SUFFIX else title
