@@ -18,6 +18,7 @@ from harness.plugins.ros.bag.messages import message
 from harness.plugins.ros.interfaces import COMMAND, GRIPPER
 from harness.plugins.ros.joint_states import GRID, JointStates
 from harness.plugins.ros.prefix import Prefix
+from harness.plugins.ros.refused_steps import refuse_steps
 from harness.plugins.ros.remote_controllers import (
     PATIENCE,
     SILENCE,
@@ -59,6 +60,7 @@ def run_on_robot(
 
     def start(request: RunRequest, _: Clock) -> Start[RemoteArm]:
         prepared = prepare(request.file, request.overrides, request.seed, request.text)
+        refuse_steps(prepared)
         return Start(prepared, connect(prepared))
 
     return run_case(request, notify, start=start)

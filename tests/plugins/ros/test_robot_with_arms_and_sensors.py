@@ -128,16 +128,41 @@ def test_a_wrist_sensor_of_a_robot_is_tared_recorded_and_judged(tmp_path):
     assert np.linalg.norm(wrench[10, :3]) == pytest.approx(9.8 * mass, rel=0.01)
 
 
-def test_a_guarded_move_is_refused_before_the_robot_moves(tmp_path, capsys):
-    down = (
-        "{direction: {xyz: [0, 0, -1]}, force: 5 N, sensor: wrist, max_distance: 1 cm, speed: 0.01}"
-    )
-    plan = planned(tmp_path, scenario, f"- move_until: {down}", robot=SENSOR)
-    with bridge(scenario(tmp_path, HOLD, robot=SENSOR)) as (node, results):
-        assert remote(plan, node, "--yes") == 1
-    said = " ".join(capsys.readouterr().out.split())
-    assert "ABORT: motions of a ROS 2 robot end at rest" in said
-    assert results[0].commands == 0
+DOWN = "{direction: {xyz: [0, 0, -1]}, force: 5 N, max_distance: 1 cm}"
+BOX = "{name: box, box: {size: [2 cm, 2 cm, 2 cm]}, pose: {xyz: [0.2, 0, 0.01]}%s}"
+BELT = (
+    "objects: [{name: belt, static: true, box: {size: [0.4, 0.1, 0.02]},"
+    " pose: {xyz: [0.3, 0.2, 0.01]}, surface_velocity: 0}]\nexpect: [{always: within_limits}]"
+)
+
+
+@pytest.mark.parametrize(
+    ("steps", "line", "word"),
+    [
+        (f"- wait: 0.1\n- move_until: {DOWN}", 5, "move_until"),
+        ("- comply: {stiffness: {z: 500}, during: [{wait: 0.1}]}", 4, "comply"),
+        ("- repeat: {times: 2, steps: [{conveyor: {object: belt, velocity: 0.1}}]}", 4, "conveyor"),
+        (f"- add_object: {BOX % ''}", 4, "add_object"),
+        ("- inject: {sensor_noise: 0.001}", 4, "inject"),
+        ("- parallel: [{gripper: open}, {ptp: {joints: {joint1: 0.2}}}]", 4, "parallel"),
+    ],
+)
+def test_what_no_robot_can_do_is_refused_at_its_line(tmp_path, capsys, steps, line, word):
+    plan = scenario(tmp_path, steps, BELT)
+    with free_domain() as domain:
+        options = ["--robot", "ros2", "--yes", "--no-report", "--domain", str(domain)]
+        assert main(["run", str(plan), *options]) == 2
+    said = " ".join("".join(capsys.readouterr()).replace("|", " ").split())
+    assert f"scenario.yaml:{line}:" in said
+    assert f"`{word}` is not possible on a ROS 2 robot: " in said
+    assert "without `--robot ros2` the step is simulated" in said
+
+
+def test_objects_of_the_planning_scene_alone_are_not_refused(tmp_path):
+    steps = f"- add_object: {BOX % ', in: planning'}\n- remove_object: box\n- wait: 0.1"
+    plan = planned(tmp_path, scenario, steps, "expect: [{joints: {positions: {joint1: 0}}}]")
+    with bridge(scenario(tmp_path, HOLD)) as (node, _):
+        assert remote(plan, node, "--yes") == 0
 
 
 def read(sensor, *readings):
