@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from harness.language.base import Angle, Length, Number, SpecModel, Xyz
+from harness.language.base import Angle, Force, Length, Number, SpecModel, Torque, Xyz, quantity
 
-NonNegative = Annotated[Number, Field(ge=0)]
+NOT_NEGATIVE = Field(ge=0)
 
 
 class _Motion(SpecModel):
@@ -35,11 +35,15 @@ class HingeSpec(_Motion):
     )
     range: tuple[Angle, Angle] = Field(description="The limits of its position [rad].")
     start: Angle = Field(default=0.0, description="The position at the start [rad].")
-    friction: NonNegative = Field(default=0.05, description="The friction torque [N m].")
-    damping: NonNegative = Field(
+    friction: Annotated[Torque, NOT_NEGATIVE] = Field(
+        default=0.05, description="The friction torque [N m]."
+    )
+    damping: Annotated[float, BeforeValidator(quantity("N*m*s/rad")), NOT_NEGATIVE] = Field(
         default=0.02, description="The resistance for each velocity [N m s/rad]."
     )
-    stiffness: NonNegative = Field(default=0.0, description="The stiffness of a spring [N m/rad].")
+    stiffness: Annotated[float, BeforeValidator(quantity("N*m/rad")), NOT_NEGATIVE] = Field(
+        default=0.0, description="The stiffness of a spring [N m/rad]."
+    )
     rest: Angle = Field(
         default=0.0, description="The position at which the spring is relaxed [rad]."
     )
@@ -57,11 +61,15 @@ class SlideSpec(_Motion):
 
     range: tuple[Length, Length] = Field(description="The limits of its position [m].")
     start: Length = Field(default=0.0, description="The position at the start [m].")
-    friction: NonNegative = Field(default=0.5, description="The friction force [N].")
-    damping: NonNegative = Field(
+    friction: Annotated[Force, NOT_NEGATIVE] = Field(
+        default=0.5, description="The friction force [N]."
+    )
+    damping: Annotated[float, BeforeValidator(quantity("N*s/m")), NOT_NEGATIVE] = Field(
         default=1.0, description="The resistance for each velocity [N s/m]."
     )
-    stiffness: NonNegative = Field(default=0.0, description="The stiffness of a spring [N/m].")
+    stiffness: Annotated[float, BeforeValidator(quantity("N/m")), NOT_NEGATIVE] = Field(
+        default=0.0, description="The stiffness of a spring [N/m]."
+    )
     rest: Length = Field(
         default=0.0, description="The position at which the spring is relaxed [m]."
     )

@@ -126,7 +126,7 @@ class _Case:
             steps=tuple(StepLine.of(step) for step in run.steps),
             verdicts=verdicts,
             message=refusal if outcome == "error" else message,
-            notes=(*warned, *_notes(self.prepared, overlaps), *never_held(run)),
+            notes=(*warned, *_notes(self.prepared, overlaps), *never_held(run), *_noted(run)),
             is_idle=stood_still(run),
             overlap=-overlaps[0].distance if overlaps else 0.0,
             redraws=draw,
@@ -171,6 +171,11 @@ def _notes(prepared: Prepared, overlaps: Sequence[Touch]) -> tuple[str, ...]:
     """What the user should know of the scenario file, and of objects that overlap."""
     about_file = (finding.message for finding in prepared.about_file)
     return (*about_file, *(overlap_note(prepared, touch) for touch in overlaps))
+
+
+def _noted(run: Run) -> tuple[str, ...]:
+    """What observers found that makes a run worthless, whatever its verdicts say."""
+    return tuple(each.message for each in run.findings if each.kind == "fallen_part")
 
 
 def _invalid(request: RunRequest, error: SpecError) -> CaseResult:
