@@ -122,10 +122,14 @@ class IkSolver(Plugin, ABC):
     Its answers are compared with forward kinematics, and those that miss the goal are refused.
 
     Attributes:
+        title: What explanations call it; empty for its name.
+        is_closed_form: A built-in one that `auto` tries before the numeric solver.
         is_refined: Answers are exact only for an ideal arm, and are refined by Newton steps.
     """
 
     plugin_kind: ClassVar[str] = "ik_solver"
+    title: ClassVar[str] = ""
+    is_closed_form: ClassVar[bool] = False
     is_refined: ClassVar[bool] = False
 
     @classmethod
@@ -137,3 +141,9 @@ class IkSolver(Plugin, ABC):
     @abstractmethod
     def solve(self, request: IkRequest) -> IkResult:
         """Find joint positions; a new object of the class is made for every goal."""
+
+    @classmethod
+    def branch_name(cls, request: IkRequest, positions: FloatArray) -> str:
+        """Name the posture of a solution, `forwards, elbow up`; empty without branches."""
+        del request, positions
+        return ""

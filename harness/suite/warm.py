@@ -22,7 +22,7 @@ from harness.suite.environment import server_environment, use_one_thread
 from harness.suite.server import receive, send
 
 RUN_MODULES = (
-    "harness.planning.ik.solvers.ur",
+    "harness.planning.ik.solvers.numeric",
     "harness.planning.search.pipelines.ompl",
     "harness.session.run_case",
     "harness.simulation.mujoco_simulator",

@@ -10,7 +10,6 @@ import pytest
 from harness.core.errors import PlanningFailed
 from harness.core.geometry import Box, Shape
 from harness.core.spatial import SE3, wxyz_from_xyzw
-from harness.planning.goals.goal_study import branch_name
 from harness.planning.ik.nearest_pose import (
     EVEN,
     KEEP_TURN,
@@ -18,6 +17,7 @@ from harness.planning.ik.nearest_pose import (
     nearest_pose,
 )
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.closed_forms.ik_solvers.ur import UrSolver
 from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
 from harness.ports.motion_planning import MotionRequest, PlanningOptions
 from harness.ports.motions import FreeMotion, JointMotion, LinearMotion, RelativeMotion
@@ -149,12 +149,14 @@ def test_a_goal_in_collision_is_free_where_the_explanation_moves_it():
 def test_the_branches_of_a_ur_have_eight_names():
     cell = Cell(ur("ur5e"))
     space = GroupSpace(cell.kinematics.robot, ARM, cell.state)
-    found = cell.kinematics.solve(ARM, grasp_goal(0.32, -0.17, 0.08), cell.state, 0)
-    names = {branch_name(cell.kinematics, space, "ur", q) for q in found}
+    goal = grasp_goal(0.32, -0.17, 0.08)
+    request = cell.kinematics.request(space, goal, cell.state, 0)
+    found = cell.kinematics.solve(ARM, goal, cell.state, 0)
+    names = {UrSolver.branch_name(request, q) for q in found}
     assert len(names) == len(found) == 8
-    zero = branch_name(cell.kinematics, space, "ur", np.array([0.3, -1.2, 1.5, -1.0, 1.0, 0]))
+    zero = UrSolver.branch_name(request, np.array([0.3, -1.2, 1.5, -1.0, 1.0, 0]))
     assert zero == "forwards, elbow up, wrist_2_joint > 0"
-    over = branch_name(cell.kinematics, space, "ur", np.array([0.3, -1.9, -1.5, -1.0, -1.0, 0]))
+    over = UrSolver.branch_name(request, np.array([0.3, -1.9, -1.5, -1.0, -1.0, 0]))
     assert over == "backwards, elbow up, wrist_2_joint < 0"
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.core.registry import described
+from harness.core.registry import described, registry
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import touch_records
 from harness.planning.collision.wording import (
@@ -25,17 +25,13 @@ from harness.ports.kinematics import IkSolver
 from harness.recording.explanation import FreeShift, NearestState, Stage
 
 MOST_DETAILS = 8  # Number of branches that are listed individually
-_METHODS = {
-    "ur": "closed form of Universal Robots",
-    "open_manipulator_x": "closed form of OpenMANIPULATOR-X",
-    "numeric": "numeric, with restarts",
-}
 
 
 def branches_finding(request: StageRequest, goal: LinkGoal, study: GoalStudy) -> StageFinding:
     """The result of every branch: free, in collision, or beyond a joint limit, with the numbers."""
     answer = study.answer
-    method = _METHODS.get(answer.method) or described(IkSolver.plugin_kind, answer.method)
+    solver: type[IkSolver] = registry(IkSolver.plugin_kind)[answer.method]
+    method = solver.title or described(IkSolver.plugin_kind, answer.method)
     kind = f"{method}, solved for the {answer.task}"
     if answer.refused and not answer.solutions:
         text = f"{counted_noun(answer.refused, 'answer')} refused by forward kinematics ({kind})"

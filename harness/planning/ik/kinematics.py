@@ -23,9 +23,6 @@ from harness.ports.kinematics import IkRequest, IkSolver
 from harness.recording.goal_failures import LinkFailure
 from harness.robot.description import RobotDescription
 
-CLOSED_FORMS = ("ur", "open_manipulator_x")
-"""Solvers that `auto` tries, in this order, before `numeric`."""
-
 _POLISHED = 1e-7  # [m, rad] largest error of a closed-form solution after refinement
 _LIMIT_SLACK = 1e-9  # [rad] a solution this far outside a limit is set to the limit
 
@@ -123,11 +120,10 @@ class PinocchioKinematics:
         """The robot's solver, or the numeric one where that is not made for the request."""
         solvers = registry(IkSolver.plugin_kind)
         chosen = self.description.ik_solver
-        for name in CLOSED_FORMS if chosen == "auto" else (chosen,):
-            solver: type[IkSolver] = solvers[name]
-            if solver.fits(request):
-                return solver
-        return solvers["numeric"]
+        tried: list[type[IkSolver]] = [] if chosen == "auto" else [solvers[chosen]]
+        if chosen == "auto":
+            tried += [each for each in solvers.built_in() if each.is_closed_form]
+        return next((each for each in tried if each.fits(request)), solvers["numeric"])
 
     def residual(
         self, space: GroupSpace, goal: LinkGoal, positions: FloatArray

@@ -11,8 +11,8 @@ from eaik.IK_HP import HPRobot
 from harness.language.scenario import RobotSpec
 from harness.planning.ik.kinematics import PinocchioKinematics
 from harness.planning.ik.numeric import sample_group_positions, solve_numeric
-from harness.planning.ik.ur import UrGeometry, solve_ur
 from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.closed_forms.ur_arm import UrGeometry, solve_ur
 from harness.ports.goals import PoseGoal
 from harness.robot.load import load_robot
 from tests.installed import is_installed

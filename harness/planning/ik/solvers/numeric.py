@@ -16,6 +16,7 @@ class NumericSolver(IkSolver):
     """Damped least squares of any chain, from the seed and from near the goal."""
 
     name: ClassVar[str] = "numeric"
+    title: ClassVar[str] = "numeric, with restarts"
 
     def solve(self, request: IkRequest) -> IkResult:
         """Solve for the goal; for the part of a pose that the group can hold."""

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, cast
 
-from harness.planning.ik.arm_frames import arm_joints, base_pose, fixed_offset
-from harness.planning.ik.ur import UrGeometry, is_ur_like, solve_ur
+import numpy as np
+
+from harness.core.types import FloatArray
+from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.closed_forms.arm_frames import arm_joints, base_pose, fixed_offset
+from harness.plugins.closed_forms.branch_name import elbow_branch
+from harness.plugins.closed_forms.ur_arm import UrGeometry, is_ur_like, solve_ur
 from harness.ports.goals import PoseGoal
 from harness.ports.kinematics import IkRequest, IkResult, IkSolver
 
@@ -14,6 +19,8 @@ class UrSolver(IkSolver):
     """Closed form of Universal Robots: all eight branches of a pose."""
 
     name: ClassVar[str] = "ur"
+    title: ClassVar[str] = "closed form of Universal Robots"
+    is_closed_form: ClassVar[bool] = True
     is_refined: ClassVar[bool] = True
 
     @classmethod
@@ -31,3 +38,10 @@ class UrSolver(IkSolver):
         wrist_3 = float(request.seed_positions[-1])
         answer = solve_ur(UrGeometry.of_joints(joints), T_base_wrist3, wrist_3)
         return IkResult(tuple(answer.branches), max(answer.excess, 0.0))
+
+    @classmethod
+    def branch_name(cls, request: IkRequest, positions: FloatArray) -> str:
+        """The side, the elbow and the sign of joint 5."""
+        elbow = elbow_branch(cast("GroupSpace", request.space), positions)
+        is_below = float(np.sin(positions[4])) < 0
+        return f"{elbow}, {request.space.joint_names[4]} {'<' if is_below else '>'} 0"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 
-from harness.planning.ik.arm_frames import arm_joints, base_pose, fixed_offset
-from harness.planning.ik.open_manipulator import (
+from harness.core.types import FloatArray
+from harness.planning.model.robot_model import GroupSpace
+from harness.plugins.closed_forms.arm_frames import arm_joints, base_pose, fixed_offset
+from harness.plugins.closed_forms.branch_name import elbow_branch
+from harness.plugins.closed_forms.planar_arm import (
     PlanarArm,
     headings,
     is_planar_arm,
@@ -26,6 +29,8 @@ class PlanarArmSolver(IkSolver):
     """Closed form of OpenMANIPULATOR-X: position and pitch, four branches."""
 
     name: ClassVar[str] = "open_manipulator_x"
+    title: ClassVar[str] = "closed form of OpenMANIPULATOR-X"
+    is_closed_form: ClassVar[bool] = True
 
     @classmethod
     def fits(cls, request: IkRequest) -> bool:
@@ -57,3 +62,8 @@ class PlanarArmSolver(IkSolver):
                 found.extend(answer.solutions)
                 excesses.append(answer.excess)
         return IkResult(tuple(found), min(excesses, default=0.0))
+
+    @classmethod
+    def branch_name(cls, request: IkRequest, positions: FloatArray) -> str:
+        """The side and the elbow."""
+        return elbow_branch(cast("GroupSpace", request.space), positions)

@@ -1,0 +1,1 @@
+"""Inverse kinematics of arms that have a closed form: Universal Robots, and OpenMANIPULATOR-X."""
