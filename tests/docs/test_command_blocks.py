@@ -72,7 +72,7 @@ def are_declared(words):
     for word in words:
         extras = re.fullmatch(r"\.\[(.*)\]", word)
         known = extras[1].split(",") if extras else [word]
-        is_option = word in ("-q", "-e", "-c", ".") or (ROOT / word).is_file()
+        is_option = word in ("-q", "-e", "-c", "--no-compile", ".") or (ROOT / word).is_file()
         if not is_option and not {*known} <= {*(EXTRAS if extras else declared)}:
             return False
     return True

@@ -1,4 +1,4 @@
-"""Licences of dependencies, and the lock file, against pyproject.toml and what is installed."""
+"""Licences and sizes of dependencies, and the lock file, against pyproject.toml and packages."""
 
 import re
 import tomllib
@@ -73,6 +73,17 @@ def test_every_required_package_is_listed_with_a_permissive_licence():
         assert needed == "every installation"
         assert parts(licence) <= PERMISSIVE, name
         assert found is None or stated_licence(found) in ("", licence), name
+
+
+def test_the_required_packages_leave_room_for_a_lesson_in_600_megabytes():
+    sizes = {
+        name: sum(file.size or 0 for file in found.files or ())
+        for name, found in dependencies(PROJECT["dependencies"]).items()
+        if found is not None
+    }
+    assert sizes["libpinocchio"] > 10e6  # the sizes are those of RECORD, without bytecode
+    rest = 45e6  # pip, setuptools, armharness, bytecode of what a lesson imports: 44 MB measured
+    assert sum(sizes.values()) < 600e6 - rest, sorted(sizes.items(), key=lambda each: each[1])
 
 
 @pytest.mark.nightly

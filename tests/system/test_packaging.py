@@ -17,7 +17,7 @@ TEST_COMMAND = (
     ".venv/bin/python -m pytest -n auto"
 )
 DEMO_COMMAND = (
-    "python3 -m venv .venv && .venv/bin/pip install -q . && "
+    "python3 -m venv .venv && .venv/bin/pip install -q --no-compile . && "
     ".venv/bin/harness run scenarios/lessons/03_ur_sixteen_steps.scenario.yaml"
 )
 
