@@ -73,7 +73,8 @@ def test_steps_are_aligned_and_a_new_one_stands_alone(page):
     assert [each.get_attribute("class") for each in steps.all()][2:] == ["step good"] * 2
 
 
-def test_both_robots_are_drawn_over_and_next_to_each_other(page):
+def test_both_robots_are_drawn_over_and_next_to_each_other(visit, file):
+    page = visit(file, width=1440, height=900, has_scene=True).page
     page.click("#steps .step >> nth=2")
     both = picture(page)
     page.click("#switches button:text-is('B')")

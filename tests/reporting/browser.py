@@ -21,6 +21,14 @@ WITHOUT_GRAPHICS_CARD = (
 )
 """What a graphics card does at no cost, and windows of the browser itself: half of its time."""
 
+NO_WEBGL = """(() => {
+  const context = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return kind === "webgl2" ? null : context.call(this, kind, ...more);
+  };
+})()"""
+"""A script that leaves a page without its 3D view."""
+
 
 def installed():
     """The browser's file; None where there is none."""
@@ -111,10 +119,13 @@ class Visit:
 
 @contextmanager
 def visits(browser):
-    """Opens pages from disk and waits for them; at the end nothing may have gone wrong."""
+    """Opens pages from disk and waits for them; at the end nothing may have gone wrong.
+
+    Only with `has_scene` they have a 3D view: drawn in software, it takes longer than all the rest.
+    """
     opened = []
 
-    def open_page(file, place="", **options):
+    def open_page(file, place="", *, has_scene=False, **options):
         size = {"width": options.pop("width", 1100), "height": options.pop("height", 720)}
         scripts = options.pop("scripts", True)
         context = new_context(
@@ -122,6 +133,8 @@ def visits(browser):
         )
         visit = Visit(context.new_page())
         opened.append((context, visit))
+        if not has_scene:
+            visit.page.add_init_script(NO_WEBGL)
         visit.page.goto(f"{Path(file).as_uri()}{place}")
         if scripts:
             wait_for(visit.page, "document.documentElement.dataset.ready === 'yes'")

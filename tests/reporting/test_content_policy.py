@@ -3,7 +3,7 @@
 import pytest
 
 from harness.reporting.suite.write import write_suite
-from tests.reporting.browser import Visit, new_context, wait_for
+from tests.reporting.browser import NO_WEBGL, Visit, new_context, wait_for
 from tests.reporting.suites import small_suite
 from tests.reporting.test_hostile_names import page_of
 
@@ -34,6 +34,7 @@ def test_what_is_put_into_a_page_neither_runs_nor_loads(browser, page_file, tmp_
     changed.write_text(text.replace("<body>", f"<body>{intruder}", 1), encoding="utf-8")
     context = new_context(browser, offline=True)
     seen = Visit(context.new_page())
+    seen.page.add_init_script(NO_WEBGL)
     seen.page.goto(changed.as_uri())
     wait_for(seen.page, "document.documentElement.dataset.ready === 'yes'")
     assert seen.page.title() != "taken"
@@ -42,7 +43,7 @@ def test_what_is_put_into_a_page_neither_runs_nor_loads(browser, page_file, tmp_
 
 
 def test_a_page_itself_breaks_none_of_its_rules(visit, page_file):
-    seen = visit(page_file)  # at the end, nothing may stand in the console
+    seen = visit(page_file, has_scene=True)  # at the end, nothing may stand in the console
     rules = seen.page.get_attribute("meta[http-equiv=Content-Security-Policy]", "content")
     assert rules.startswith("default-src 'none'; script-src 'sha256-")
     assert "unsafe-inline'" not in rules.split("style-src-attr")[0]

@@ -67,7 +67,7 @@ def page_of(name, folder):
 def test_no_name_becomes_markup_or_breaks_the_page(visit, tmp_path, name, width):
     file = page_of(name, tmp_path)
     assert file.read_text(encoding="utf-8").count("<script") == 3, "only the page's own"
-    opened = visit(file, width=width)
+    opened = visit(file, width=width, has_scene=True)
     page = opened.page
     for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
         page.click(f"#tab-{tab}")

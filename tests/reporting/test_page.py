@@ -22,10 +22,6 @@ COUNT_PLOTS = """addEventListener('beforeprint', () => {
   window.drawn = document.querySelectorAll('#paper-plots img').length;
 })"""
 
-NO_WEBGL = """HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...rest) {
-  return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
-})(HTMLCanvasElement.prototype.getContext);"""
-
 
 def picture(page):
     wait_for_frame(page)
@@ -43,6 +39,19 @@ def opened(shared):
     """The page that tests share, at its beginning and with nothing zoomed."""
     put_back(shared.page, "#t=0&tab=expect")
     return shared
+
+
+@pytest.fixture(scope="module")
+def shared_scene(browser, failed_run):
+    with visits(browser) as visit:
+        yield visit(failed_run / "report.html", has_scene=True)
+
+
+@pytest.fixture
+def drawn(shared_scene):
+    """The page with its 3D view, which tests share, too."""
+    put_back(shared_scene.page, "#t=0&tab=expect")
+    return shared_scene
 
 
 def test_the_page_reports_outcome_steps_and_expectations(opened):
@@ -70,17 +79,17 @@ def test_text_of_the_user_is_text_and_never_markup(opened, failed_run):
     assert "<b>bold" not in text
 
 
-def test_the_robot_is_drawn_and_moves_with_the_time(opened):
-    page = opened.page
+def test_the_robot_is_drawn_and_moves_with_the_time(drawn):
+    page = drawn.page
     start = picture(page)
     assert start.std() > 10, "an empty picture"
     page.click("#steps .step.bad")
-    assert opened.time() > 3
+    assert drawn.time() > 3
     assert np.abs(picture(page) - start).max() > 40
 
 
-def test_a_page_that_shows_a_still_moment_requests_no_frames(opened):
-    page = opened.page
+def test_a_page_that_shows_a_still_moment_requests_no_frames(drawn):
+    page = drawn.page
     page.evaluate("""window.lastFrame = 0, window.requested = 0,
     window.requestAnimationFrame = ((request) => (task) => {
       window.lastFrame = performance.now();
@@ -273,7 +282,7 @@ def test_tabs_show_planner_source_joints_and_environment(opened):
 def test_light_and_dark_differ_and_can_be_switched(visit, failed_run):
     shades = {}
     for scheme in ("light", "dark"):
-        opened = visit(failed_run / "report.html", color_scheme=scheme)
+        opened = visit(failed_run / "report.html", color_scheme=scheme, has_scene=True)
         shades[scheme] = picture(opened.page)[:4].mean()
         page_colour = "getComputedStyle(document.body).backgroundColor"
         first = opened.page.evaluate(page_colour)
@@ -293,7 +302,7 @@ def test_without_scripts_the_summary_is_there_to_read(visit, failed_run):
 
 
 def test_a_telephone_sees_everything_without_scrolling_sideways(visit, failed_run):
-    opened = visit(failed_run / "report.html", width=390, height=800)
+    opened = visit(failed_run / "report.html", width=390, height=800, has_scene=True)
     page = opened.page
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     for name in ("#view", "#track", "#steps", "#tabs", ".plot canvas"):
@@ -302,7 +311,7 @@ def test_a_telephone_sees_everything_without_scrolling_sideways(visit, failed_ru
 
 
 def test_it_prints_on_one_or_two_pages(visit, failed_run):
-    page = visit(failed_run / "report.html", color_scheme="dark").page
+    page = visit(failed_run / "report.html", color_scheme="dark", has_scene=True).page
     page.evaluate(COUNT_PLOTS)
     pdf = page.pdf(prefer_css_page_size=True)
     pages = len(re.findall(rb"/Type\s*/Page\b(?!s)", pdf))
@@ -312,11 +321,8 @@ def test_it_prints_on_one_or_two_pages(visit, failed_run):
 
 
 def test_a_browser_without_webgl_still_shows_the_rest(failed_run, visit):
-    opened = visit(failed_run / "report.html")
+    opened = visit(failed_run / "report.html", has_scene=False)
     page = opened.page
-    page.add_init_script(NO_WEBGL)
-    page.reload()
-    wait_for(page, "document.documentElement.dataset.ready === 'yes'")
     assert page.locator(".no-view").is_visible()
     page.click(".verdict >> nth=0")
     assert opened.time() > 0
@@ -372,7 +378,7 @@ CONTRASTS = """() => {
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_text_stands_out_from_its_background(visit, failed_run, scheme):
     """Contrast of 4.5, as WCAG 2.1 requires (1.4.3); what is switched off may have less."""
-    page = visit(failed_run / "report.html", color_scheme=scheme).page
+    page = visit(failed_run / "report.html", color_scheme=scheme, has_scene=True).page
     for tab in ("expect", "planner", "findings", "source", "joints", "environment"):
         page.click(f"#tab-{tab}")
         found = page.evaluate(CONTRASTS)
@@ -381,8 +387,8 @@ def test_text_stands_out_from_its_background(visit, failed_run, scheme):
         assert not weak, (tab, weak)
 
 
-def test_everything_that_can_be_used_has_a_name_and_can_be_reached_by_keys(opened):
-    page = opened.page
+def test_everything_that_can_be_used_has_a_name_and_can_be_reached_by_keys(drawn):
+    page = drawn.page
     kinds = ("button", "select", "canvas", "[role=slider]", "[role=img]")
     used = page.locator(", ".join(f"#app {kind}" for kind in kinds))
     nameless = used.evaluate_all(

@@ -123,7 +123,7 @@ def test_contacts_are_reported_and_drawn_where_they_were(visit, tmp_path):
     pressed = np.full((200, 6), np.nan)
     pressed[50:150] = (0.3, 0.0, 0.1, 0.0, -12.5, 0.0)
     run = lift_run(presses={("left_finger", "box"): pressed})
-    opened = visit(write(tmp_path, run), "#t=1")
+    opened = visit(write(tmp_path, run), "#t=1", has_scene=True)
     page = opened.page
     reported = "left_finger presses box 12.5 N"
     assert reported in opened.text("#readout")
@@ -172,7 +172,7 @@ def test_only_bodies_that_collide_change_their_colour(other, is_collision, visit
     forces = {(other, "box"): force(200, (0, 200), value=20.0)}
     contact = ContactRecord((other, "box"), 0.0, 2.0, 20.0, is_collision)
     run = replace(changed(run, contact_forces=forces), contacts=(contact,))
-    page = visit(write(tmp_path, run), "#t=1").page
+    page = visit(write(tmp_path, run), "#t=1", has_scene=True).page
     page.click("#tools summary")
     for tool in ("path", "plan", "frame", "goal"):
         page.click(f"#tool-{tool}")
@@ -213,7 +213,7 @@ def test_a_failure_shows_its_stages_and_the_nearest_state(visit, tmp_path):
     file.write_text(UNREACHABLE)
     result = run_case(file, report_dir=tmp_path / "run", stills=False)
     assert result.outcome == "failed"
-    page = visit(result.page, f"{failure_place(result)}&tab=planner").page
+    page = visit(result.page, f"{failure_place(result)}&tab=planner", has_scene=True).page
     assert page.locator("#steps .bad[aria-current]").count() == 1, "the terminal's link leads to it"
     assert page.locator(".stages li").count() == 5
     assert page.locator(".stages .bad b").first.inner_text() == "reach"

@@ -32,7 +32,7 @@ def nested_run(recorded_run):
 @pytest.fixture(scope="module")
 def shared(browser, nested_run):
     with visits(browser) as visit:
-        yield visit(nested_run / "report.html", width=1440, height=900)
+        yield visit(nested_run / "report.html", width=1440, height=900, has_scene=True)
 
 
 @pytest.fixture

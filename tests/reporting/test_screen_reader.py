@@ -28,7 +28,7 @@ FOCUS = """(() => {
 @pytest.fixture(scope="module")
 def opened(browser, failed_run):
     with visits(browser) as visit:
-        yield visit(failed_run / "report.html")
+        yield visit(failed_run / "report.html", has_scene=True)
 
 
 @pytest.fixture(scope="module")

@@ -95,7 +95,7 @@ def test_the_page_of_a_long_recording_opens(seconds, tmp_path, visit):
     every = 5 if seconds == HOUR else 1  # 100 Hz, as robots of an hour publish
     bag = bag_of(tmp_path / "long.db3", list(joint_states(int(RATE * seconds), one))[::every])
     grade_bag(file, bag, report_dir=tmp_path / "run")
-    seen = visit(tmp_path / "run/report.html")
+    seen = visit(tmp_path / "run/report.html", has_scene=True)
     browser.wait_for(seen.page, "document.querySelector('#track') !== null")
     end = float(seen.page.get_attribute("#track", "aria-valuemax"))
     assert end == pytest.approx(seconds, rel=0.01)

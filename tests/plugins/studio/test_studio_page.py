@@ -9,7 +9,7 @@ from docs.generators.studio_guide import follow, is_shown, steps
 from harness.plugins.studio.document import new_text
 from harness.session.run_case import run_case
 from harness.session.run_request import RunRequest
-from tests.reporting.browser import new_context, wait_for
+from tests.reporting.browser import NO_WEBGL, new_context, wait_for
 from tests.waiting import wait_for as wait
 
 pytest.importorskip("django_static_ace_builds")
@@ -23,14 +23,6 @@ editor.find("move_to: ");
 editor.clearSelection();
 editor.focus();
 editor.execCommand("startAutocomplete");
-"""
-
-
-NO_WEBGL = """
-const context = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
-  return kind === "webgl2" ? null : context.call(this, kind, ...more);
-};
 """
 
 
