@@ -1,30 +1,51 @@
-"""Commands in processes of their own, forked from one that has imported the libraries."""
+"""Commands in processes of their own, forked from one that has imported the libraries.
+
+Commands in the process of a test start a fork server, which takes over a second to import these
+libraries; with `servers_are("forked")` it is forked, too.
+"""
 
 import atexit
+import contextlib
 import os
+import select
 import signal
 import socket
 import subprocess
 import sys
+import traceback
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from harness.suite import warm
 from harness.suite.cases import read_ahead
-from harness.suite.environment import server_environment
-from harness.suite.server import Server, send
+from harness.suite.environment import server_environment, use_one_thread
+from harness.suite.server import Server, preload, send, share
 from harness.suite.warm import REPORT_MODULES, RUN_MODULES, Ended, WarmServer
 from tests.beginning import as_before_tests
+from tests.waiting import HANG
 
 ROBOTS = frozenset({"open_manipulator_x"})
 """Bundled robots that most scenarios of tests name."""
 
+PID_BYTES = 4
+
+
+_start = WarmServer.open
+
+
+class _StartedServer(WarmServer):
+    """A server that is started, also where others are forked from it."""
+
+    def open(self):
+        _start(self)
+
 
 @cache
 def server() -> WarmServer:
-    made = WarmServer(["harness.cli.main", *RUN_MODULES, *REPORT_MODULES, "tests.commands"])
-    made.prepare(read_ahead, ROBOTS)
+    made = _StartedServer(["harness.cli.main", *RUN_MODULES, *REPORT_MODULES, "tests.commands"])
+    with as_before_tests():
+        made.prepare(read_ahead, ROBOTS)
     atexit.register(made.close)
     return made
 
@@ -70,6 +91,66 @@ class _Process:
         os.kill(self.pid, signal.SIGKILL)
 
 
+@contextlib.contextmanager
+def servers_are(kind):
+    """Have the fork servers of this process "started", or "forked" from the one of the tests."""
+    before = WarmServer.open
+    WarmServer.open = {"started": _start, "forked": _ServerOfTests.open}[kind]
+    try:
+        yield
+    finally:
+        WarmServer.open = before
+
+
+class _ServerOfTests(WarmServer):
+    """A server that is forked from the one of the tests."""
+
+    def open(self):
+        if self._process is not None:
+            return
+        use_one_thread()
+        self._is_ready = False
+        paths = [str(Path(entry).absolute()) for entry in sys.path]
+        state = (str(Path.cwd()), server_environment(), paths, self._modules)
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.settimeout(HANG)
+            listener.bind("")  # the kernel gives a name; the path of a test's folder may be long
+            listener.listen(1)
+            server().start(_serve_at, listener.getsockname(), *state)
+            self._control, _ = listener.accept()
+            pid = int.from_bytes(self._control.recv(PID_BYTES), "big")
+        self._process = _OtherProcess(pid)
+
+
+class _OtherProcess:
+    """The process of a fork server that is no child of this one."""
+
+    def __init__(self, pid):
+        self.pid = pid
+        self._end = os.pidfd_open(pid)
+
+    def wait(self, timeout=None):
+        if not select.select([self._end], [], [], timeout)[0]:
+            raise subprocess.TimeoutExpired("fork server", timeout)
+        return 0
+
+    def kill(self):
+        with contextlib.suppress(ProcessLookupError):
+            signal.pidfd_send_signal(self._end, signal.SIGKILL)
+
+    def __del__(self):
+        os.close(self._end)
+
+
+def _serve_at(place, folder, environment, paths, modules, _notify):
+    control = socket.socket(socket.AF_UNIX)
+    control.connect(place)
+    control.sendall(os.getpid().to_bytes(PID_BYTES, "big"))
+    os.chdir(folder)
+    sys.path[:] = paths
+    _serve(control, environment, modules)
+
+
 class _ForkedServer(WarmServer):
     """The server of a command: forked from this process, which has its modules, not started."""
 
@@ -83,22 +164,27 @@ class _ForkedServer(WarmServer):
             return
         try:
             self._control.close()
-            _serve(theirs)
+            os.setsid()
+            _serve(theirs, server_environment(), ())
         finally:
             os._exit(1)
 
 
-def _serve(control):
-    os.setsid()
+def _serve(control, environment, modules):
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in range(3):
         os.dup2(nothing, number)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    environment = server_environment()
     os.environ.clear()
     os.environ.update(environment)
+    try:
+        preload(modules)
+    except BaseException:  # noqa: BLE001 - as in `harness.suite.server`
+        send(control, ("broken", traceback.format_exc()))
+        os._exit(1)
+    share()
     send(control, ("ready",))
     Server(control).serve()
 

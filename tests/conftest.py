@@ -62,6 +62,15 @@ def _signals_of_a_terminal():
             signal.signal(number, signal.default_int_handler)
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _forked_servers():
+    """Save commands in the process of a test the start of their fork servers."""
+    from tests.commands import servers_are
+
+    with servers_are("forked"):
+        yield
+
+
 def pytest_xdist_auto_num_workers() -> int:
     """One worker more than processors: tests wait for browsers, timeouts and live robots."""
     return (os.cpu_count() or 1) + 1

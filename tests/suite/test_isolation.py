@@ -10,10 +10,18 @@ from harness.core.errors import HarnessError
 from harness.session.run_request import RunRequest
 from harness.suite.cases import read_ahead, run_here, run_isolated
 from harness.suite.warm import ServerStartError, WarmServer
+from tests.commands import servers_are
 from tests.suite import jobs
 from tests.waiting import HANG, is_alive, wait_for
 
 LIGHT = ("json",)
+
+
+@pytest.fixture(autouse=True)
+def _started():
+    """Start servers here as a user's command does."""
+    with servers_are("started"):
+        yield
 
 
 @pytest.fixture
