@@ -132,6 +132,26 @@ def test_a_peg_that_was_in_its_hole_all_the_time_is_no_insertion(tmp_path):
     assert "already true at the start" in str(result.case.verdicts[0].warnings)
 
 
+THROUGH = "{size: [80 mm, 80 mm, 30 mm], hole: {diameter: 20.2 mm, depth: 30 mm}}"
+
+
+@pytest.mark.parametrize(
+    ("bottom", "engaged"), [(0.078, 0.002), (0.06, 0.02), (0.05, 0.03), (0.03, 0.03)]
+)
+def test_of_a_peg_that_leaves_the_hole_below_what_is_still_in_it_counts(tmp_path, bottom, engaged):
+    """It stands on the ground, and its end is far below the opening in every case."""
+    file = tmp_path / "through.scenario.yaml"
+    peg = "cylinder: {radius: 10 mm, length: 80 mm}"
+    words = {"hole": ROUND, "peg": peg, "at": "[0.5, 0.1, 0.0405]", "depth": "25 mm", "turn": 0}
+    text = SCENARIO.format(**words, wait=0.1)
+    text = text.replace("{size: [80 mm, 80 mm, 50 mm], hole: " + ROUND + "}", THROUGH)
+    file.write_text(text.replace("0.025]", f"{bottom + 0.015}]"), encoding="utf-8")
+    verdict = harness.run(file).case.verdicts[0]
+    assert (verdict.status == "passed") == (engaged >= 0.025)
+    if engaged < 0.025:
+        assert verdict.margin == pytest.approx(engaged - 0.025, abs=5e-4)
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

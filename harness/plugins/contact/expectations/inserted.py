@@ -24,6 +24,7 @@ from harness.recording.run import ObjectRecord, Run
 from harness.recording.verdict import Measure, Verdict, VerdictWarning
 
 DEPTH = Quantity("depth in the hole", "m", "at least `depth`")
+PRESSED = 1e-3  # [m], more than a peg sinks into the bottom of its hole
 OFFSET = Quantity("offset from the hole's axis", "m", "at most `tolerance`")
 
 
@@ -169,7 +170,8 @@ def _in_hole(
 ) -> tuple[FloatArray, FloatArray]:
     """How deep the lower end is, and how far the axis below the opening is from the hole's, (N,).
 
-    Of a peg that is below the hole as a whole, how far it is: less than nothing.
+    Of a peg that leaves the hole at its other end, what of it is still in the hole counts; of one
+    that is below the hole as a whole, how far it is: less than nothing.
 
     Args:
         ends: The ends of the peg's axis in its frame [m], shape (2, 3).
@@ -188,5 +190,5 @@ def _in_hole(
         share = np.clip(-low[:, 2] / (high[:, 2] - low[:, 2]), 0.0, 1.0)
     entered = low + np.nan_to_num(share)[:, None] * (high - low)
     offset = np.maximum(*(np.linalg.norm(each[:, :2], axis=1) for each in (low, entered)))
-    left = hole.depth + high[:, 2]
-    return np.where(left <= 0, left, -low[:, 2]), offset
+    left, depth = hole.depth + high[:, 2], -low[:, 2]
+    return np.where(depth > hole.depth + PRESSED, np.minimum(left, depth), depth), offset
