@@ -92,14 +92,19 @@ def _inside_the_triangle(inertia: FloatArray) -> FloatArray:
 
 
 def joint_range(description: RobotDescription, joint: Joint) -> tuple[float, float]:
-    """Limits of a joint, narrowed to what the joints that mimic it can follow."""
+    """Limits of a joint, narrowed to what the joints that mimic it can follow.
+
+    Limits of a mimic joint that would leave none of the joint's own count for nothing: ROS never
+    reads them, and those of PR2's fingers have the wrong sign.
+    """
     lower, upper = joint.lower, joint.upper
     for other in description.movable_joints:
         mimic = other.mimic
         if mimic is None or mimic.joint != joint.name or mimic.multiplier == 0:
             continue
         ends = sorted((end - mimic.offset) / mimic.multiplier for end in (other.lower, other.upper))
-        lower, upper = max(lower, ends[0]), min(upper, ends[1])
+        if max(lower, ends[0]) < min(upper, ends[1]):
+            lower, upper = max(lower, ends[0]), min(upper, ends[1])
     return lower, upper
 
 
