@@ -1,5 +1,6 @@
 """The core without the folder `harness/plugins`."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -14,6 +15,21 @@ ROOT = Path(__file__).parents[2]
 OBJ = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
 ABSENT = ("studio", "bridge", "grade", "ik-test", "search", "import", "results")
 
+SERVE = """
+import json, os, sys
+import harness.cli.main, harness.session.predict, harness.session.run_case
+for line in sys.stdin:
+    pid = os.fork()
+    if pid == 0:
+        for name, number in (("out", 1), ("err", 2)):
+            os.dup2(os.open(name, os.O_CREAT | os.O_WRONLY | os.O_TRUNC), number)
+        sys.argv[:] = ["harness", *json.loads(line)]
+        harness.cli.main.entry()
+        os._exit(0)
+    print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), flush=True)
+"""
+"""Each command is forked from a process that has the libraries."""
+
 
 @pytest.fixture(scope="module")
 def core(tmp_path_factory):
@@ -23,17 +39,19 @@ def core(tmp_path_factory):
     for name in ("harness", "robots", "worlds", "scenarios"):
         shutil.copytree(ROOT / name, tree / name, ignore=ignored)
 
-    def harness(*words):
-        return subprocess.run(
-            [sys.executable, "-m", "harness.cli", *map(str, words)],
-            cwd=tree,
-            env={**os.environ, "PYTHONPATH": str(tree)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    environment = {**os.environ, "PYTHONPATH": str(tree)}
+    command = [sys.executable, "-c", SERVE]
 
-    return harness
+    with subprocess.Popen(command, cwd=tree, env=environment, **pipes) as server:
+
+        def harness(*words):
+            print(json.dumps([*map(str, words)]), file=server.stdin, flush=True)
+            code = int(server.stdout.readline())
+            texts = [(tree / name).read_text(encoding="utf-8") for name in ("out", "err")]
+            return subprocess.CompletedProcess(words, code, *texts)
+
+        yield harness
 
 
 def test_the_help_of_the_core_has_fewer_commands(core):

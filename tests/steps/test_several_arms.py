@@ -68,6 +68,7 @@ def test_only_the_hand_that_holds_an_object_has_grasped_it(recorded_run):
 HAND_OVER = Path("scenarios/cells/hand_over.scenario.yaml")
 
 
+@pytest.mark.nightly
 def test_an_object_goes_from_hand_to_hand(recorded_run):
     stored = read_run(recorded_run(HAND_OVER) / "run")
     assert [verdict.status for verdict in stored.verdicts] == ["passed"] * len(stored.verdicts)
@@ -75,6 +76,7 @@ def test_an_object_goes_from_hand_to_hand(recorded_run):
     assert links == ["left_end_effector_link", "right_end_effector_link"]
 
 
+@pytest.mark.nightly
 def test_while_both_hands_hold_neither_has_released(recorded_run):
     """A check that looks for one hand that holds would call this a finished hand-over."""
     recorded = read_run(recorded_run(HAND_OVER) / "run").run

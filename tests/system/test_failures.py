@@ -171,6 +171,7 @@ def test_a_picture_shows_every_state_that_is_spoken_of(failed):
 SCENARIOS = sorted(data_folder("scenarios").rglob("*.scenario.yaml"))
 
 
+@pytest.mark.nightly(only=["drawer", "belt_sorter", "door", "suction_onto_a_pallet", "hand_over"])
 @pytest.mark.parametrize("file", SCENARIOS, ids=lambda file: file.name.split(".")[0])
 def test_a_check_foresees_of_every_bundled_scenario_what_its_run_shows(file):
     """Lines and relative motions are followed; a grasp that is to fail is not taken to hold."""

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from harness.cli.main import main
+from tests.commands import harness
 from tests.gate import PLUGIN, Gate
 from tests.waiting import HANG, is_alive, wait_for
 
@@ -52,19 +53,8 @@ def write_held(name):
     file.write_text(file.read_text().replace("wait: 0.1 s", Gate(Path().absolute()).step))
 
 
-def harness(*arguments, **environment):
-    return subprocess.run(
-        [HARNESS, *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        stdin=subprocess.DEVNULL,
-        env={**os.environ, **environment},
-    )
-
-
 def run_json(*arguments, **environment):
-    done = harness("run", "--json", *arguments, **environment)
+    done = harness("run", "--json", *arguments, cwd=Path.cwd(), **environment)
     document = json.loads(done.stdout)
     assert document["exit_code"] == done.returncode
     return document
@@ -127,7 +117,8 @@ def running_cases(pid):
 def test_outcomes_give_the_exit_code_and_the_failure_comes_last_with_how_to_repeat_it():
     write("good", title="Good one")
     write("late", title="Late one", expect=LATE)
-    done = harness("run", ".", "--seed", "5", "--set", "scenario=Late")
+    words = ("run", ".", "--seed", "5", "--set", "scenario=Late")
+    done = harness(*words, cwd=Path.cwd())
     assert done.returncode == 1
     assert done.stderr == ""
     assert "\x1b" not in done.stdout
@@ -181,7 +172,7 @@ def test_digests_are_the_same_alone_in_a_suite_side_by_side_and_in_this_process(
 @pytest.mark.nightly
 def test_repeat_says_whether_the_digests_are_the_same():
     write("a")
-    done = harness("run", "a.scenario.yaml", "--repeat", "3", "-j", "2")
+    done = harness("run", "a.scenario.yaml", "--repeat", "3", "-j", "2", cwd=Path.cwd())
     assert done.returncode == 0
     assert "3 runs, one digest: " in done.stdout
     document = run_json("a.scenario.yaml", "--repeat", "2")

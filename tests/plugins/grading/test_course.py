@@ -84,6 +84,7 @@ def sh(page):
     return [line for block in blocks for line in block.splitlines()]
 
 
+@pytest.mark.nightly
 def test_the_commands_of_the_first_page_and_of_the_teachers_page_run(here, capsys):
     shutil.copytree(COURSE / "02_gripper", here / "my_course/01_sort_the_cans")
     (here / "submissions").mkdir()

@@ -151,6 +151,11 @@ def test_the_first_minute_a_slider_execute_and_run_all(browser, serve):
     page.wait_text("#status", "2 of 2 steps executed")
     page.page.keyboard.press("p")
     page.wait_text("#status", "3 of 3 steps executed")
+    page.page.click("#back")
+    page.wait_text("#status", "2 of 3 steps executed")
+    page.page.evaluate("ace.edit('editor').gotoLine(1000)")
+    page.page.click("#run-line")
+    page.wait_text("#status", "3 of 3 steps executed")
     page.page.click("#run-all")
     page.wait_text("#verdicts", "digest")
     assert "passed" in page.page.get_attribute(".outcome", "class")
@@ -213,6 +218,7 @@ def test_the_pick_of_the_guide_becomes_a_scenario_with_the_same_digest(picked):
     assert served.studio.cell.object_poses()["box"].translation[2] > 0.09
 
 
+@pytest.mark.nightly
 def test_one_step_back_and_to_the_cursor(picked):
     opened, served = picked
     opened.page.click("#back")
