@@ -18,10 +18,6 @@ QUOTED_ROOTS = ("robot", "mujoco", "mujocoinclude", "sdf", "world", "model")
 """Root elements of robots and worlds. A scenario can name any file of the machine, so messages
 quote only files that are of these kinds."""
 
-TEXT = ""
-LITERAL = "<![CDATA["
-"""Tags of text, and of CDATA, in a document whose text and elements are in one order."""
-
 
 @dataclass(eq=False)
 class XmlElement:
@@ -125,36 +121,16 @@ def read_bounded(path: Path) -> bytes:
     raise SpecError([Problem(name, 1, 1, message)])
 
 
-def parse_xml(content: str | bytes, named: str, *, is_mixed: bool = False) -> XmlElement:
-    """The root element of a document; see `read_xml`.
-
-    Args:
-        is_mixed: Keep text and elements in one order: pieces of text become children.
-    """
-    return _Reader(content, named, is_mixed=is_mixed).root()
+def parse_xml(content: str | bytes, named: str) -> XmlElement:
+    """The root element of a document; see `read_xml`."""
+    return XmlReader(content, named).root()
 
 
-def in_elements(root: XmlElement) -> XmlElement:
-    """A document that was read with `is_mixed`, as one that was not: text is in its element."""
-    pending = [root]
-    while pending:
-        element = pending.pop()
-        is_text = [child.tag in (TEXT, LITERAL) for child in element.children]
-        texts = zip(element.children, is_text, strict=True)
-        element.text = "".join(child.text for child, is_one in texts if is_one)
-        texts = zip(element.children, is_text, strict=True)
-        element.children = [child for child, is_one in texts if not is_one]
-        pending += element.children
-    return root
-
-
-class _Reader:
+class XmlReader:
     """Builds elements from expat's events."""
 
-    def __init__(self, content: str | bytes, named: str, *, is_mixed: bool) -> None:
+    def __init__(self, content: str | bytes, named: str) -> None:
         self._content = content
-        self._is_mixed = is_mixed
-        self._text_tag = TEXT
         text = content if isinstance(content, str) else content.decode("utf-8", errors="replace")
         self._source = Source(named, tuple(re.split("\r\n|\r|\n", text)))
         self._open: list[XmlElement] = []
@@ -164,11 +140,10 @@ class _Reader:
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
         self._parser.CharacterDataHandler = self._text
-        self._parser.StartCdataSectionHandler = self._begin_literal
-        self._parser.EndCdataSectionHandler = self._end_literal
         self._parser.StartDoctypeDeclHandler = self._doctype
 
     def root(self) -> XmlElement:
+        """The root element; raises SpecError as `read_xml` does."""
         try:
             self._parser.Parse(self._content, True)
         except expat.ExpatError as error:
@@ -219,22 +194,8 @@ class _Reader:
         self._open.pop()
 
     def _text(self, data: str) -> None:
-        if not self._open:
-            return
-        item = self._open[-1]
-        if self._is_mixed:
-            last = item.children[-1] if item.children else item
-            if last is item or last.tag != self._text_tag:
-                last = XmlElement(self._text_tag, {}, self._here())
-                item.children.append(last)
-            item = last
-        item.text += data
-
-    def _begin_literal(self) -> None:
-        self._text_tag = LITERAL
-
-    def _end_literal(self) -> None:
-        self._text_tag = TEXT
+        if self._open:
+            self._open[-1].text += data
 
     def _doctype(self, *_declaration: object) -> None:
         """Refuse it; what it declares is not quoted, as the kind of file is not known yet."""

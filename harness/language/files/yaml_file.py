@@ -1,6 +1,6 @@
 """Reads a YAML file into values with places: YAML 1.2 scalars, bounded, without tags.
 
-Files of ROS may have tags for units, and xacro's `load_yaml` reads YAML 1.1.
+Files of ROS may have tags for units.
 
 libyaml's events are composed here and not by its own composer: that one calls itself for every
 level and ends the process on a file of brackets, resolves scalars by YAML 1.1 (`on` is true,
@@ -22,7 +22,7 @@ from harness.core.errors import Problem, SpecError
 from harness.core.inputs import read_input
 from harness.core.limits import YAML_FILE, YAML_LEVELS, YAML_VALUES
 from harness.language.files.source import Entry, Located, Place, Scalar, Source
-from harness.language.files.yaml_scalars import scalar_of, scalar_of_yaml_11
+from harness.language.files.yaml_scalars import scalar_of
 from harness.language.files.yaml_wording import TOO_DEEP, syntax_problem
 
 UNITS = {
@@ -103,7 +103,7 @@ def parse_yaml(
     Raises:
         SpecError: A syntax error, after which nothing can be trusted, or no mapping.
     """
-    composer = _Composer(source, number)
+    composer = Composer(source, number)
     root = composer.read(text)
     is_mapping = root is not None and isinstance(root.value, dict)
     if composer.problems and (problems is None or not is_mapping):
@@ -118,31 +118,13 @@ def parse_yaml(
     return root
 
 
-def parse_ros_yaml(text: str, source: Source, number: Callable[[str], float]) -> Located:
-    """The one document of a text as xacro's `load_yaml` reads it: YAML 1.1, and units.
-
-    Scalars and merge keys (`<<`) are those of YAML 1.1; of duplicate keys the last one counts.
-
-    Args:
-        number: The number of a text after a tag of UNITS, or a ValueError.
-
-    Raises:
-        SpecError: It is not YAML, or has another tag.
-    """
-    composer = _Composer(source, number, is_yaml_11=True)
-    root = composer.read(text)
-    if composer.problems:
-        raise SpecError(composer.problems)
-    return root or Located(None, Place(source))
-
-
 def parse_value(text: str, source: Source) -> Located:
     """A value given as an option: one YAML scalar, `[list]` or `{mapping: of}` such.
 
     Raises:
         SpecError: It is not YAML.
     """
-    composer = _Composer(source)
+    composer = Composer(source)
     try:
         root = composer.document(text)
     except (yaml.MarkedYAMLError, yaml.reader.ReaderError) as error:
@@ -155,20 +137,14 @@ def parse_value(text: str, source: Source) -> Located:
     return Located(None, Place(source)) if root is None else root.moved(Place(source))
 
 
-class _Composer:
+class Composer:
     """Composes events into located values; continues after a mistake, collecting problems."""
 
-    def __init__(
-        self,
-        source: Source,
-        number: Callable[[str], float] | None = None,
-        *,
-        is_yaml_11: bool = False,
-    ) -> None:
+    has_merge_keys = False
+
+    def __init__(self, source: Source, number: Callable[[str], float] | None = None) -> None:
         self.source = source
         self._number = number
-        self._is_yaml_11 = is_yaml_11
-        self._scalar_of = scalar_of_yaml_11 if is_yaml_11 else scalar_of
         self.problems: list[Problem] = []
         self._anchors: dict[str, Located] = {}
         self._sizes: dict[str, tuple[int, int]] = {}  # values and depth of an anchor
@@ -240,19 +216,16 @@ class _Composer:
             place = self._place(event)
             key = self._key(event, events, depth, place)
             value = self._value(next(events), events, depth + 1)
-            if key is None:
-                continue
-            if key == "<<" and self._is_yaml_11:
-                merged = value.items() or [value]
-                entries = {
-                    k: v for each in merged[::-1] for k, v in each.mapping().items()
-                } | entries
-            elif key in entries and not self._is_yaml_11:
-                first = f"the first is in line {entries[key].key.line}"
-                self.problems.append(place.problem(f"the key `{key}` is here twice", first))
-            else:
-                entries[key] = Entry(place, value)
+            if key is not None:
+                self._put(entries, key, place, value)
         return entries
+
+    def _put(self, entries: dict[str, Entry], key: str, place: Place, value: Located) -> None:
+        if key in entries:
+            first = f"the first is in line {entries[key].key.line}"
+            self.problems.append(place.problem(f"the key `{key}` is here twice", first))
+        else:
+            entries[key] = Entry(place, value)
 
     def _key(self, event: Any, events: Iterator[Any], depth: int, place: Place) -> str | None:
         """A key's text; keys are names, whatever they look like."""
@@ -261,7 +234,7 @@ class _Composer:
             self.problems.append(place.problem("a key is text, not a list or a mapping"))
             return None
         key = str(item.value) if item is not None else str(event.value)
-        if key == "<<" and item is None and event.implicit[0] and not self._is_yaml_11:
+        if key == "<<" and item is None and event.implicit[0] and not self.has_merge_keys:
             hint = "repeat the keys, or alias the whole mapping: `key: *anchor`"
             self.problems.append(place.problem("merge keys (`<<`) are not part of YAML 1.2", hint))
             return None
@@ -293,6 +266,9 @@ class _Composer:
             shown = text if len(text) <= 40 else text[:40] + "..."
             self.problems.append(place.problem(f"`{shown}` is not a finite number"))
             return 0
+
+    def _scalar_of(self, text: str) -> Scalar:
+        return scalar_of(text)
 
     def _bound(self, place: Place, depth: int) -> None:
         if depth > YAML_LEVELS:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any
-
-import yaml
 
 from harness.language.files.source import Scalar
 
@@ -50,18 +47,3 @@ def scalar_of(text: str) -> Scalar:
     if not math.isfinite(number):
         raise OverflowError(text)
     return number
-
-
-YAML_11: Any = yaml.SafeLoader("")
-KINDS_11 = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
-
-
-def scalar_of_yaml_11(text: str) -> Scalar:
-    """The value of a text without quotes in YAML 1.1: `yes` is true, `010` is 8, `1e3` is text."""
-    tag = YAML_11.resolve(yaml.ScalarNode, text, (True, False))
-    if tag not in KINDS_11:
-        return text
-    try:
-        return YAML_11.yaml_constructors[tag](YAML_11, yaml.ScalarNode(tag, text))
-    except ValueError:
-        return text

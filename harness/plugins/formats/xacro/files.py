@@ -11,8 +11,10 @@ from typing import Any
 from harness.core.files import is_file
 from harness.core.limits import XACRO_FILES
 from harness.language.files.source import Located, Source
-from harness.language.files.xml_file import XmlElement, parse_xml, read_bounded
-from harness.language.files.yaml_file import parse_ros_yaml, read_text
+from harness.language.files.xml_file import XmlElement, read_bounded
+from harness.language.files.yaml_file import read_text
+from harness.plugins.formats.xacro.mixed_xml import MixedReader
+from harness.plugins.formats.xacro.ros_yaml import parse_ros_yaml
 from harness.plugins.formats.xacro.values import Budget, ExpressionError, YamlDict
 from harness.robot.packages import PackagePath
 
@@ -96,7 +98,7 @@ class Files:
         self._bytes += len(content)
         if self._bytes > XACRO_FILES:
             raise ExpressionError(f"more than {XACRO_FILES / 1e6:.0f} MB are included")
-        root = parse_xml(content, str(path), is_mixed=True)
+        root = MixedReader(content, str(path)).root()
         self.open.append(path)
         return root
 

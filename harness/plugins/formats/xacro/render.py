@@ -8,14 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.suggestion import did_you_mean
-from harness.language.files.xml_file import (
-    LITERAL,
-    TEXT,
-    XmlElement,
-    in_elements,
-)
+from harness.language.files.xml_file import XmlElement
 from harness.plugins.formats.xacro.files import Files, MissingFile
 from harness.plugins.formats.xacro.macro import Macro, Parameter, read_macro
+from harness.plugins.formats.xacro.mixed_xml import LITERAL, TEXT, in_elements
 from harness.plugins.formats.xacro.names import xacro_names
 from harness.plugins.formats.xacro.substitution import Substitution
 from harness.plugins.formats.xacro.symbols import Table, Text, is_property_name, truth
