@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import random
+from statistics import NormalDist
 from typing import Annotated, Any, cast
 
 from pydantic import AfterValidator, Field, model_validator
@@ -17,6 +19,7 @@ VARIATION_KEYS = (
 )
 """Keys that say which cases there are; a case itself has none of them."""
 
+SMALLEST_SHARE = 1e-12  # tail of a normal distribution whose quantile is still finite
 DEFAULT_SAMPLES = 20  # of a file that draws random values and does not say how many
 
 
@@ -77,6 +80,42 @@ class Distribution(SpecModel):
             if low >= high:
                 raise ValueError("the first end must be below the second")
         return self
+
+    @property
+    def unit(self) -> str:
+        """The unit of its numbers, which may be empty."""
+        normal = self.normal
+        return common_unit(*((normal.mean, normal.std) if normal else self.uniform or ()))
+
+    def number_at(self, share: float) -> float:
+        """The number that a share of the distribution is below, in its unit; of no `choice`."""
+        if self.uniform is not None:
+            low, high = (split_quantity(each)[0] for each in self.uniform)
+            return low + (high - low) * share
+        assert self.normal is not None
+        mean, std = (split_quantity(each)[0] for each in (self.normal.mean, self.normal.std))
+        curve = NormalDist(mean, std)
+        ends = zip((self.normal.low, self.normal.high), (0.0, 1.0), strict=True)
+        least, most = (
+            beyond if end is None else curve.cdf(split_quantity(end)[0]) for end, beyond in ends
+        )
+        below = least + (most - least) * share
+        return curve.inv_cdf(min(max(below, SMALLEST_SHARE), 1 - SMALLEST_SHARE))
+
+    def at(self, share: float) -> Any:
+        """The value at a share in [0, 1), as a file writes it; choices have equal parts."""
+        if self.choice is not None:
+            return self.choice[min(int(share * len(self.choice)), len(self.choice) - 1)]
+        return self.written(self.number_at(share))
+
+    def draw(self, rng: random.Random) -> Any:
+        """A random value, as a file writes it."""
+        return self.at(rng.random()) if self.choice is None else rng.choice(self.choice)
+
+    def written(self, number: float) -> float | str:
+        """A number in the distribution's unit as a file writes it."""
+        unit = self.unit
+        return f"{number!r} {unit}" if unit else number
 
 
 class RequiredRate(SpecModel):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -21,7 +20,7 @@ from harness.session.run_request import RunRequest
 from harness.suite.cases import ignore_progress, run_here
 from harness.suite.discovery import UsageError
 from harness.suite.header import read_header, source_lines
-from harness.suite.variation import Case, Variation
+from harness.suite.variation import Case, Variation, as_yaml
 
 if TYPE_CHECKING:
     from harness.language.scenario import Scenario
@@ -125,7 +124,7 @@ def run_scenario(
     Raises:
         UsageError: There is no such case, or one must be named.
     """
-    job = _job(scenario, {k: _yaml(v) for k, v in (overrides or {}).items()}, seed, case)
+    job = _job(scenario, as_yaml(overrides or {}), seed, case)
     with ExitStack() as stack:
         if report_dir is None:
             folder = Path(stack.enter_context(TemporaryDirectory())) / "run"
@@ -188,8 +187,3 @@ def _case(variation: Variation, seed: int | None, name: str, scenario: str) -> C
     if not name:
         raise UsageError(f"'{scenario}' has {len(cases)} cases; name one of them: {known}")
     raise UsageError(f"'{scenario}' has no case '{name}'; cases: {known or 'one, without a name'}")
-
-
-def _yaml(value: Any) -> str:
-    """A value as YAML, in which JSON is."""
-    return json.dumps(value, ensure_ascii=False)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from harness.recording.run import Outcome
 from harness.reporting.result import CaseResult
 from harness.suite.outcome import EXIT_CODES
-from harness.suite.stream import Place, ResultHead, Stream, StreamEntry
+from harness.suite.stream import Place, Stream, StreamEntry
 
 OUTCOMES: tuple[Outcome, ...] = tuple(EXIT_CODES)
 MISSING = len(OUTCOMES)
@@ -35,15 +35,15 @@ class Results(Mapping[int, CaseResult]):
         self._lengths = array("I", bytes(4 * count if stream else 0))
         self._count = 0
 
-    def keep(self, index: int, result: CaseResult | ResultHead, place: Place | None) -> None:
-        """Take a result, which is whole or stands in the stream."""
+    def keep(self, index: int, result: CaseResult, place: Place | None) -> None:
+        """Take a result; the whole of one that stands in the stream is not kept."""
         self._count += index not in self
         self._outcomes[index] = OUTCOMES.index(result.outcome)
         if result.overlap > 0 or result.redraws:
             self.starts[index] = result.overlap > 0, result.redraws
         if place is not None:
             self._offsets[index], self._lengths[index] = place.offset, place.length
-        elif isinstance(result, CaseResult):
+        else:
             self._kept[index] = result
 
     def drop(self, is_dropped: Callable[[int], bool]) -> list[Place]:

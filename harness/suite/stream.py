@@ -10,15 +10,11 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any, BinaryIO, Literal
-
-from pydantic_core import from_json
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal, TypeVar
 
 from harness.core.errors import HarnessError
 from harness.core.inputs import content_hash
 from harness.core.limits import RESULTS_LINE
-from harness.recording.older_runs import in_present_form
-from harness.recording.run import Outcome
 from harness.reporting.json_text import compact_json
 from harness.reporting.result import CaseResult
 from harness.session.run_request import RunRequest
@@ -28,14 +24,15 @@ from harness.suite.installation import installation, search_environment
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
-FORMAT = "armharness-stream/3"
-KNOWN_FORMATS = ("armharness-stream/1", "armharness-stream/2", FORMAT)
+FORMAT: Literal["armharness-stream/3"] = "armharness-stream/3"
 LEFT_OUT = "armharness-left-out/1"
 INPUTS = "armharness-inputs/1"
 CHECK = ',"check":"'  # how the end of a line begins that has the checksum of the text before it
 
 CHECK_DIGITS = 16  # hexadecimal, of a SHA-256: 64 bits show damage
 FILE = "results.jsonl"
+
+L = TypeVar("L")  # a kind of line
 
 
 @dataclass(frozen=True)
@@ -49,29 +46,6 @@ class Place:
 
     offset: int
     length: int
-
-
-@dataclass(frozen=True)
-class ResultHead:
-    """The part of a result that is kept in memory, or read from a line without the rest."""
-
-    file: str
-    case: str
-    outcome: Outcome
-    digest: str = ""
-    overlap: float = 0.0
-    redraws: int = 0
-    report_dir: str = ""
-
-
-@dataclass(frozen=True)
-class LineHead:
-    """The part of a line of a stream that says which result it is."""
-
-    format: str
-    key: str
-    result: ResultHead
-    inputs: str = ""
 
 
 @dataclass(frozen=True)
@@ -89,7 +63,7 @@ class StreamEntry:
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
     tags: tuple[str, ...] = ()
     inputs: str = ""
-    format: str = FORMAT
+    format: Literal["armharness-stream/3"] = FORMAT
 
     @property
     def line(self) -> bytes:
@@ -161,7 +135,7 @@ class Stream:
             HarnessError: The file cannot be written.
         """
         self.path = Path(name) if folder is None else folder / name
-        self._known: dict[str, tuple[Place, LineHead]] = {}
+        self._known: dict[str, Place] = {}
         self._unused = set[str]()
         self._inputs: dict[str, Inputs] = {}
         self._changed: dict[str, bool] = {}
@@ -192,22 +166,22 @@ class Stream:
                 whole = place.offset + place.length
                 if not is_intact(line):
                     damaged.append(place)
-                elif (head := head_of(line)) is not None:
-                    self._known[head.key] = place, head
+                elif (entry := entry_of(line)) is not None:
+                    self._known[entry.key] = place
                 elif (inputs := inputs_of(line)) is not None:
                     self._inputs[inputs.digest] = inputs
                 elif (keys := left_out_of(line)) is not None:
                     self._leaves_out = bool(keys)
             for place in damaged:
-                head = head_of(os.pread(file.fileno(), place.length, place.offset))
-                self._unused.update([] if head is None else [head.key])
+                entry = entry_of(os.pread(file.fileno(), place.length, place.offset))
+                self._unused.update([] if entry is None else [entry.key])
                 os.pwrite(file.fileno(), b" " * (place.length - 1), place.offset)
             os.pwrite(file.fileno(), b" " * (self._end - whole), whole)
         self._unused.update(self._known)
         if whole != self._end:
             self.append(b"\n")
 
-    def known(self, job: RunRequest) -> tuple[Place, ResultHead] | None:
+    def known(self, job: RunRequest) -> tuple[Place, CaseResult] | None:
         """An earlier run's result from the same inputs; None if there is none.
 
         An error is no result: it is tried again. So is an invalid file, as what it lacks may be
@@ -219,9 +193,9 @@ class Stream:
         self._unused.discard(key)
         if key not in self._known:
             return None
-        place, head = self._known[key]
-        is_result = head.result.outcome in ("passed", "failed")
-        return (place, head.result) if is_result and self._has_same_inputs(head.inputs) else None
+        entry = self.entry(place := self._known[key])
+        is_result = entry.result.outcome in ("passed", "failed")
+        return (place, entry.result) if is_result and self._has_same_inputs(entry.inputs) else None
 
     def _has_same_inputs(self, digest: str) -> bool:
         """Whether all files that results follow from are as they were."""
@@ -336,49 +310,25 @@ def _checksum(content: bytes) -> str:
 
 def inputs_of(line: bytes) -> Inputs | None:
     """The files that a line of a stream lists; None where it is another line."""
-    try:
-        return validator(Inputs).validate_json(line)
-    except ValueError:
-        return None
+    return _read(Inputs, line)
 
 
 def left_out_of(line: bytes) -> Sequence[str] | None:
     """The results that a line of a stream leaves out; None where it is another line."""
-    try:
-        found: LeftOut = validator(LeftOut).validate_json(line)
-    except ValueError:
-        return None
-    return found.keys
+    found = _read(LeftOut, line)
+    return None if found is None else found.keys
 
 
 def entry_of(line: bytes) -> StreamEntry | None:
-    """A line of a stream; None where it was cut off or has another format."""
+    """A result of a stream; None where the line was cut off, or is another one."""
+    return _read(StreamEntry, line)
+
+
+def _read(kind: type[L], line: bytes) -> L | None:
     try:
-        entry: StreamEntry = validator(StreamEntry).validate_json(line)
-    except ValueError:
-        return _older_entry(line)
-    return entry if entry.format in KNOWN_FORMATS else None
-
-
-def _older_entry(line: bytes) -> StreamEntry | None:
-    """A line of the first format; None where it has none of the formats."""
-    try:
-        plain = from_json(line)
-        if plain["format"] not in KNOWN_FORMATS:
-            return None
-        present = {**plain, "format": FORMAT, "result": in_present_form(plain["result"])}
-        return validator(StreamEntry).validate_python(present)
-    except (ValueError, KeyError, TypeError):
-        return None
-
-
-def head_of(line: bytes) -> LineHead | None:
-    """The beginning of a line of a stream; None where it was cut off or has another format."""
-    try:
-        head: LineHead = validator(LineHead).validate_json(line)
+        return validator(kind).validate_json(line)
     except ValueError:
         return None
-    return head if head.format in KNOWN_FORMATS else None
 
 
 def result_of(plain: Mapping[str, Any]) -> CaseResult:

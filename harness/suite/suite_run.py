@@ -22,7 +22,7 @@ from harness.suite.repetitions import Repetitions
 from harness.suite.request import SuiteRequest
 from harness.suite.results import Results
 from harness.suite.sampling import Sampling
-from harness.suite.stream import Place, ResultHead, Stream
+from harness.suite.stream import Place, Stream
 from harness.suite.warm import WarmServer
 
 OnResult = Callable[[int, CaseResult], None]
@@ -95,8 +95,8 @@ class SuiteRun:
             self.is_interrupted = True
         self.count()
 
-    def take(self, index: int, result: CaseResult | ResultHead, place: Place | None) -> None:
-        """Take a result, which is whole or stands in the stream."""
+    def take(self, index: int, result: CaseResult, place: Place | None) -> None:
+        """Take a result; `place` is where it stands in the stream."""
         if self._repetitions is None:
             self._sampling.note(index, result.outcome, result.digest)
         self.results.keep(index, result, place)

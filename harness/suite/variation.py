@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 from harness.core.lazy import LazySequence
 from harness.core.variation import Parametrize, count_of
-from harness.suite.distribution import Distribution, read_distribution
 
 if TYPE_CHECKING:
-    from harness.language.variation import CaseKeys
+    from harness.language.variation import CaseKeys, Distribution
 
 LONGEST_NAME = 60  # [characters] of a value in a case's name
 
@@ -68,7 +67,7 @@ class Variation:
     """
 
     parametrize: Parametrize | None = None
-    randomize: Mapping[str, Distribution] = field(default_factory=dict[str, Distribution])
+    randomize: Mapping[str, Distribution] = field(default_factory=dict[str, "Distribution"])
     samples: int = 0
     at_least: float | None = None
     confidence: float = 0.95
@@ -80,24 +79,19 @@ class Variation:
     @classmethod
     def of(cls, keys: CaseKeys) -> Variation:
         """The variation that the keys of a scenario file say."""
-        from harness.language.reading.written import as_written
-
         rate = keys.expect_rate
-        stated = dict(keys.randomize or {})
         variation = cls(
             parametrize=keys.parametrize,
-            randomize={path: read_distribution(as_written(each)) for path, each in stated.items()},
+            randomize=keys.randomize or {},
             samples=keys.sample_count,
             seed=keys.seed,
             redraw_overlaps=keys.redraw_overlaps is True,
         )
         if rate is None:
             return variation
+        at_least, confidence = rate.at_least, rate.confidence
         return replace(
-            variation,
-            at_least=rate.at_least,
-            confidence=rate.confidence,
-            stop_early=rate.stop_early,
+            variation, at_least=at_least, confidence=confidence, stop_early=rate.stop_early
         )
 
     @property
@@ -179,7 +173,7 @@ class Redraw:
     base: int
     fixed: Mapping[str, str] = field(default_factory=dict[str, str])
 
-    def redrawn(self, draw: int) -> Case:
+    def __call__(self, draw: int) -> Case:
         """The sample as it is drawn next, by the number of the draw from 1."""
         drawn = self.variation._sample(self.case, self.index, self.base, draw)  # noqa: SLF001
         return drawn.with_overrides(self.fixed)

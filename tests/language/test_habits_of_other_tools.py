@@ -6,7 +6,7 @@ import pytest
 
 from harness.core.errors import SpecError
 from harness.language.reading.load import parse_scenario
-from harness.suite.distribution import read_distribution
+from harness.language.variation import Distribution
 
 HEAD = "scenario: x\nrobot: ur3e\nsteps:\n  - wait: 1 s\n"
 
@@ -95,7 +95,7 @@ def test_a_misspelt_word_with_known_keys_still_reports_what_is_wrong_inside():
 def test_a_zero_in_a_distribution_needs_no_unit(distribution, middle):
     text = f"{HEAD}params: {{x: 1}}\nsamples: 2\nrandomize: {{x: {distribution}}}\n"
     parse_scenario(text, Path("f.yaml"))
-    value = read_distribution(distribution).at(0.5)
+    value = Distribution(**distribution).at(0.5)
     assert value.split()[1] == middle.split()[1]
     assert float(value.split()[0]) == pytest.approx(float(middle.split()[0]), abs=1e-4)
 

@@ -98,7 +98,7 @@ parametrize: {n: [1, 2]}
 PLUGIN = """\
 from typing import ClassVar
 
-from harness.language.step import Step
+from harness.cell.step import Step
 from nodding import TIME
 
 

@@ -21,11 +21,9 @@ from harness.suite.request import SuiteRequest
 from harness.suite.stream import (
     FILE,
     Inputs,
-    ResultHead,
     Stream,
     checked_line,
     entry_of,
-    head_of,
     inputs_of,
     is_intact,
     lines_of,
@@ -107,8 +105,8 @@ def _checked_inputs(paths: Sequence[Path]) -> list[Inputs]:
                         f"line {number} of '{path}' is not as it was written: its checksum does"
                         " not match; run this part again with --resume"
                     )
-                if (head := head_of(line)) is not None:
-                    used[head.key] = head.inputs
+                if (entry := entry_of(line)) is not None:
+                    used[entry.key] = entry.inputs
                 elif (inputs := inputs_of(line)) is not None:
                     listed[inputs.digest] = inputs
         for inputs in (listed[each] for each in dict.fromkeys(used.values()) if each in listed):
@@ -128,7 +126,7 @@ def _checked_inputs(paths: Sequence[Path]) -> list[Inputs]:
 
 def _results_of(
     suite: SuiteRun, folder: Path, root: Path
-) -> Iterator[tuple[int, ResultHead, bytes]]:
+) -> Iterator[tuple[int, CaseResult, bytes]]:
     """The results of a part with their lines; those with a report name where it is now.
 
     Parts are written nearly in the order of the cases. Merged in this order, few results wait for
@@ -138,16 +136,16 @@ def _results_of(
         return
     with (folder / FILE).open("rb") as file:
         for _, line in lines_of(file):
-            head = head_of(line)
-            index = None if head is None else suite.plan.find(head.result.file, head.result.case)
-            if head is None or index is None:
+            entry = entry_of(line)
+            index = entry and suite.plan.find(entry.result.file, entry.result.case)
+            if entry is None or index is None:
                 continue
-            if head.result.report_dir and root != folder and (entry := entry_of(line)):
+            if entry.result.report_dir and root != folder:
                 line = replace(entry, result=_moved(entry.result, root, folder)).line
-            yield index, head.result, line
+            yield index, entry.result, line
 
 
-def _index(found: tuple[int, ResultHead, bytes]) -> int:
+def _index(found: tuple[int, CaseResult, bytes]) -> int:
     return found[0]
 
 

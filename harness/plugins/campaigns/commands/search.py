@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from harness.cli.arguments import batch_size, whole_number
+from harness.cli.arguments import whole_number, whole_number_from
 from harness.cli.command import SEARCHES, Command
 from harness.cli.files import one_scenario
 from harness.cli.output import complain, output, say, say_json
@@ -59,7 +59,7 @@ class SearchCommand(Command):
             "let the optimiser propose N runs at a time (default: the file's, or 4 + 3 ln(number of"
             " parameters))"
         )
-        add("--batch", metavar="N", type=batch_size, default=None, help=text)
+        add("--batch", metavar="N", type=whole_number_from(2, 1000), default=None, help=text)
         text = "minimise the margin of this expectation (default: the file's, or the worst margin)"
         add("--minimise", metavar="NAME", default=None, help=text)
         text = "make N runs side by side"

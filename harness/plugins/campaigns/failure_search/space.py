@@ -12,8 +12,8 @@ from typing import Any
 from harness.core.quantity import split_quantity
 from harness.language.reading.load import load_scenario
 from harness.language.reading.overrides import value_at
+from harness.language.variation import Distribution
 from harness.plugins.campaigns.conversion import conversion_factor
-from harness.suite.distribution import Choice, Distribution, Uniform
 from harness.suite.variation import Variation
 
 TAIL = 0.001  # share of a normal distribution beyond each end of its range
@@ -38,13 +38,12 @@ class Parameter:
     @property
     def is_number(self) -> bool:
         """Whether the value is a number, so that there are values in between."""
-        return not isinstance(self.distribution, Choice)
+        return self.distribution.choice is None
 
     @property
     def bounds(self) -> tuple[float, float]:
         """The ends of the distribution's range, in its own unit."""
-        assert not isinstance(self.distribution, Choice)
-        tail = 0.0 if isinstance(self.distribution, Uniform) else TAIL
+        tail = 0.0 if self.distribution.normal is None else TAIL
         return self.distribution.number_at(tail), self.distribution.number_at(1 - tail)
 
     @property
@@ -60,7 +59,6 @@ class Parameter:
     def value(self, number: float) -> float | str:
         """The value of a number in the unit of the distribution, rounded to the step."""
         digits = max(0, -math.floor(math.log10(self.step)))
-        assert not isinstance(self.distribution, Choice)
         return self.distribution.written(round(number, digits))
 
     def change(self, value: Any) -> float:
@@ -137,7 +135,7 @@ def search_space(
 def _nominal(value: Any, distribution: Distribution) -> Any:
     """The file's value in the unit of the distribution; without one, the distribution's middle."""
     middle = distribution.at(0.5)
-    if isinstance(distribution, Choice):
+    if distribution.choice is not None:
         return middle if value is None else value
     try:
         number, unit = split_quantity(value)

@@ -11,6 +11,7 @@ from harness.core.files import replaced, writing
 from harness.core.printable import counted, printable
 from harness.language.reading.load import load_scenario
 from harness.language.reading.resolve import resolved_text
+from harness.language.reading.written import as_written
 from harness.plugins.campaigns.failure_search.evaluator import Sample
 from harness.plugins.campaigns.failure_search.explore import FailureRate
 from harness.plugins.campaigns.failure_search.search import Failure, SearchResult
@@ -219,7 +220,7 @@ def search_document(found: SearchResult, written: Written) -> dict[str, object]:
         "outcome": "failed" if is_failing(found) else "passed",
         "nominal": {"outcome": found.nominal.result.outcome, "digest": found.nominal.result.digest},
         "parameters": {
-            each.path: {"nominal": each.nominal, **each.distribution.plain}
+            each.path: {"nominal": each.nominal, **as_written(each.distribution)}
             for each in found.space.parameters
         },
         "runs": len(exploration.samples),
