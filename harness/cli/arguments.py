@@ -178,22 +178,6 @@ def positive_number(what: str) -> Callable[[str], float]:
 seconds = positive_number("seconds")
 
 
-def coordinate(text: str) -> float:
-    """A finite coordinate [m]."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = float("nan")
-    if not abs(number) < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a coordinate in metres, such as 1.02")
-    return number
-
-
-def start_time(text: str) -> float:
-    """A time of a run [s]: 0, or later."""
-    return 0.0 if text in ("0", "0.0") else seconds(text)
-
-
 def share_of_one(text: str) -> float:
     """A share above 0, at most 1."""
     number = positive_number("a share")(text)
@@ -202,26 +186,21 @@ def share_of_one(text: str) -> float:
     return number
 
 
-def whole_number(text: str) -> int:
-    """A number from 1."""
-    return _between(text, 1, None, "number")
+def whole_number_from(
+    least: int, most: int | None = None, what: str = "number"
+) -> Callable[[str], int]:
+    """The type of an option that is a whole number within bounds."""
+
+    def number_of(text: str) -> int:
+        if not text.isdigit() or int(text) < least or (most is not None and int(text) > most):
+            to = "" if most is None else f" to {most}"
+            raise argparse.ArgumentTypeError(f"'{text}' is not a {what} from {least}{to}")
+        return int(text)
+
+    return number_of
 
 
-def batch_size(text: str) -> int:
-    """A number from 2 to 1000."""
-    return _between(text, 2, 1000, "number")
-
-
-def port_number(text: str) -> int:
-    """A TCP port; 0 is any that is free."""
-    return _between(text, 0, 65535, "port")
-
-
-def _between(text: str, least: int, most: int | None, what: str) -> int:
-    if not text.isdigit() or int(text) < least or (most is not None and int(text) > most):
-        to = "" if most is None else f" to {most}"
-        raise argparse.ArgumentTypeError(f"'{text}' is not a {what} from {least}{to}")
-    return int(text)
+whole_number = whole_number_from(1)
 
 
 def pair(text: str, form: str, example: str) -> tuple[str, str]:

@@ -36,6 +36,8 @@ class SuiteHooks:
         part: Chooses the part of the selected cases that this command runs; no rate of samples is
             decided then.
         planned: Called with the files and the request of the whole suite before a case runs.
+        begun: Called with the suite before a case runs; returns what is called with the index of
+            each result as it comes.
         execute: Runs the cases in place of this machine's processes.
         writes_single_case: Whether a suite of a single case gets the files of a suite too.
         write: Writes the files of the suite into a folder in place of `write_suite`.
@@ -45,6 +47,7 @@ class SuiteHooks:
     cases: Callable[[Sequence[FileCases]], Sequence[FileCases]] | None = None
     part: Callable[[Plan], Plan] | None = None
     planned: Callable[[Sequence[Path], SuiteRequest], None] | None = None
+    begun: Callable[[SuiteRun], Callable[[int], None]] | None = None
     execute: Execute | None = None
     writes_single_case: bool = False
     write: Callable[[SuiteRun, Path, History], tuple[Path, Columns]] | None = None

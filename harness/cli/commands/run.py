@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -26,7 +26,6 @@ from harness.cli.shared_options import (
     add_verbose,
 )
 from harness.cli.suite_output import (
-    has_page,
     show_interruption,
     show_json,
     show_lines,
@@ -91,13 +90,13 @@ def _run_files(call: RunCall) -> int:
         if not arguments.in_process and hooks.execute is None:
             server.open()  # it imports for as long as this process takes to get ready
         suite = _suite(call)
-        update_page = _page_updates(arguments, suite)
+        arrived = hooks.begun(suite) if hooks.begun is not None else lambda _index: None
         from harness.cli.progress import ProgressLines, slow_work_on_stderr
 
         if arguments.format != "full":
             is_json = arguments.format == "json"
             with only_json_on_stdout() if is_json else nullcontext():
-                suite.collect(server, slow_work_on_stderr, update_page)
+                suite.collect(server, slow_work_on_stderr, lambda index, _result: arrived(index))
                 write_suite_files(arguments, suite, hooks)
                 show_interruption(arguments, suite, time.monotonic() - start)
             return show_json(suite) if is_json else show_lines(arguments, suite)
@@ -114,7 +113,7 @@ def _run_files(call: RunCall) -> int:
 
         def on_result(index: int, result: CaseResult) -> None:
             progress.result(index, result)
-            update_page(index, result)
+            arrived(index)
 
         suite.collect(server, progress.step, on_result)
         output().status(lambda: "  writing the results")
@@ -156,18 +155,6 @@ def _suite(call: RunCall) -> SuiteRun:
     if hooks.planned is not None:
         hooks.planned(files, request)
     return SuiteRun(plan, request, files)
-
-
-def _page_updates(
-    arguments: argparse.Namespace, suite: SuiteRun
-) -> Callable[[int, CaseResult], None]:
-    """A function that updates the page of a running suite with each result."""
-    if not has_page(arguments, suite):
-        return lambda *_: None
-    from harness.cli.live_page import LivePage
-
-    page = LivePage(suite, Path(arguments.report_dir))
-    return lambda index, _result: page.result(index)
 
 
 def _case_names(arguments: argparse.Namespace, suite: SuiteRun) -> Sequence[str]:

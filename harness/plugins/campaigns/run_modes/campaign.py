@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from harness.cli.output import complain, say
 from harness.cli.run_mode import RunCall, RunFiles, RunMode
+from harness.cli.suite_output import has_page
 from harness.suite.discovery import UsageError
 from harness.suite.hooks import Execute, SuiteHooks
 
@@ -52,6 +53,7 @@ class CampaignMode(RunMode):
         """Run scenarios; every suite with samples gets a file of their conditions."""
         processors = set[str]()
         arguments, hooks = call.arguments, replace(call.hooks, write=_write)
+        hooks = replace(hooks, begun=lambda suite: _page_updates(arguments, suite))
         if arguments.cluster:
             hooks = replace(hooks, execute=_on_cluster(arguments, processors))
         conditions = _conditions(arguments, call.files)
@@ -66,6 +68,15 @@ class CampaignMode(RunMode):
                 f" ({'; '.join(sorted(processors))}): compare their verdicts, not their digests"
             )
         return code
+
+
+def _page_updates(arguments: argparse.Namespace, suite: SuiteRun) -> Callable[[int], None]:
+    """A function that updates the page of a running suite with each result."""
+    if not has_page(arguments, suite):
+        return lambda _index: None
+    from harness.plugins.campaigns.live_page import LivePage
+
+    return LivePage(suite, Path(arguments.report_dir)).result
 
 
 def _on_cluster(arguments: argparse.Namespace, processors: set[str]) -> Execute:

@@ -7,7 +7,7 @@ import threading
 from pathlib import Path
 from typing import ClassVar
 
-from harness.cli.arguments import coordinate, port_number, start_time
+from harness.cli.arguments import seconds, whole_number_from
 from harness.cli.command import SCENARIOS, Command
 from harness.cli.commands.view import open_browser
 from harness.cli.output import complain, say
@@ -36,7 +36,7 @@ class StudioCommand(Command):
             help=text,
         )
         text = "with a run: continue by hand from this time (default: 0)"
-        add("--at", metavar="SECONDS", type=start_time, default=None, help=text)
+        add("--at", metavar="SECONDS", type=_start_time, default=None, help=text)
         text = "put the robot into this bundled world or world file"
         add("--world", metavar="WORLD", default="", help=text)
         text = "mount this bundled gripper on the robot"
@@ -44,9 +44,11 @@ class StudioCommand(Command):
         text = (
             "put the robot's base at this place of the world [m], such as a table's top: 0 0 1.02"
         )
-        add("--base", metavar=("X", "Y", "Z"), nargs=3, type=coordinate, help=text)
+        add("--base", metavar=("X", "Y", "Z"), nargs=3, type=_coordinate, help=text)
         text = "serve the page on this port; 0 selects a free one (default: 8011)"
-        add("--port", metavar="N", type=port_number, default=8011, help=text)
+        add(
+            "--port", metavar="N", type=whole_number_from(0, 65535, "port"), default=8011, help=text
+        )
         text = "listen on this address instead of loopback; the URL then contains a token"
         add("--host", metavar="ADDRESS", default="", help=text)
         add("--no-open", action="store_true", help="print the address and open no browser")
@@ -174,3 +176,19 @@ def _scenario(word: str, arguments: argparse.Namespace) -> tuple[Path, str]:
     text = read_text(file)
     is_inside = file.resolve().is_relative_to(Path.cwd())
     return (file if is_inside else Path(file.name)), text
+
+
+def _coordinate(text: str) -> float:
+    """A finite coordinate [m]."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = float("nan")
+    if not abs(number) < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a coordinate in metres, such as 1.02")
+    return number
+
+
+def _start_time(text: str) -> float:
+    """A time of a run [s]: 0, or later."""
+    return 0.0 if text in ("0", "0.0") else seconds(text)
