@@ -16,7 +16,7 @@ from harness.language.base import SpecModel
 from harness.language.expectation import ExpectationFields
 from harness.language.language import KEYS_BY_VERB
 from harness.language.scenario import Scenario
-from harness.language.step import STEPS, Step
+from harness.language.step import STEPS, StepFields
 from harness.language.units import MEANINGS, SHARE
 from harness.language.world import WorldSpec
 
@@ -48,7 +48,7 @@ def scenario_reference() -> str:
 
 def steps_reference() -> str:
     """Every verb: what it does, its keys with type, unit and default."""
-    next_to = table((key, keys_of(Step)[key]) for key in KEYS_BY_VERB)
+    next_to = table((key, keys_of(StepFields)[key]) for key in KEYS_BY_VERB)
     parts = ["# Steps", STEPS_HEAD, VALUES, contents(STEPS)]
     parts += ["Every step also has these keys, next to its verb:", next_to]
     parts.append(f"Error codes are {', '.join(f'`{code}`' for code in get_args(ErrorCode))}.")
@@ -98,7 +98,7 @@ def part_sections(models: Iterable[type[SpecModel]]) -> list[str]:
 def _models_in(annotation: Any) -> list[type[SpecModel]]:
     """The models that are no step and no expectation, anywhere in an annotation."""
     if is_model(annotation):
-        is_word = issubclass(annotation, Step | ExpectationFields)
+        is_word = issubclass(annotation, StepFields | ExpectationFields)
         return [] if is_word else [annotation]
     return [model for each in get_args(annotation) for model in _models_in(each)]
 
@@ -135,7 +135,7 @@ def _described(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
             return f"{MEANINGS['1'][0]} (`0.5`, `50 %`)"
         if units is not None:
             return " or ".join(f"{MEANINGS[unit][0]} [{unit}]" for unit in units)
-    if annotation is Step:
+    if annotation is StepFields:
         return "step"
     if annotation is ExpectationFields:
         return "expectation"

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field, replace
 from harness.cell.holding import Holding
 from harness.cell.program import ProgramStep, step_seed, with_arm
 from harness.cell.runner import Runner
+from harness.cell.step import Step
 from harness.core.camera import Camera
 from harness.core.errors import StepFailed
 from harness.core.trajectory import JointTrajectory
-from harness.language.step import Step
 from harness.ports.external import ExternalControl
 from harness.ports.motion_planning import MotionPlan, MotionPlanner, MotionRequest, PlanningOptions
 from harness.ports.motions import PlannedMotion

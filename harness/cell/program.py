@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from harness.cell.controllers import ControllerNames
+from harness.cell.step import Step
 from harness.core.camera import Camera
 from harness.core.world import World, WorldObject
 from harness.language.expectation import ExpectationFields
 from harness.language.files.source import Loc
-from harness.language.step import Step
 from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
 

@@ -46,7 +46,7 @@ from harness.judging.hands import each_hand, finger_links, gripper_of, hand_link
 from harness.judging.hold import gripped, held_by_fingers
 from harness.judging.support import carried_by_hand, is_below
 from harness.judging.temporal import bridged, episodes
-from harness.language.step import Step, step_class
+from harness.language.step import StepFields, step_class
 from harness.recording.run import Run
 from harness.recording.step_results import AllowedCollisions
 
@@ -130,7 +130,7 @@ def _names(run: Run, allowed: Pair, pair: Pair) -> bool:
 
 
 def _samples_of(
-    run: Run, is_chosen: Callable[[type[Step]], bool], during: BoolArray | None = None
+    run: Run, is_chosen: Callable[[type[StepFields]], bool], during: BoolArray | None = None
 ) -> BoolArray:
     """Samples of the steps whose class is chosen; only of steps in which something is true."""
     mask = np.zeros(len(run.signals.times), dtype=bool)

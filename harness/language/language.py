@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from harness.core.registry import Registry, registry
 from harness.language.annotations import keys_of
 from harness.language.expectation import KIND, ExpectationFields, PredicateFields, TemporalFields
-from harness.language.step import Step
+from harness.language.step import StepFields
 
 PLACEHOLDER_VERB, PLACEHOLDER_WORD = "settle", "within_limits"
 """What takes the place of a step or an expectation that cannot be read, so that indices stay."""
@@ -43,7 +43,7 @@ EXPECTATIONS = WordsOf(ExpectationFields)
 PREDICATES = WordsOf(PredicateFields)
 TEMPORAL = WordsOf(TemporalFields)
 
-KEYS_BY_VERB = tuple(keys_of(Step))  # stand next to a verb, never inside its content
+KEYS_BY_VERB = tuple(keys_of(StepFields))  # stand next to a verb, never inside its content
 
 KEYS_BY_PREDICATE = tuple(keys_of(TemporalFields))
 """Words that stand next to a predicate or a temporal word (or inside, as in the models)."""

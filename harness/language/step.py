@@ -1,28 +1,23 @@
-"""What every step is: the keys next to its verb, and what its class must provide."""
+"""What a file says of every step: the keys next to its verb."""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from harness.core.amounts import JointUnits
 from harness.core.details import Detail
 from harness.core.errors import ErrorCode
-from harness.core.registry import HAS_DOCSTRINGS, Registry, registry
+from harness.core.registry import Registry, registry
 from harness.language.base import Name, PositiveDuration, SpecModel
 from harness.language.expectation import AnyExpectation, ExpectationFields
 from harness.language.files.source import Loc
 from harness.language.planning import Planning
 from harness.language.plugin_field import PluginField
 from harness.language.world import ObjectSpec
-
-if TYPE_CHECKING:  # of what steps work with, which is built on the language
-    from harness.cell.cell import Cell
-    from harness.cell.program import ProgramStep
-    from harness.cell.scope import At
 
 TAG = "do"  # in the shape of the models, the key of a step's verb
 
@@ -37,16 +32,14 @@ class Block:
         suffix: Appended to the ids of the steps where they run more than once: `#2`.
     """
 
-    steps: Sequence[Step]
+    steps: Sequence[StepFields]
     loc: Loc
     path: str
     suffix: str = ""
 
 
-class Step(SpecModel):
-    """A step of a scenario: a subclass for each verb says, checks and does all of it.
-
-    The docstring of a subclass is the step's text in the reference and in editors.
+class StepFields(SpecModel):
+    """The keys that any step may have; `harness.cell.step.Step` is what a step is made of.
 
     Attributes:
         verb: The key of the step in a file; empty in classes that several steps share.
@@ -107,20 +100,6 @@ class Step(SpecModel):
     )
 
     @classmethod
-    def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        """Refuse a class that lacks something a step must have, when it is defined."""
-        verb = cls.plugin_name()
-        if not verb:
-            return
-        reserved = {*Step.model_fields, TAG}
-        if not verb.isidentifier() or verb in reserved:
-            raise TypeError(f"`{verb}` cannot be a step's verb: it is no word, or a key of steps")
-        if not cls.__doc__ and HAS_DOCSTRINGS:
-            raise TypeError(f"the step `{verb}` has no docstring, which is its reference text")
-        if TAG in cls.model_fields or cls.execute is Step.execute:
-            raise TypeError(f"the step `{verb}` needs an `execute` method, and no field `{TAG}`")
-
-    @classmethod
     def plugin_name(cls) -> str:
         """The verb that this class is registered under; empty for what several steps share."""
         return cls.__dict__.get("verb", "")
@@ -137,39 +116,10 @@ class Step(SpecModel):
         """The step's content in a few words, where joint positions have units of the robot."""
         return self.summary()
 
-    def check(self, at: At) -> None:
-        """Report what is wrong with the step, then change the scope as the step will.
-
-        Args:
-            at: What exists at this point of the file, and the step's place in it.
-        """
-
-    def execute(self, cell: Cell) -> None:
-        """Do what the step says; `harness check` calls this with a cell that moves nothing.
-
-        Args:
-            cell: The robot, the planning scene, the planner and the simulator.
-
-        Raises:
-            StepFailed: The step cannot be carried out.
-        """
-        raise NotImplementedError(self.verb)
-
     @property
     def is_made_of_parts(self) -> bool:
         """Whether the step carries out `parts`, which `parallel` combines with another arm's."""
         return False
-
-    def parts(self, cell: Cell) -> Generator[ProgramStep]:
-        """The steps that the step is made of.
-
-        What has to be planned is planned before the first one; each of the others may be requested
-        before those in front of it are carried out.
-
-        Raises:
-            StepFailed: The step cannot be carried out.
-        """
-        raise NotImplementedError(self.verb)
 
     def ends(self) -> Iterator[ExpectationFields]:
         """Expectations that the step evaluates itself, to end when one of them passes."""
@@ -185,12 +135,12 @@ class Step(SpecModel):
         return iter(())
 
 
-STEPS: Registry[type[Step]] = registry(Step.plugin_kind)  # the class of every verb
+STEPS: Registry[type[StepFields]] = registry(StepFields.plugin_kind)  # the class of every verb
 
 
-def step_class(verb: str) -> type[Step]:
-    """The class of a recorded step; `Step`, which states no facts, where it is not installed."""
-    return STEPS.get(verb, Step)
+def step_class(verb: str) -> type[StepFields]:
+    """The class of a recorded step; one that states no facts where it is not installed."""
+    return STEPS.get(verb, StepFields)
 
 
-AnyStep = Annotated[Step, PluginField(Step.plugin_kind, TAG)]
+AnyStep = Annotated[StepFields, PluginField(StepFields.plugin_kind, TAG)]

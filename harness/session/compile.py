@@ -13,6 +13,7 @@ import numpy as np
 from harness.cell.controllers import controller_names
 from harness.cell.program import Program, ProgramExpectation, ProgramStep, with_arm
 from harness.cell.scope import At, Problems, Scope
+from harness.cell.step import Step, as_step
 from harness.core.errors import RobotError
 from harness.core.geometry import Mesh
 from harness.core.spatial import SE3
@@ -23,7 +24,7 @@ from harness.language.files.source import Loc
 from harness.language.planning import Planning
 from harness.language.reading.load import LoadedScenario
 from harness.language.reading.partial import Prerequisite
-from harness.language.step import Block, Step
+from harness.language.step import Block, StepFields
 from harness.language.world import ObjectSpec
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import PlanningOptions
@@ -309,10 +310,10 @@ class _Compiler:
     # -- steps --------------------------------------------------------------------------------
 
     def _steps(
-        self, specs: Sequence[Step], loc: Loc, path: str, suffix: str = "", arm: str = ""
+        self, specs: Sequence[StepFields], loc: Loc, path: str, suffix: str = "", arm: str = ""
     ) -> tuple[ProgramStep, ...]:
         return tuple(
-            self._step(spec, (*loc, index), f"{path}[{index}]", suffix, arm)
+            self._step(as_step(spec), (*loc, index), f"{path}[{index}]", suffix, arm)
             for index, spec in enumerate(specs)
         )
 

@@ -12,6 +12,7 @@ from typing import Any
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of, pose_goal, resolve_goal
 from harness.cell.scope import At, Scope
+from harness.cell.step import Step
 from harness.core.details import Detail, Details
 from harness.core.errors import StepFailed
 from harness.core.registry import built_in_class
@@ -40,7 +41,7 @@ from harness.language.base import (
 )
 from harness.language.goals import GoalFields, GoalTolerance, LineFields
 from harness.language.poses import Direction, Pose, Position
-from harness.language.step import AnyStep, Block, Step
+from harness.language.step import AnyStep, Block
 from harness.language.world import ObjectSpec
 from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
 from harness.ports.motions import (

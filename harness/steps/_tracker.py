@@ -9,9 +9,9 @@ from typing import ClassVar
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.registry import Plugin, absent_plugins, registry
 from harness.core.spatial import SE3
-from harness.language.step import Step
 from harness.steps.grasp import Grasp
 from harness.steps.move_relative import MoveRelative
 

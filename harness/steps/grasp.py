@@ -11,10 +11,10 @@ from harness.cell.cell import Cell
 from harness.cell.closing import closing_obstacles, higher_grasp, position_around
 from harness.cell.grip import grip_of
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Details
 from harness.core.errors import StepFailed
 from harness.language.base import JointEffort, JointValue, Name
-from harness.language.step import Step
 from harness.ports.scene import Touch
 from harness.ports.simulation import ExpectedGrasp, GripperResult
 from harness.recording.execution_failures import GraspFailure, GripperOutcome

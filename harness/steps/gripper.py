@@ -9,11 +9,11 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.grasping import GAP_SLACK, position_for_width
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.amounts import JointUnits, amounts, joint_position
 from harness.core.errors import StepFailed
 from harness.core.state_words import stated_name
 from harness.language.base import JointEffort, JointValue, Name, NonNegativeLength
-from harness.language.step import Step
 from harness.ports.simulation import GripperResult
 from harness.recording.execution_failures import GripperOutcome
 

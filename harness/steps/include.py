@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from harness.cell.cell import Cell
+from harness.cell.step import Step
 from harness.language.base import Name
-from harness.language.step import Step
 
 
 class Include(Step):

@@ -9,8 +9,8 @@ from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.language.goals import LineFields
-from harness.language.step import Step
 from harness.ports.motions import LinearMotion
 
 

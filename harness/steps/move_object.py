@@ -8,9 +8,9 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.language.base import Name
 from harness.language.poses import Pose
-from harness.language.step import Step
 
 
 class MoveObject(Step):

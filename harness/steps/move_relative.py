@@ -11,11 +11,11 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.amounts import amount
 from harness.core.types import FloatArray
 from harness.language.base import Angle, Length, Name, PositiveLength
 from harness.language.poses import Direction
-from harness.language.step import Step
 from harness.ports.motion_planning import MotionPlan, MotionRequest, PlanningOptions
 from harness.ports.motions import RelativeMotion
 

@@ -12,13 +12,13 @@ from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, path_constraints, pose_goal, resolve_goal
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.amounts import JointUnits
 from harness.core.registry import absent_plugins, registry
 from harness.language.base import Name
 from harness.language.goals import GOAL_KEYS, GoalFields
 from harness.language.planning import PathConstraintsSpec
 from harness.language.poses import Pose
-from harness.language.step import Step
 from harness.ports.goals import AnyGoal, JointGoal
 from harness.ports.motions import FreeMotion
 from harness.robot.description import ALL_ARMS

@@ -31,13 +31,13 @@ from harness.cell.grasping import (
 )
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.language.base import Angle, Flag, Name
 from harness.language.poses import Direction, Pose, Position
-from harness.language.step import Step
 from harness.recording.explanation import ApproachFailure
 from harness.steps._approach import (
     Travel,

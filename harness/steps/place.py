@@ -17,6 +17,7 @@ from harness.cell.grasp_choice import Approach, GraspSearch, choose_approach, wi
 from harness.cell.grasping import UP, gripper_axes, is_grasped_by_pitch
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.cell.supports import places_on
 from harness.core.details import Detail
 from harness.core.errors import PlanningFailed, StepFailed
@@ -27,7 +28,6 @@ from harness.core.symmetry import equal_turns
 from harness.core.types import FloatArray
 from harness.language.base import Flag, Name
 from harness.language.poses import Direction, Pose, Position
-from harness.language.step import Step
 from harness.ports.goals import PoseGoal, PositionGoal
 from harness.ports.scene import Touch
 from harness.recording.execution_failures import NotHeldFailure

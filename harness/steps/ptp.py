@@ -10,10 +10,10 @@ from harness.cell.cell import Cell
 from harness.cell.goal_checks import check_goal
 from harness.cell.goals import group_of, resolve_goal
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.errors import PlanningFailed
 from harness.language.base import PositiveDuration
 from harness.language.goals import GoalFields
-from harness.language.step import Step
 from harness.ports.goals import JointGoal
 from harness.ports.motions import FreeMotion, JointMotion
 

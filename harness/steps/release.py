@@ -9,11 +9,11 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.core.state_words import stated_name
 from harness.language.base import JointValue, Name
-from harness.language.step import Step
 from harness.recording.execution_failures import GripperOutcome
 from harness.steps.gripper import DEFAULT_TIMEOUT, note_result
 

@@ -9,10 +9,11 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from harness.cell.cell import Cell
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.language.base import Count
 from harness.language.files.source import Loc
-from harness.language.step import AnyStep, Block, Step
+from harness.language.step import AnyStep, Block
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from harness.cell.cell import Cell
+from harness.cell.step import Step
 from harness.language.base import LinearVelocity
-from harness.language.step import Step
 
 DEFAULT_TIMEOUT = 10.0  # [s] of simulation
 

@@ -9,11 +9,11 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.errors import StepFailed
 from harness.judging.ends import check_end, holds_now
 from harness.language.base import PositiveDuration
 from harness.language.expectation import AnyExpectation, ExpectationFields
-from harness.language.step import Step
 from harness.ports.simulation import RecordingSimulator
 from harness.recording.execution_failures import TimeoutFailure
 

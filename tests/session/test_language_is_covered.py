@@ -2,9 +2,10 @@
 
 import re
 
+from harness.cell.step import Step
 from harness.core.registry import registry
 from harness.judging.expectation import Expectation, Predicate
-from harness.language.step import STEPS, Step
+from harness.language.step import STEPS
 
 EXPECTATIONS = registry("expectation")
 

@@ -18,7 +18,7 @@ from harness.language.reading.params import PARAMS
 from harness.language.reading.short_forms import expanded
 from harness.language.reading.written import as_written
 from harness.language.scenario import RobotSpec, Scenario
-from harness.language.step import STEPS, Step
+from harness.language.step import STEPS, StepFields
 
 NO_ROTATION = (0.0, 0.0, 0.0)  # where `rpy` is absent and an angle is set
 
@@ -220,7 +220,7 @@ def _key(parts: list[str], item: Located, kind: Any) -> tuple[str, list[str]]:
 
 def _field(kind: Any, key: str) -> tuple[Any, Any]:
     """Annotation and default of a key, as plain data; None where the language has none."""
-    if kind is Step and key in STEPS:
+    if kind is StepFields and key in STEPS:
         return STEPS[key], {}
     if kind in (ExpectationFields, PredicateFields):
         if key in TEMPORAL or key == UNTIL:

@@ -18,7 +18,7 @@ from harness.language.files.source import Loc
 from harness.language.language import PLACEHOLDER_VERB, PLACEHOLDER_WORD
 from harness.language.plugin_field import PluginField
 from harness.language.scenario import RobotSpec, Scenario
-from harness.language.step import Step
+from harness.language.step import StepFields
 
 Prerequisite = Literal["robot", "world", "arms"]
 
@@ -26,7 +26,7 @@ ABSENT: Any = object()  # in place of a value that cannot be read and that nothi
 NO_NAME = "?"  # stands in for a name that cannot be read; problems with it follow from that
 STAND_INS = (1, 0, True, NO_NAME)  # the first valid one stands in for a value that is needed
 
-PLACEHOLDERS = {Step.plugin_kind: PLACEHOLDER_VERB, KIND: PLACEHOLDER_WORD}
+PLACEHOLDERS = {StepFields.plugin_kind: PLACEHOLDER_VERB, KIND: PLACEHOLDER_WORD}
 """By the kind of plug-in, the name of the one that stands in for one that is unknown."""
 
 STAND_IN_ROBOT = "open_manipulator_x"  # so that what does not depend on the robot is checked

@@ -34,7 +34,7 @@ from harness.language.reading.names import UNTIL_USAGE, Words, take_apart, wrong
 from harness.language.reading.partial import PartialReader, texts
 from harness.language.reading.wording import on_one_line, written_under
 from harness.language.scenario import RobotSpec, Scenario
-from harness.language.step import STEPS, TAG, Step
+from harness.language.step import STEPS, TAG, StepFields
 
 TURN = 6.283186  # [rad], rounded up
 FAR = 100.0  # [m]; a larger number without a unit is one of millimetres in all likelihood
@@ -80,7 +80,7 @@ class _Shaper:
     def shape(self, item: Located, annotation: Any, metadata: Iterable[Any] = ()) -> Located:
         self._note_unit(item, annotation, metadata)
         annotation = bare(annotation)
-        if annotation is Step:
+        if annotation is StepFields:
             return self.step(item)
         if annotation is ExpectationFields:
             return self.expectation(item)
@@ -129,7 +129,7 @@ class _Shaper:
         if not isinstance(item.value, dict):
             return item
         keys = keys_of(model)
-        outside = {*KEYS_BY_VERB} - {*model.keys_inside} if issubclass(model, Step) else ()
+        outside = {*KEYS_BY_VERB} - {*model.keys_inside} if issubclass(model, StepFields) else ()
         inside = [key for key in keys if key not in outside]
         entries: dict[str, Entry] = {}
         for key, entry in item.value.items():
@@ -263,7 +263,7 @@ class _Shaper:
 
     def _not_content(self, found: Words, content: Located, model: type[SpecModel]) -> None:
         message = f"`{found.word}` takes a mapping, not {value_text(content.plain())}"
-        outside = KEYS_BY_VERB if issubclass(model, Step) else KEYS_BY_PREDICATE
+        outside = KEYS_BY_VERB if issubclass(model, StepFields) else KEYS_BY_PREDICATE
         keys = [key for key in keys_of(model) if key not in outside]
         hint = f"keys: {', '.join(keys)}" if keys else f"write `- {found.word}` alone"
         hint = written_under(model, keys, content.plain()) or hint

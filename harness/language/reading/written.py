@@ -12,7 +12,7 @@ from harness.language.files.yaml_text import yaml_text
 from harness.language.language import KEYS_BY_PREDICATE, KEYS_BY_VERB, UNTIL
 from harness.language.reading.params import escaped
 from harness.language.scenario import Scenario
-from harness.language.step import Step
+from harness.language.step import StepFields
 
 
 def scenario_text(scenario: Scenario) -> str:
@@ -25,7 +25,7 @@ def as_written(value: object) -> Any:
     """A model, or what it holds, as plain data in the shape of a file."""
     if isinstance(value, SpecModel):
         entries = _entries(value)
-        if isinstance(value, Step):
+        if isinstance(value, StepFields):
             return _one_word(value.verb, entries, KEYS_BY_VERB)
         if isinstance(value, TemporalFields):
             word = "always" if value.word == UNTIL else value.word

@@ -26,7 +26,7 @@ from harness.language.language import (
 )
 from harness.language.plugin_field import MARK
 from harness.language.scenario import Scenario
-from harness.language.step import STEPS, Step
+from harness.language.step import STEPS, StepFields
 from harness.language.units import SHARE, written
 from harness.language.world import WorldSpec
 
@@ -174,8 +174,8 @@ def _with_references(schema: Schema) -> Schema:
 def _with_short_form(definition: Schema, model: type[SpecModel]) -> Schema:
     """A model's schema without its tag, and the bare value that may stand for it."""
     properties: dict[str, Schema] = definition.get("properties", {})
-    is_step, is_check = issubclass(model, Step), issubclass(model, ExpectationFields)
-    hidden = {*KEYS_BY_VERB} - {*model.keys_inside} if issubclass(model, Step) else ()
+    is_step, is_check = issubclass(model, StepFields), issubclass(model, ExpectationFields)
+    hidden = {*KEYS_BY_VERB} - {*model.keys_inside} if issubclass(model, StepFields) else ()
     kept = {key: value for key, value in properties.items() if key not in hidden}
     mapping = {**definition, "properties": kept}
     branches: list[Schema] = [mapping]
@@ -224,7 +224,7 @@ def _language(
             for name in [names.get(model, model.__name__)]
         }
 
-    plain_step = _properties(Step)
+    plain_step = _properties(StepFields)
     plain_check = _properties(TemporalFields)
     next_to_verb = {key: _written(plain_step[key]) for key in KEYS_BY_VERB}
     next_to_predicate = {

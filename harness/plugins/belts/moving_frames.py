@@ -10,9 +10,9 @@ from pydantic import BaseModel
 
 from harness.cell.cell import Cell
 from harness.cell.scene_state import StepNotes
+from harness.cell.step import Step
 from harness.core.errors import PlanningFailed, StepFailed
 from harness.core.trajectory import JointTrajectory
-from harness.language.step import Step
 from harness.plugins.belts.ride import Ride, ride_of
 from harness.recording.explanation import Explanation
 

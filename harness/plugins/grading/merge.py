@@ -8,11 +8,11 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from harness.cell.step import Step
 from harness.core.errors import Problem, SpecError
 from harness.language.files.source import Located, Place, Source
 from harness.language.files.yaml_file import parse_yaml, read_text
 from harness.language.reading.load import Reading, load_scenario
-from harness.language.step import Step
 
 CHANGES_SCENE = frozenset(
     {"allow_collisions", "attach_object", "detach_object", "external", "include", "inject"}

@@ -10,9 +10,10 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.language.files.source import Loc
-from harness.language.step import STEPS, AnyStep, Block, Step
+from harness.language.step import STEPS, AnyStep, Block
 from harness.plugins.assembly.at_once import AtOnce
 from harness.steps.gripper import Gripper
 

@@ -9,10 +9,10 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.core.surface_motion import SurfaceMotion
 from harness.language.base import AngularVelocity, Duration, Name
-from harness.language.step import Step
 from harness.language.world import SurfaceVelocity, surface_motion
 
 DEFAULT_RAMP = 0.2

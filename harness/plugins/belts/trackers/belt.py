@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from harness.cell.cell import Cell
 from harness.cell.grasp_choice import ChosenApproach
+from harness.cell.step import Step
 from harness.core.spatial import SE3
-from harness.language.step import Step
 from harness.plugins.belts.moving_frames import execute_motion
 from harness.plugins.belts.pick_in_motion import pick_in_motion
 from harness.plugins.belts.place_in_motion import place_in_motion

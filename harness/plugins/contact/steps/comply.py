@@ -12,11 +12,12 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.core.types import FloatArray, Floats
 from harness.language.base import Name
 from harness.language.files.source import Loc
-from harness.language.step import AnyStep, Block, Step
+from harness.language.step import AnyStep, Block
 from harness.plugins.contact.axes import AXES, WORDS, DampingAxes, StiffnessAxes, WrenchAxes
 from harness.plugins.contact.compliance import CartesianCompliance, Compliance
 from harness.plugins.contact.reach import Postures

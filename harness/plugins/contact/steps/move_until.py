@@ -11,6 +11,7 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.amounts import amount
 from harness.core.details import Detail
 from harness.core.errors import StepFailed
@@ -18,7 +19,6 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.language.base import Force, LinearVelocity, Name, PositiveLength, Torque
 from harness.language.poses import Direction
-from harness.language.step import Step
 from harness.plugins.contact.guarded import LOOK, follow_until
 from harness.plugins.contact.sensors import check_sensor, sensor_of
 from harness.ports.motion_planning import MotionRequest

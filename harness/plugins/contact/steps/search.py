@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.core.errors import StepFailed
 from harness.core.spatial import SE3
@@ -19,7 +20,6 @@ from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
 from harness.language.base import LinearVelocity, Name, PositiveLength
 from harness.language.poses import Direction
-from harness.language.step import Step
 from harness.plugins.contact.guarded import LOOK, follow_until
 from harness.ports.motions import TimedLinkMotion
 

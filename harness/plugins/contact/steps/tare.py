@@ -10,11 +10,11 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.core.types import Floats
 from harness.core.wrench_sensor import Payload
 from harness.language.base import Mass, Name, PositiveDuration, SpecModel, Xyz
-from harness.language.step import Step
 from harness.plugins.contact.sensors import check_sensor, sensor_of
 
 

@@ -10,9 +10,9 @@ from pydantic import Field, model_validator
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.amounts import amount
 from harness.language.base import Angle, Duration, Force, Fraction, Name, Number, PositiveDuration
-from harness.language.step import Step
 from harness.recording.faults import FaultKind, InjectedFault, InjectedFaults
 
 PushForce = tuple[Force, Force, Force]

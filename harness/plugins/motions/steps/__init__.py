@@ -1,1 +1,1 @@
-"""The steps `sequence` and `cartesian_path`."""
+"""The steps `sequence`, `cartesian_path` and `circ`."""

@@ -10,11 +10,11 @@ from pydantic import Field
 from harness.cell.cell import Cell
 from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.errors import PlanningFailed
 from harness.language.base import Angle, Fraction, Length, Name, PositiveLength, SpecModel
 from harness.language.goals import CartesianLimitsSpec, GoalFields
 from harness.language.poses import Pose, Position
-from harness.language.step import Step
 from harness.ports.goals import JointGoal, PoseGoal, PositionGoal
 from harness.ports.motions import CartesianPathOptions, WaypointMotion
 from harness.ports.motions import JumpThreshold as PlannedJumpThreshold

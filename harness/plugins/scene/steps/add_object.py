@@ -9,9 +9,9 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.errors import StepFailed
 from harness.language.files.source import Loc
-from harness.language.step import Step
 from harness.language.world import ObjectSpec
 
 

@@ -10,9 +10,10 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.language.base import Name
 from harness.language.files.source import Loc
-from harness.language.step import AnyStep, Block, Step
+from harness.language.step import AnyStep, Block
 from harness.recording.step_results import AllowedCollisions
 
 SPECIAL_BODIES = ("robot", "gripper")

@@ -9,9 +9,9 @@ from pydantic import Discriminator, Field, Tag
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.language.base import Name, kind_of
 from harness.language.files.source import Loc
-from harness.language.step import Step
 from harness.language.world import ObjectSpec
 
 

@@ -8,8 +8,8 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.language.base import Flag
-from harness.language.step import Step
 
 
 class ClearObjects(Step):

@@ -9,9 +9,9 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.core.details import Detail
 from harness.language.base import Name
-from harness.language.step import Step
 
 
 @dataclass(frozen=True)
