@@ -21,7 +21,6 @@ from harness.language.units import in_si
 from harness.robot.description import RobotDescription
 from harness.robot.tree import is_rigid
 
-MOST_CAPTURES = 1000  # pictures that the steps of a file take; one of 640 x 480 takes 0.2 s
 EVERYTHING: tuple[Prerequisite, ...] = ("robot", "world")
 
 
@@ -231,19 +230,6 @@ class Scope:
                 f"the steps up to here request {self.requested_time:g} s, and a run may take"
                 f" {LONGEST_RUN:g} s of simulated time",
                 "shorten it, or make it several scenarios",
-                needs=(),
-            )
-
-    def take_picture(self, camera: str, loc: Loc) -> None:
-        """Count a camera picture that a step requests; all of them must be drawn after the run."""
-        known, before = self.cameras.get(camera), self.requested_pictures
-        self.requested_pictures += 1.0 if known is None else known.pictures_counted
-        if before <= MOST_CAPTURES < self.requested_pictures:
-            self.problems.add(
-                loc,
-                f"the steps take more than {MOST_CAPTURES} pictures, repeated ones counted,"
-                " those beyond 1280 x 720 by their pixels",
-                "take fewer, or make it several scenarios; `videos` records a camera at a rate",
                 needs=(),
             )
 

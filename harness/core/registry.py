@@ -24,10 +24,10 @@ import traceback
 from collections.abc import Collection, Generator, Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from harness.core.errors import Problem, SpecError
 from harness.core.suggestion import did_you_mean, is_slip, nearest
@@ -41,30 +41,18 @@ BUNDLED = Path(__file__).parents[1] / "plugins"  # this distribution's plug-ins;
 
 BUILT_IN = {
     "command": "harness.cli.commands",
-    "run_mode": "",
-    "case_runner": "",
-    "starter": "",
+    **dict.fromkeys(("run_mode", "case_runner", "starter"), ""),
     "step": "harness.steps",
     "expectation": "harness.judging.expectations",
     "planner": "harness.planning.search.pipelines",
     "ik_solver": "harness.planning.ik.solvers",
     "controller": "harness.simulation.controllers",
-    "robot": "",
-    "robot_format": "",
-    "robot_option": "",
-    "world_format": "",
-    "decomposer": "",
+    **dict.fromkeys(("robot", "robot_format", "robot_option", "world_format", "decomposer"), ""),
     "reporter": "harness.reporting.reporters",
-    "observer": "",
-    "suite_section": "",
-    "suite_reporter": "",
-    "grip": "",
-    "adhesion": "",
-    "tracker": "",
-    "motion": "",
-    "camera_recorder": "",
+    **dict.fromkeys(("observer", "suite_section", "suite_reporter"), ""),
+    **dict.fromkeys(("grip", "adhesion", "tracker", "motion", "camera_recorder"), ""),
 }
-"""Every kind of plug-in, and the package whose modules are the built-in ones."""
+"""Every kind of plug-in, and the package of the core whose modules are built-in ones."""
 
 HAS_DOCSTRINGS = sys.flags.optimize < 2  # with `PYTHONOPTIMIZE=2` no class has its docstring
 
@@ -111,10 +99,9 @@ class PluginError(SpecError):
         super().__init__([Problem(f"plug-in {source}", 0, 0, reason, hint)])
 
 
-@dataclass(frozen=True)
-class _Plugin(Generic[P]):
-    value: P
-    package: str
+def noun(kind: str) -> str:
+    """What messages call a plug-in of a kind: `ik_solver` is `inverse kinematics solver`."""
+    return NOUNS.get(kind, kind.replace("_", " "))
 
 
 class Registry(Mapping[str, P]):
@@ -123,8 +110,8 @@ class Registry(Mapping[str, P]):
     def __init__(self, kind: str, built_in: str = "") -> None:
         self.kind = kind
         self._built_in = built_in
-        self._modules: dict[str, str] | None = None
-        self._plugins: dict[str, _Plugin[P]] = {}
+        self._what = noun(kind)
+        self._plugins: dict[str, tuple[P, str]] = {}  # with its package
 
     def add(self, name: str, plugin: P, package: str) -> None:
         """Register a plug-in under its name; the same one may be added again.
@@ -132,25 +119,25 @@ class Registry(Mapping[str, P]):
         Raises:
             PluginError: Another package provides this name.
         """
-        known = self._plugins.get(name)
-        if known is not None and known.value is plugin:
+        built_in = (None, OWN_PACKAGE if name in self._built_in_modules else "")
+        known, owner = self._plugins.get(name, built_in)
+        if known is plugin:
             return
-        owner = known.package if known else OWN_PACKAGE if name in self._built_in_modules else ""
-        if known or owner not in ("", package):
+        if name in self._plugins or owner not in ("", package):
             both = f"two packages provide the {self._what} `{name}`: `{owner}` and `{package}`"
             twice = f"`{package}` provides the {self._what} `{name}` twice"
             raise PluginError(package, twice if owner == package else both, "rename one of them")
-        self._plugins[name] = _Plugin(plugin, package)
+        self._plugins[name] = plugin, package
 
     def package_of(self, name: str) -> str:
         """The package (distribution) or module that a plug-in comes from."""
         self[name]
-        return self._plugins[name].package
+        return self._plugins[name][1]
 
     def modules(self) -> set[str]:
         """The modules of the registered classes and functions that are not built in."""
-        others = (each for each in self._plugins.values() if each.package != OWN_PACKAGE)
-        return {getattr(each.value, "__module__", "") for each in others}
+        others = (each for each, package in self._plugins.values() if package != OWN_PACKAGE)
+        return {getattr(each, "__module__", "") for each in others}
 
     def find(self, name: str) -> P:
         """The plug-in of this name.
@@ -169,7 +156,7 @@ class Registry(Mapping[str, P]):
         elif name not in self._plugins:
             with _loading(OWN_PACKAGE):
                 register_module(importlib.import_module(self._built_in_modules[name]))
-        return self._plugins[name].value
+        return self._plugins[name][0]
 
     def __contains__(self, name: object) -> bool:
         if name in self._built_in_modules:
@@ -185,10 +172,6 @@ class Registry(Mapping[str, P]):
     def __len__(self) -> int:
         return len(list(iter(self)))
 
-    @property
-    def _what(self) -> str:
-        return noun(self.kind)
-
     def built_in(self) -> list[P]:
         """The built-in plug-ins, for which no installed package is loaded."""
         return [self[name] for name in self._built_in_modules]
@@ -202,28 +185,24 @@ class Registry(Mapping[str, P]):
         """The names of the built-in plug-ins, which may not be imported yet."""
         return self._built_in_modules.keys()
 
-    @property
+    @cached_property
     def _built_in_modules(self) -> dict[str, str]:
-        """Module of each built-in by its name; a name that is a keyword has an underscore."""
-        if self._modules is None:
-            spec = importlib.util.find_spec(self._built_in) if self._built_in else None
-            folders = (spec and spec.submodule_search_locations) or ()
-            places = dict.fromkeys(folders, self._built_in)
-            for folder in sorted(BUNDLED.glob(f"*/{self.kind}s")):
-                places[str(folder)] = f"harness.plugins.{folder.parent.name}.{folder.name}"
-            found = (
-                (self._name_of(module.name), f"{package}.{module.name}")
-                for folder, package in places.items()
-                for module in pkgutil.iter_modules([folder])
-                if not module.ispkg and not module.name.startswith("_")
-            )
-            self._modules = dict(sorted(found))
-        return self._modules
+        """Module of each built-in by its name.
 
-    def _name_of(self, module: str) -> str:
-        """The name of the plug-in that a module holds, which may be a keyword or have hyphens."""
-        name = module.rstrip("_")
-        return name.replace("_", "-") if self.kind == "command" else name
+        The module of a name that is a keyword has an underscore; names of commands have hyphens.
+        """
+        spec = importlib.util.find_spec(self._built_in) if self._built_in else None
+        places = dict.fromkeys((spec and spec.submodule_search_locations) or (), self._built_in)
+        for folder in sorted(BUNDLED.glob(f"*/{self.kind}s")):
+            places[str(folder)] = f"harness.plugins.{folder.parent.name}.{folder.name}"
+        between = "-" if self.kind == "command" else "_"
+        found = (
+            (module.name.rstrip("_").replace("_", between), f"{package}.{module.name}")
+            for folder, package in places.items()
+            for module in pkgutil.iter_modules([folder])
+            if not module.ispkg and not module.name.startswith("_")
+        )
+        return dict(sorted(found))
 
 
 _registries: dict[str, Registry[Any]] = {
@@ -231,11 +210,6 @@ _registries: dict[str, Registry[Any]] = {
 }
 _broken: dict[str, str] = {}
 _is_loaded = False
-
-
-def noun(kind: str) -> str:
-    """What messages call a plug-in of a kind: `ik_solver` is `inverse kinematics solver`."""
-    return NOUNS.get(kind, kind.replace("_", " "))
 
 
 def described(kind: str, name: str) -> str:
@@ -277,7 +251,8 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
         The plug-in, so that this function is a decorator too.
 
     Raises:
-        PluginError: The kind or name is missing, or another package provides the name.
+        PluginError: The kind, the name, a class's text or a method is missing, or another package
+            provides the name.
     """
     module = str(getattr(plugin, "__module__", "")).partition(".")[0]
     package = _package.get() or (OWN_PACKAGE if module == "harness" else module)
@@ -289,23 +264,14 @@ def register(plugin: P, *, kind: str = "", name: str = "") -> P:
     if not name:
         raise PluginError(package, f"{plugin!r} has no name to be registered under")
     if inspect.isclass(plugin) and issubclass(plugin, Plugin):
-        _check_class(plugin, f"the {noun(kind)} `{name}`", package)
+        what = f"the {noun(kind)} `{name}`"
+        if not plugin.__doc__ and HAS_DOCSTRINGS:
+            raise PluginError(package, f"{what} has no docstring, which is its reference text")
+        if missing := sorted(getattr(plugin, "__abstractmethods__", ())):
+            names = ", ".join(f"`{each}`" for each in missing)
+            raise PluginError(package, f"{what} needs the method {names}")
     _registries[kind].add(name, plugin, package)
     return plugin
-
-
-def _check_class(plugin: type[Plugin], what: str, package: str) -> None:
-    """Refuse a class that lacks its text or a method.
-
-    Raises:
-        PluginError: It does.
-    """
-    if not plugin.__doc__ and HAS_DOCSTRINGS:
-        raise PluginError(package, f"{what} has no docstring, which is its reference text")
-    missing = sorted(getattr(plugin, "__abstractmethods__", ()))
-    if missing:
-        names = ", ".join(f"`{each}`" for each in missing)
-        raise PluginError(package, f"{what} needs the method {names}")
 
 
 def import_built_in(kinds: Collection[str], words: Collection[str]) -> None:
@@ -435,11 +401,10 @@ def _listed_plugins() -> list[str]:
 
 def _load_module(name: str) -> None:
     path = Path(name)
+    is_file = path.suffix == ".py"
     try:
-        with _loading(path.stem if path.suffix == ".py" else name):
-            register_module(
-                _module_of_file(path) if path.suffix == ".py" else importlib.import_module(name)
-            )
+        with _loading(path.stem if is_file else name):
+            register_module(_module_of_file(path) if is_file else importlib.import_module(name))
     except PluginError:
         raise
     except Exception as error:
@@ -447,10 +412,9 @@ def _load_module(name: str) -> None:
 
 
 def _module_of_file(path: Path) -> ModuleType:
-    known = sys.modules.get(path.stem)
-    if known is not None and getattr(known, "__file__", None) == str(path):
-        return known
-    if known is not None:
+    if known := sys.modules.get(path.stem):
+        if getattr(known, "__file__", None) == str(path):
+            return known
         raise ImportError(f"there is another module `{path.stem}`; rename the file")
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:

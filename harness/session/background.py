@@ -17,13 +17,12 @@ from harness.core.activity import Activity
 from harness.core.errors import HarnessError
 
 T = TypeVar("T")
-_TASKS = Path("/proc/self/task")  # an entry for each thread, native libraries' included
 
 _is_forking = True
 
 
 def compute_here() -> None:
-    """From now on, fork no process unless that is requested: every core has work already."""
+    """Fork no process from now on unless that is requested: every core has work already."""
     global _is_forking
     _is_forking = False
 
@@ -31,23 +30,21 @@ def compute_here() -> None:
 class Background(Generic[T]):
     """The value of a function, from a fork of this process.
 
-    A process that has threads, or has called `compute_here`, is not forked unless that is
-    requested: it computes the value itself when it is needed. The function must not have other
-    effects, so that an interruption leaves nothing half-written.
+    A process that has threads, or has called `compute_here`, computes the value itself when it is
+    needed. The function must not have other effects: an interruption leaves nothing half-written.
     """
 
     def __init__(self, function: Callable[[Activity], T], *, despite_threads: bool = False) -> None:
-        """Begin to compute the value.
+        """Begin to compute a value that can be pickled; the function reports its progress.
 
         Args:
-            function: Returns a value that can be pickled; reports its progress to its argument.
             despite_threads: Whether such a process is forked too. A lock that another thread holds
                 then stays locked in the fork, so the value may never come.
         """
         self._function: Callable[[Activity], T] | None = function
         self._pid = 0
-        can_fork = _is_forking and len(list(_TASKS.iterdir())) == 1
-        if not (can_fork or despite_threads):
+        has_threads = len([*Path("/proc/self/task").iterdir()]) > 1  # native libraries' included
+        if not (despite_threads or (_is_forking and not has_threads)):
             return
         self._reading, writing = Pipe(duplex=False)
         with warnings.catch_warnings():
@@ -65,14 +62,14 @@ class Background(Generic[T]):
         return self._pid > 0
 
     def has_message(self) -> bool:
-        """Whether the value, its failure or its progress is known, so that none is waited for."""
+        """Whether `result` would hear something at once."""
         return bool(self._pid) and self._reading.poll()
 
     def result(self, activity: Activity) -> T:
         """The value, as soon as it is known; its progress is reported until then.
 
-        The process then ends by itself, which is waited for by `close` alone: giving a large
-        memory back takes longer than many a value.
+        `close` alone waits for the process: giving a large memory back takes longer than many a
+        value.
 
         Raises:
             HarnessError: The process ended without a value.
@@ -81,10 +78,8 @@ class Background(Generic[T]):
         if self._function is not None:
             return self._function(activity)
         try:
-            kind, payload = pickle.loads(self._reading.recv_bytes())
-            while kind == "progress":
-                activity(*payload)
-                kind, payload = pickle.loads(self._reading.recv_bytes())
+            while (message := pickle.loads(self._reading.recv_bytes()))[0] == "progress":
+                activity(*message[1])
         except EOFError:
             _, status = os.waitpid(self._pid, 0)
             self._pid = 0
@@ -93,9 +88,9 @@ class Background(Generic[T]):
         except BaseException:  # Ctrl-C
             self.close()
             raise
-        if kind == "raised":
-            raise payload
-        return payload
+        if message[0] == "raised":
+            raise message[1]
+        return message[1]
 
     def close(self) -> None:
         """End the process, if it is still at work."""
@@ -121,11 +116,7 @@ class Later(Generic[T]):
         os.write(self._writing, b"!")
 
     def wait(self) -> T:
-        """The value, in the other process.
-
-        Raises:
-            EOFError: The process that was to send it is gone.
-        """
+        """The value, in the other process; EOFError if the process that was to send it is gone."""
         os.close(self._writing)  # so that reading ends once the other process is gone
         if not os.read(self._reading, 1):
             raise EOFError
@@ -150,13 +141,9 @@ def _compute(function: Callable[[Activity], T], writing: Connection) -> NoReturn
     try:
         message = pickle.dumps(("value", function(report)))
     except BaseException as error:  # noqa: BLE001 - the parent raises it
-        message = _raised(error)
+        message = pickle.dumps(("raised", RuntimeError(repr(error))))
+        with suppress(Exception):
+            message = pickle.dumps(("raised", error))
     with suppress(OSError):  # the parent is gone
         writing.send_bytes(message)
     os._exit(0)
-
-
-def _raised(error: BaseException) -> bytes:
-    with suppress(Exception):
-        return pickle.dumps(("raised", error))
-    return pickle.dumps(("raised", RuntimeError(repr(error))))

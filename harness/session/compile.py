@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,11 +26,13 @@ from harness.language.reading.load import LoadedScenario
 from harness.language.reading.partial import Prerequisite
 from harness.language.step import Block, StepFields
 from harness.language.world import ObjectSpec
+from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
+from harness.planning.search.find_pipeline import check_planner
 from harness.ports.kinematics import Kinematics
 from harness.ports.motion_planning import PlanningOptions
 from harness.robot.description import RobotDescription
 from harness.session.cameras import all_cameras, check_cameras, check_videos
-from harness.session.options import CheckPlanner, check_planning, merged_options
+from harness.session.options import check_planning, merged_options
 from harness.world.imported import ImportedWorld
 from harness.world.objects import ObjectUnusableError, resolve_object, resolve_parts, resolve_world
 
@@ -49,9 +51,6 @@ class Sources:
     """What compile works on, all of it loaded.
 
     Attributes:
-        check_planner: Normalises a planner's name and knows its parameters.
-        checks_per_second: What a second of `planning_time` buys, in state checks.
-        check_mesh: Raises RobotError for a mesh file that cannot be used.
         missing: What could not be loaded; something stands in for it, and problems that it decides
             are not reported.
         doubtful: Names in what could not be read; problems with them may follow from that.
@@ -62,9 +61,6 @@ class Sources:
     world: ImportedWorld
     description: RobotDescription
     kinematics: Kinematics
-    check_planner: CheckPlanner
-    checks_per_second: int
-    check_mesh: Callable[[Mesh], None]
     missing: frozenset[Prerequisite] = frozenset()
     doubtful: frozenset[str] = frozenset()
     is_broken: bool = False
@@ -103,7 +99,7 @@ class _Compiler:
             scenario.cameras,
             self.problems,
         )
-        check_planning(scenario.planning, ("planning",), self.problems, sources.check_planner)
+        check_planning(scenario.planning, ("planning",), self.problems, check_planner)
         steps = self._steps(scenario.steps, ("steps",), "steps")
         for index, expectation in enumerate(scenario.expect):
             self._expectation(expectation, ("expect", index), "")
@@ -273,7 +269,9 @@ class _Compiler:
         for shape in (shape for each in objects for shape in each.shapes):
             if isinstance(shape.geometry, Mesh):
                 try:
-                    self.sources.check_mesh(shape.geometry)
+                    from harness.simulation.mesh_check import check_mesh  # loads the physics
+
+                    check_mesh(shape.geometry)
                 except RobotError as error:
                     raise ObjectUnusableError(str(error)) from error
         return objects
@@ -379,7 +377,7 @@ class _Compiler:
                 planning,
                 (*loc, "planning"),
                 self.problems,
-                sources.check_planner,
+                check_planner,
                 sources.loaded.scenario.planning,
             )
         return merged_options(
@@ -387,13 +385,13 @@ class _Compiler:
             planning,
             sources.loaded.scenario.seed,
             path,
-            sources.checks_per_second,
+            STATE_CHECKS_PER_SECOND,
             self._planner_name,
         )
 
     def _planner_name(self, pipeline: str, name: str) -> str:
         try:
-            return self.sources.check_planner(pipeline, name, {})
+            return check_planner(pipeline, name, {})
         except ValueError:  # reported where it is said
             return name
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from harness.cell.program import Program
 from harness.core.errors import Problem, RobotError, RobotOptionError, SpecError
-from harness.core.geometry import Mesh
 from harness.judging.observations import Observations, merged
 from harness.judging.placed import PlacedExpectation, as_expectation
 from harness.language.files.source import Source
@@ -25,8 +24,6 @@ from harness.language.reading.load import (
 from harness.language.reading.partial import STAND_IN_ROBOT, Prerequisite
 from harness.language.scenario import RobotSpec
 from harness.planning.backend import make_planning
-from harness.planning.motion_planner import STATE_CHECKS_PER_SECOND
-from harness.planning.search.find_pipeline import check_planner
 from harness.ports.planning import PlanningPorts
 from harness.recording.run import Finding
 from harness.robot.collision_shapes import parts_notes
@@ -145,9 +142,6 @@ def _prepared(loaded: LoadedScenario, reading: Reading) -> Prepared:
         world=world,
         description=description,
         kinematics=ports.kinematics,
-        check_planner=check_planner,
-        checks_per_second=STATE_CHECKS_PER_SECOND,
-        check_mesh=_check_mesh,
         missing=missing,
         doubtful=reading.doubtful,
         is_broken=bool(reading.problems),
@@ -199,9 +193,3 @@ def _world(loaded: LoadedScenario) -> ImportedWorld:
             for problem in error.problems
         ) from error
     return ImportedWorld(world.model, world.path)
-
-
-def _check_mesh(geometry: Mesh) -> None:
-    from harness.simulation.mesh_check import check_mesh  # physics: few files have meshes
-
-    check_mesh(geometry)

@@ -8,20 +8,9 @@ from dataclasses import dataclass
 
 from harness.cell.program import Program, ProgramStep
 from harness.ports.simulation import Simulator
-from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
-from harness.recording.verdict import Verdict
-from harness.reporting.progress_events import (
-    Compiled,
-    Drawing,
-    Judged,
-    ProgressEvent,
-    StepFinished,
-    StepStarted,
-    Working,
-)
+from harness.reporting.progress_events import ProgressEvent, StepFinished, StepStarted, Working
 from harness.reporting.reporter import Reports
-from harness.reporting.result import CaseResult
 
 Notify = Callable[[ProgressEvent], None]
 
@@ -43,10 +32,6 @@ class Progress:
         self.reports.hear(event)
         self.outside(event)
 
-    def compiled(self) -> None:
-        """Report that the first step is about to begin."""
-        self.notify(Compiled())
-
     def activity(self, what: str, done: int = 0, total: int = 0) -> None:
         """Report work that is no step: see `harness.core.activity.Activity`."""
         self.notify(Working(what, done, total))
@@ -60,11 +45,3 @@ class Progress:
             self.notify(StepStarted(*place, *at))
         else:
             self.notify(StepFinished(*place, *at, record.status, record.message))
-
-    def judged(self, result: CaseResult) -> None:
-        """Report the outcome, before the report is written."""
-        self.notify(Judged(result))
-
-    def drawing(self, run: Run, verdicts: tuple[Verdict, ...]) -> None:
-        """Report, in this process, that the pictures of the report are being drawn."""
-        self.reports.hear(Drawing(run, verdicts))

@@ -19,6 +19,7 @@ from harness.recording.digest import digest as digest_of
 from harness.recording.run import Run
 from harness.recording.stored_run import PAGE, StoredRun
 from harness.recording.write_run import run_folder, write_document
+from harness.reporting.progress_events import Compiled, Drawing, Judged
 from harness.reporting.reporter import Reports
 from harness.reporting.result import CaseResult, StepLine
 from harness.reporting.terminal import verdict_warnings
@@ -51,7 +52,7 @@ def run_case(
         return _invalid(request, error)
     prepared = begun.prepared
     progress = Progress(notify, _reports(request), prepared.program)
-    progress.compiled()
+    progress.notify(Compiled())
     try:
         with closing(Pictures(request, prepared)) as pictures:
             case = _Case(request, prepared, clock, progress, pictures)
@@ -62,7 +63,7 @@ def run_case(
             with remembered_facts():
                 run = case.observe(builder)
                 result = case.judge(run, overlaps, draw, refusal)
-            progress.judged(result)
+            progress.notify(Judged(result))
             if request.report_dir is None or (request.only_failed and result.outcome == "passed"):
                 return result
             return case.report(request.report_dir, run, builder.resolved, result)
@@ -130,7 +131,7 @@ class _Case:
             is_idle=stood_still(run),
             overlap=-overlaps[0].distance if overlaps else 0.0,
             redraws=draw,
-            values=request.redraw.redrawn(draw).values if request.redraw and draw else {},
+            values=request.redraw(draw).values if request.redraw and draw else {},
             wall_times=dict(self.clock.seconds),
         )
 
@@ -144,7 +145,7 @@ class _Case:
         activity("writing the report")
         self.pictures.begin()
         with clock.part("write"), run_folder(folder, run) as target:
-            self.progress.drawing(run, verdicts)
+            self.progress.reports.hear(Drawing(run, verdicts))  # in this process alone
             with clock.part("render"):
                 drawings = self.pictures.drawn(activity)
             stored = StoredRun(

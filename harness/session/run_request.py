@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -26,18 +26,6 @@ class Draw(Protocol):
 
     @property
     def values(self) -> Mapping[str, Any]: ...
-
-
-class Redraw(Protocol):
-    """Draws a random sample again."""
-
-    def redrawn(self, draw: int) -> Draw:
-        """The sample's values in one of the further draws.
-
-        Args:
-            draw: The number of the draw, from 1.
-        """
-        ...
 
 
 STRICT = "fail where a verdict has a warning, such as `already true at the start`"
@@ -75,7 +63,8 @@ class RunRequest(RunOptions):
         text: Content that is read in place of the file's; None reads the file.
         source: Takes the place of both and names the file of each line; relative paths begin at
             `file` nevertheless.
-        redraw: Draws the sample again while objects overlap at the start; None draws it once.
+        redraw: Gives the sample of a further draw, from 1, while objects overlap at the start;
+            None draws it once.
         live: The Unix socket to which the case sends its poses while it runs; empty sends none.
         longest: The most simulated time of the run [s]; a step that would exceed it fails.
     """
@@ -91,7 +80,7 @@ class RunRequest(RunOptions):
     only_failed: bool = False
     text: str | None = None
     source: Source | None = None
-    redraw: Redraw | None = None
+    redraw: Callable[[int], Draw] | None = None
     live: str = ""
     longest: float = LONGEST_RUN
 

@@ -59,7 +59,7 @@ def start_case(request: RunRequest, clock: Clock, kind: type[M]) -> Start[M]:
     last: list[Problem] = []
     text = request.source or request.text
     for draw in range(MOST_DRAWS):
-        again = request.redraw.redrawn(draw) if request.redraw is not None and draw else request
+        again = request.redraw(draw) if request.redraw is not None and draw else request
         prepared = prepare(request.file, again.overrides, request.seed, text)
         simulator = start_physics(prepared, kind, clock, prepared.observed_links)
         simulator.limit(request.longest)

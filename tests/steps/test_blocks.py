@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.cell.scope import MOST_CAPTURES
+from harness.plugins.cameras.steps.capture import MOST_CAPTURES
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
 from harness.session.rejudge import judge_stored

@@ -9,9 +9,11 @@ from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.scope import At
+from harness.cell.step import Step
 from harness.language.base import Name
-from harness.language.step import Step
 from harness.recording.looks import TakenPicture
+
+MOST_CAPTURES = 1000  # pictures that the steps of a file take; one of 640 x 480 takes 0.2 s
 
 
 class Capture(Step):
@@ -33,7 +35,17 @@ class Capture(Step):
 
     def check(self, at: At) -> None:
         at.scope.check_camera(self.camera, at.key("camera"))
-        at.scope.take_picture(self.camera, at.loc)
+        scope, before = at.scope, at.scope.requested_pictures
+        camera = scope.cameras.get(self.camera)
+        scope.requested_pictures += 1.0 if camera is None else camera.pictures_counted
+        if before <= MOST_CAPTURES < scope.requested_pictures:  # all are drawn after the run
+            scope.problems.add(
+                at.loc,
+                f"the steps take more than {MOST_CAPTURES} pictures, repeated ones counted,"
+                " those beyond 1280 x 720 by their pixels",
+                "take fewer, or make it several scenarios; `videos` records a camera at a rate",
+                needs=(),
+            )
 
     def execute(self, cell: Cell) -> None:
         """Hold the last commands until the camera takes its next picture.
