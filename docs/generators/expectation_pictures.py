@@ -26,10 +26,10 @@ from harness.judging.placed import PlacedExpectation
 from harness.judging.temporal import episodes
 from harness.judging.window import Window, window_of
 from harness.language.reading.load import load_scenario
+from harness.plugins.comparison.rejudge import expectations_of
 from harness.recording.read_run import read_run
 from harness.recording.run import Run
 from harness.recording.verdict import Measure, Verdict
-from harness.session.rejudge import expectations_of
 from tests.running import run_case
 
 FOLDER = ROOT / "docs/pictures/expectations"

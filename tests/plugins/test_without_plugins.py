@@ -58,7 +58,7 @@ def test_the_help_of_the_core_has_fewer_commands(core):
     done = core("--help")
     assert (done.returncode, done.stderr) == (0, "")
     shown = [line.split()[0] for line in done.stdout.splitlines() if line.startswith("    ")]
-    assert {"run", "check", "judge"} <= {*shown}
+    assert {"run", "check", "view"} <= {*shown}
     assert {*shown} == {*registry("command")} - {
         name for name in registry("command") if "plugins" in registry("command").module_of(name)
     }

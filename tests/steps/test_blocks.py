@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from harness.plugins.cameras.steps.capture import MOST_CAPTURES
+from harness.plugins.comparison.rejudge import judge_stored
 from harness.recording.read_run import read_run
 from harness.session.check import check_file
-from harness.session.rejudge import judge_stored
 from tests.running import run_case
 from tests.session.front_door import file_of, problems, run
 

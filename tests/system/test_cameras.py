@@ -26,7 +26,7 @@ for name in ("mujoco", "ompl", "pinocchio", "coal", "OpenGL"):
     sys.modules[name] = None
 from harness.recording.plain import to_plain
 from harness.recording.read_run import read_run
-from harness.session.rejudge import judge_stored
+from harness.plugins.comparison.rejudge import judge_stored
 folder = Path(sys.argv[1])
 print(json.dumps(to_plain(judge_stored(read_run(folder), folder))))
 """

@@ -1,1 +1,1 @@
-"""Compares two saved runs."""
+"""Compares two saved runs, and judges one again."""

@@ -44,10 +44,10 @@ class JudgeCommand(Command):
     def run(self, arguments: argparse.Namespace) -> int:
         """Judge a run's folder and print every verdict."""
         folder = run_folder(arguments.folder)
+        from harness.plugins.comparison.rejudge import judge_stored
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import blames_changes
         from harness.session.observation.contacts import contact_records
-        from harness.session.rejudge import judge_stored
 
         with_file = Path(arguments.with_file) if arguments.with_file else None
         if with_file and not with_file.is_file():
