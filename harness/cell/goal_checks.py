@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.cell.scope import At
-from harness.language.goals import ArcFields, GoalFields
+from harness.language.goals import GoalFields
 
 
 def check_goal(goal: GoalFields, group_name: str | None, at: At) -> None:
@@ -31,11 +31,3 @@ def check_goal(goal: GoalFields, group_name: str | None, at: At) -> None:
         scope.problems.add(
             at.loc, f"the group '{group}' is no chain, so it has no link to send to a pose"
         )
-
-
-def check_arc(arc: ArcFields, at: At) -> None:
-    """Report frames that an arc's interim point or centre does not have."""
-    for key in ("interim", "center"):
-        point = getattr(arc, key)
-        if point is not None:
-            at.scope.check_frame(point.frame, at.key(key, "frame"))

@@ -13,7 +13,7 @@ from harness.core.spatial import SE3
 from harness.core.state_words import stated_name
 from harness.core.suggestion import did_you_mean
 from harness.core.types import FloatArray
-from harness.language.goals import ArcFields, CartesianLimitsSpec, GoalFields, GoalTolerance
+from harness.language.goals import CartesianLimitsSpec, GoalFields, GoalTolerance
 from harness.language.planning import PathConstraintsSpec as ConstraintsSpec
 from harness.language.poses import Pose, Position
 from harness.ports.goals import (
@@ -26,7 +26,6 @@ from harness.ports.goals import (
     PositionBox,
     PositionGoal,
 )
-from harness.ports.motions import ArcPoint
 from harness.ports.motions import CartesianLimits as LinkLimits
 from harness.robot.description import RobotDescription
 from harness.robot.task_space import TaskSpace
@@ -129,15 +128,6 @@ def path_constraints(spec: ConstraintsSpec, cell: Cell) -> PathConstraints:
         for name, joint in (spec.joints or {}).items()
     )
     return PathConstraints(orientation, position, joints)
-
-
-def arc_point(arc: ArcFields, cell: Cell) -> ArcPoint:
-    """The point that makes an arc of a start and a goal, in the world."""
-    if arc.interim is not None:
-        return ArcPoint("interim", world_point(arc.interim, cell))
-    if arc.center is not None:
-        return ArcPoint("center", world_point(arc.center, cell))
-    raise ValueError("the model has an interim point or a centre")
 
 
 def world_point(position: Position, cell: Cell) -> FloatArray:

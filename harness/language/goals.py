@@ -127,18 +127,3 @@ class LineFields(GoalFields):
     cartesian_limits: CartesianLimitsSpec | None = Field(
         default=None, description="Limits of the link's speed and acceleration along the path."
     )
-
-
-class ArcFields(LineFields):
-    """An arc of the link to a goal, through `interim` or about `center`."""
-
-    one_of = ("interim", "center")
-
-    interim: Position | None = Field(
-        default=None,
-        description="The arc passes through this point; it may be any but a full circle.",
-    )
-    center: Position | None = Field(
-        default=None,
-        description="The arc is the shorter one about this centre, less than half a circle.",
-    )

@@ -26,15 +26,11 @@ from harness.planning.timing.timing import time_straight
 from harness.ports.goals import PathConstraints
 from harness.ports.motion_planning import CheckedGoal, MotionPlan, MotionRequest
 from harness.ports.motions import (
-    CircularMotion,
     FreeMotion,
     JointMotion,
     LinearMotion,
-    MotionSequence,
     RelativeMotion,
-    TimedLinkMotion,
     TimedMotion,
-    WaypointMotion,
 )
 from harness.recording.motion_failures import DurationFailure
 from harness.robot.description import RobotDescription
@@ -69,13 +65,11 @@ class VerifiedPlanner:
                 return self._joint(request, motion)
             case LinearMotion(goal):
                 return self._links(request).linear(goal)
-            case CircularMotion(goal, point):
-                return self._links(request).circular(goal, point)
             case RelativeMotion(link, twist, distances):
                 return self._links(request).relative(link, twist, distances)
             case TimedMotion(trajectory):
                 return self._timed(request, trajectory)
-            case MotionSequence() | WaypointMotion() | TimedLinkMotion() as motion:
+            case motion:
                 kind: MotionKind = registry(MotionKind.plugin_kind).find(motion.kind)()
                 return kind.plan(motion, self._links(request))
 

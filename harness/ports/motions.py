@@ -142,6 +142,7 @@ class LinearMotion:
 class CircularMotion:
     """Pilz's CIRC: the link on an arc through a point or about a centre."""
 
+    kind: ClassVar[str] = "arc"
     goal: Goal
     point: ArcPoint
 

@@ -1,4 +1,4 @@
-"""Plans lines and arcs of a link: LIN, CIRC and MoveRelative, each verified."""
+"""Plans ways of a link: LIN, MoveRelative and those of plug-ins, each verified."""
 
 from __future__ import annotations
 
@@ -12,16 +12,15 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.trajectory import JointTrajectory
 from harness.core.types import FloatArray
-from harness.planning.cartesian.circular_path import CircularPath
 from harness.planning.cartesian.line_goals import end_pose
-from harness.planning.cartesian.linear_path import LinearPath
+from harness.planning.cartesian.linear_path import LinearPath, LinkPath
 from harness.planning.cartesian.link_timing import (
     CARTESIAN_TOLERANCE,
     LinkRates,
     link_motion,
     time_on_path,
 )
-from harness.planning.cartesian.tracing import CODES, STEP_LENGTH, LinkPath, Trace, off_path, trace
+from harness.planning.cartesian.tracing import CODES, STEP_LENGTH, Trace, off_path, trace
 from harness.planning.goals.goals import find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics, meets_tolerance
 from harness.planning.task import PlanningTask
@@ -29,8 +28,7 @@ from harness.planning.timing.limits import TimingError
 from harness.planning.timing.profiles import resting
 from harness.ports.goals import Goal, PoseGoal
 from harness.ports.motion_planning import MotionPlan
-from harness.ports.motions import ArcPoint
-from harness.recording.explanation import ArcResult, Explanation, StraightResult
+from harness.recording.explanation import Explanation, StraightResult
 from harness.recording.goal_failures import IkFailure
 from harness.recording.motion_failures import DeviationFailure, DistanceFailure, TraceFailure
 from harness.recording.plan_statistics import RateStatistics, WayStatistics
@@ -42,7 +40,7 @@ ORIENTATION_DEVIATION = 1e-3  # How far it may be turned away from where it shou
 
 
 class LinkMotions:
-    """Lines and arcs for one planning call."""
+    """Ways of a link for one planning call."""
 
     def __init__(self, kinematics: PinocchioKinematics, task: PlanningTask) -> None:
         self.kinematics = kinematics
@@ -52,14 +50,19 @@ class LinkMotions:
         """Pilz's LIN."""
         target = end_pose(self.kinematics, self.task, self.task.start, goal)
         line = LinearPath.between(target.link, self.pose(self.task.start, target.link), target.pose)
-        return self._to_end(line, target, "LIN", Details())
+        return self.to_end(line, target, "LIN", Details())
 
-    def circular(self, goal: Goal, point: ArcPoint) -> MotionPlan:
-        """Pilz's CIRC."""
-        target = end_pose(self.kinematics, self.task, self.task.start, goal)
-        arc = arc_to(target, self.pose(self.task.start, target.link), point)
-        circle = ArcResult(tuple(arc.center.tolist()), arc.radius, arc.sweep)
-        return self._to_end(arc, target, "CIRC", Details.of(circle))
+    def to_end(
+        self, path: LinkPath, target: PoseGoal, kind: str, explanation: Details
+    ) -> MotionPlan:
+        """The motion of a kind on a path, all the way.
+
+        Raises:
+            PlanningFailed: Something stops it, or the limits cannot be kept.
+        """
+        explanation = self.solutions(self.task.start, target) + explanation
+        traced = self.followed(path, target, self.task.start)
+        return self._timed(path, traced, kind, explanation, Details())
 
     def relative(self, link: str, twist: FloatArray, distances: tuple[float, float]) -> MotionPlan:
         """Task Constructor's MoveRelative: as far as possible between two distances."""
@@ -128,13 +131,6 @@ class LinkMotions:
                 *(() if space.task_space.holds_pose else (few,)),
             )
         return traced
-
-    def _to_end(
-        self, path: LinkPath, target: PoseGoal, kind: str, explanation: Details
-    ) -> MotionPlan:
-        explanation = self.solutions(self.task.start, target) + explanation
-        traced = self.followed(path, target, self.task.start)
-        return self._timed(path, traced, kind, explanation, Details())
 
     def _timed(
         self,
@@ -209,16 +205,6 @@ class LinkMotions:
                 f"at {motion.turning:.4f} rad/s (at most {rates.turning:.4f})",
             )
         return RateStatistics(motion.velocity, motion.acceleration, motion.turning)
-
-
-def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> CircularPath:
-    """The arc from a pose to a target.
-
-    Raises:
-        PlanningFailed: INVALID_MOTION_PLAN, when there is no such circle.
-    """
-    make = CircularPath.through if point.kind == "interim" else CircularPath.about
-    return make(target.link, start, point.position, target.pose)
 
 
 def path_failed(path: LinkPath, traced: Trace, failure: TraceFailure) -> PlanningFailed:

@@ -11,8 +11,7 @@ import numpy as np
 from harness.core.errors import ErrorCode
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.cartesian.circular_path import CircularPath
-from harness.planning.cartesian.linear_path import LinearPath
+from harness.planning.cartesian.linear_path import LinkPath
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask
@@ -42,10 +41,6 @@ STRIDES = (1, 2, 4, 8)
 OFF_BETWEEN = 3e-5  # How far the curve may leave it in the middle between two poses [m]
 _FEWEST_STEPS = 8  # of a path, however short: a spline needs some
 SOLVED = 1e-8  # Error of a solved state at most [m, rad]
-
-
-LinkPath = LinearPath | CircularPath
-"""A link's way through space, its parameter running evenly from 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)

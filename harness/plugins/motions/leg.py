@@ -13,9 +13,9 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
-from harness.planning.cartesian.linear_path import POINT
+from harness.planning.cartesian.linear_path import POINT, LinkPath
 from harness.planning.cartesian.link_timing import LinkRates
-from harness.planning.cartesian.tracing import SOLVED, LinkPath
+from harness.planning.cartesian.tracing import SOLVED
 from harness.planning.collision import wording
 from harness.planning.collision.checker import MotionChecker, touch_records
 from harness.planning.ik.numeric import LinkTask

@@ -11,9 +11,10 @@ from harness.core.errors import PlanningFailed
 from harness.core.types import FloatArray
 from harness.planning.cartesian.line_goals import end_pose
 from harness.planning.cartesian.linear_path import LinearPath
-from harness.planning.cartesian.link_motion import LinkMotions, arc_to
+from harness.planning.cartesian.link_motion import LinkMotions
 from harness.planning.cartesian.link_timing import LinkRates
 from harness.planning.goals.goals import find_goals
+from harness.plugins.motions.circular_path import arc_to
 from harness.plugins.motions.leg import Leg
 from harness.plugins.motions.leg_run import runs_of, time_runs
 from harness.ports.goals import JointGoal

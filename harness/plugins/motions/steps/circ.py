@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import ClassVar
 
 from harness.cell.cell import Cell
-from harness.cell.goal_checks import check_arc, check_goal
-from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
+from harness.cell.goal_checks import check_goal
+from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At
 from harness.cell.step import Step
-from harness.language.goals import ArcFields
+from harness.plugins.motions.arc import ArcFields, arc_point, check_arc
 from harness.ports.motions import CircularMotion
 
 

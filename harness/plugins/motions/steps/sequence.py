@@ -9,14 +9,15 @@ import numpy as np
 from pydantic import Field
 
 from harness.cell.cell import Cell
-from harness.cell.goal_checks import check_arc, check_goal
-from harness.cell.goals import arc_point, group_of, link_limits, resolve_goal
+from harness.cell.goal_checks import check_goal
+from harness.cell.goals import group_of, link_limits, resolve_goal
 from harness.cell.scope import At, Scope
 from harness.cell.step import Step
 from harness.core.state_words import stated_name
 from harness.core.types import FloatArray
 from harness.language.base import NonNegativeLength, SpecModel
-from harness.language.goals import ArcFields, GoalFields, LineFields
+from harness.language.goals import GoalFields, LineFields
+from harness.plugins.motions.arc import ArcFields, arc_point, check_arc
 from harness.ports.motions import MotionSequence
 from harness.ports.motions import SequenceItem as PlannedItem
 

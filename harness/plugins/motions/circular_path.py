@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import combinations
+from typing import ClassVar
 
 import numpy as np
 import pinocchio as pin
@@ -13,6 +14,9 @@ import pinocchio as pin
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
+from harness.planning.cartesian.linear_path import LinkPath
+from harness.ports.goals import PoseGoal
+from harness.ports.motions import ArcPoint
 from harness.recording.motion_failures import CircleFailure
 
 LARGEST_RADIUS_DIFFERENCE = 1e-2
@@ -28,30 +32,27 @@ arcs, such as a twelfth of a circle of 2 cm.
 _STRAIGHT_ANGLE = 1e-3  # [rad] nearer to half a circle about a centre, the plane is undefined
 
 
-class CircularPath:
-    """A link's path on a circle; the link rotates at a constant rate from start to end.
+class CircularPath(LinkPath):
+    """A link's path on a circle.
 
     Attributes:
-        start: T_world_link at parameter 0.
         center: The circle's centre in the world [m].
         axis: The unit normal of its plane; the link moves counterclockwise about it.
         sweep: The angle of the arc [rad], 0 to 2 pi.
-        turn: The rotation vector of the link from 0 to 1, world axes [rad].
     """
 
-    name = "arc"
-    is_point = False
+    name: ClassVar[str] = "arc"
 
     def __init__(
         self, link: str, start: SE3, end: SE3, center: FloatArray, axis: FloatArray, sweep: float
     ) -> None:
-        self.link = link
-        self.start = start
         self.center = np.asarray(center, dtype=float)
         self.axis = np.asarray(axis, dtype=float)
         self.sweep = sweep
-        self.turn: FloatArray = pin.log3(end.rotation @ start.rotation.T)
         self._spoke = start.translation - self.center
+        radius = float(np.linalg.norm(self._spoke))
+        turn: FloatArray = pin.log3(end.rotation @ start.rotation.T)
+        super().__init__(link, start, turn, radius * sweep, radius)
 
     @classmethod
     def through(cls, link: str, start: SE3, interim: FloatArray, end: SE3) -> CircularPath:
@@ -99,28 +100,10 @@ class CircularPath:
         first, last = start.translation - center, end.translation - center
         return cls(link, start, end, center, axis, _angle(first, last, axis))
 
-    @property
-    def radius(self) -> float:
-        """The circle's radius [m]."""
-        return float(np.linalg.norm(self._spoke))
-
-    @property
-    def length(self) -> float:
-        """The arc's length [m]."""
-        return self.radius * self.sweep
-
-    @property
-    def angle(self) -> float:
-        """The angle of the link's rotation [rad]."""
-        return float(np.linalg.norm(self.turn))
-
-    def pose(self, parameter: float) -> SE3:
-        """T_world_link at a parameter from 0 to 1."""
-        place = self.center + pin.exp3(parameter * self.sweep * self.axis) @ self._spoke
-        return SE3(pin.exp3(parameter * self.turn) @ self.start.rotation, place)
+    def place(self, parameter: float) -> FloatArray:
+        return self.center + pin.exp3(parameter * self.sweep * self.axis) @ self._spoke
 
     def nearest(self, pose: SE3) -> tuple[float, float]:
-        """The parameter of the arc's point nearest to a pose's origin, and its distance [m]."""
         offset = pose.translation - self.center
         height = float(offset @ self.axis)
         level = offset - height * self.axis
@@ -129,6 +112,16 @@ class CircularPath:
             beyond -= 2 * np.pi  # nearer to the start than to the end
         gap = float(np.hypot(height, np.linalg.norm(level) - self.radius))
         return beyond / self.sweep, gap
+
+
+def arc_to(target: PoseGoal, start: SE3, point: ArcPoint) -> CircularPath:
+    """The arc from a pose to a target.
+
+    Raises:
+        PlanningFailed: INVALID_MOTION_PLAN, when there is no such circle.
+    """
+    make = CircularPath.through if point.kind == "interim" else CircularPath.about
+    return make(target.link, start, point.position, target.pose)
 
 
 def _angle(first: FloatArray, second: FloatArray, axis: FloatArray) -> float:
