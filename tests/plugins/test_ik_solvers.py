@@ -183,4 +183,4 @@ def test_a_solver_that_finds_nothing_is_named_where_the_goal_is_reachable(scenar
         "--set", "robot.ik_solver=mine", code=1,
     )  # fmt: skip
     assert "the inverse kinematics solver `mine` of the package `none` finds no solution" in out
-    assert "tool0 reaches (0.300, 0.100, 0.300) as requested" in out
+    assert "tool0 reaches (300, 100, 300) mm as requested" in out

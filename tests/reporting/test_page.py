@@ -423,3 +423,28 @@ def test_every_tab_and_every_label_of_the_timeline_is_shown_whole_enough(visit, 
         ".map(label => label.parentElement.clientWidth)"
     )
     assert all(each > 40 for each in widths)
+
+
+def test_a_failed_run_opens_near_what_failed_and_iso_shows_all_of_it(browser, failed_run):
+    with visits(browser) as visit:
+        page = visit(failed_run / "report.html", width=1100, height=720).page
+        near = picture(page)
+        page.click("#sides button:text('iso')")
+        whole = picture(page)
+        assert np.abs(near - whole).mean() > 2
+        page.click("#sides button:text('iso')")
+        assert np.abs(picture(page) - whole).mean() < 1
+
+
+def test_a_failed_step_takes_two_lines_of_its_reason_until_it_is_chosen(opened):
+    reason = opened.page.locator("#steps .step.bad .why").first
+    style = "(each) => getComputedStyle(each).webkitLineClamp"
+    assert reason.evaluate(style) == "2"
+    opened.page.click("#steps .step.bad")
+    assert reason.evaluate(style) == "none"
+
+
+def test_a_verdict_has_its_margin_and_its_place_in_one_line(opened):
+    below = opened.page.locator(".verdict.good .below").first
+    assert re.fullmatch(r".*margin .*\n?t = [\d.]+ s · line \d+", below.inner_text())
+    assert below.bounding_box()["height"] < 25

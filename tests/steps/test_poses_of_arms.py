@@ -49,7 +49,7 @@ def test_both_arms_reach_their_poses_in_one_motion(run):
 def test_the_arm_that_cannot_reach_is_explained(run):
     far = next(step for step in run.steps if step.id == "far")
     assert "right_" in far.message
-    assert "(3.000, 0.000, 0.300)" in far.message
+    assert "(3000, 0, 300) mm" in far.message
 
 
 @pytest.mark.parametrize(

@@ -20,9 +20,9 @@ FILES = sorted(FAILURES.glob("*.scenario.yaml"))
 MESSAGES = {
     "too_far": [
         r"cannot reach .* the nearest point it reaches, .*, is \d+\.\d mm away",
-        r"reach: NO_IK_SOLUTION: nearest reachable pose: \(.*\), \d+\.\d mm and \d+\.\d° away",
-        r"    with the requested orientation: \(.*\), \d+\.\d mm away",
-        r"    with any orientation: \(.*\), \d+\.\d mm away",
+        r"reach: NO_IK_SOLUTION: nearest reachable pose: \(.*\) mm, \d+\.\d mm and \d+\.\d° away",
+        r"    with the requested orientation: \(.*\) mm, \d+\.\d mm away",
+        r"    with any orientation: \(.*\) mm, \d+\.\d mm away",
         r"inverse kinematics: skipped, no branch",
         r"what to do: `pose: \{frame: world, xyz: \[.*\], quat_xyzw: \[.*\]\}` is reached",
         r"picture: images/01-too-far-why.jpg \(nearest pose\)",
@@ -38,7 +38,7 @@ MESSAGES = {
         r"what to do: begin the line in another posture",
     ],
     "into_the_table": [
-        r"reaches \(.*\) in world in \d ways, each of them in collision; the nearest: .* mm deep\)",
+        r"reaches \(.*\) mm in world in \d ways, each of them in collision; the nearest: .* deep",
         r"inverse kinematics: GOAL_IN_COLLISION: 8 branches .*: 0 free, 8 in collision",
         r"    forwards, elbow up, wrist_2_joint < 0: \w+ and \w+ \(\d+\.\d mm deep\)",
         r"    backwards, elbow down, wrist_2_joint > 0: ",

@@ -29,8 +29,8 @@ def angle(radians: float) -> str:
 
 
 def point(xyz: FloatArray) -> str:
-    """`(0.320, -0.170, 1.320)`, without a negative zero."""
-    return "(" + ", ".join(f"{round(float(value), 3) + 0.0:.3f}" for value in xyz) + ")"
+    """`(320, -170, 1320) mm`."""
+    return f"({', '.join(str(round(1000 * float(value))) for value in xyz)}) mm"
 
 
 def joint_value(space: GroupSpace, joint: str, value: float) -> str:

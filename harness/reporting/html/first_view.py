@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from harness.core.geometry import Plane, bounding_radius
 from harness.core.types import FloatArray
 from harness.recording.run import ObjectRecord, Run
+from harness.recording.stored_run import StoredRun
 from harness.recording.touched import touched_objects
 
 FARTHEST = 20.0  # [m]; what fell off the world is drawn there
@@ -20,37 +22,81 @@ DIRECTIONS = 64  # in each of which the first view holds what is farthest
 THINNEST_ARM = 0.1  # [m]: a hand alone is no smaller than its frames
 
 
-def first_view(
-    run: Run,
-    poses: Mapping[str, FloatArray],
-    named: Collection[str],
-    explained: Sequence[Sequence[float]],
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What the first view holds, and a sphere around what the sun's shadow covers.
+@dataclass(frozen=True)
+class Framing:
+    """What a view holds besides the arm and what it touched.
 
-    The first view holds the arm wherever it was, what it touched, and what explains a failure; of a
-    goal that is far away the direction.
+    Attributes:
+        named: Objects, even if the robot did not touch them.
+        explained: Points that explain a failure; of a goal that is far away the direction.
+        decisive: From when to when what failed happened [s], on which the page opens; None where
+            it opens on the whole run.
     """
+
+    named: Collection[str] = ()
+    explained: Sequence[Sequence[float]] = ()
+    decisive: tuple[float, float] | None = None
+
+
+WHOLE_RUN = Framing()
+
+
+def decisive_time(stored: StoredRun) -> tuple[float, float] | None:
+    """From when to when the first failure happened [s]: its step, or the moment of a verdict."""
+    failed = [step for step in stored.run.steps if step.status == "failed"]
+    if failed:
+        first = max(failed, key=lambda step: step.path.count("."))
+        return first.start_time, first.end_time
+    times = [each.time for each in stored.verdicts if each.status == "failed"]
+    return (times[0], times[0]) if times and np.isfinite(times[0]) else None
+
+
+def first_view(
+    run: Run, poses: Mapping[str, FloatArray], step: float, framing: Framing
+) -> dict[str, Any]:
+    """What the view holds, what it opens on, and a sphere around what the sun's shadow covers.
+
+    Args:
+        poses: Of each link at each frame, shape (N, 7).
+        step: From one frame to the next [s].
+    """
+    near, wide, arm = _held(run, poses, framing)
+    focus = {"points": _outermost(np.concatenate(near)), "arm": round(max(THINNEST_ARM, arm), 4)}
+    facts = {"focus": focus, "bounds": _sphere([*near, *wide])}
+    if framing.decisive is None:
+        return facts
+    start, end = framing.decisive
+    frames = slice(int(start / step), int(end / step) + 2)
+    first, last = np.searchsorted(run.signals.times, (start, end))
+    moments = slice(max(0, int(first) - 1), int(last) + 1)
+    near, _, _ = _held(run, {k: rows[frames] for k, rows in poses.items()}, framing, moments)
+    return facts | {"opening": _outermost(np.concatenate(near))}
+
+
+def _held(
+    run: Run, poses: Mapping[str, FloatArray], framing: Framing, moments: slice = slice(None)
+) -> tuple[list[FloatArray], list[FloatArray], float]:
+    """Points that a view holds, those that the shadow covers too, and the arm's size [m]."""
     base = poses[run.robot.base_link][0, :3] if run.robot.base_link in poses else np.zeros(3)
     near = [rows[:, :3] for rows in poses.values()]
     near = [points for points in near if np.abs(points).max(initial=0.0) > 0]
-    near.append(run.signals.tcp_pose[:: max(1, len(run.signals.times) // 500), :3])
+    tcp = run.signals.tcp_pose[moments]
+    near.append(tcp[:: max(1, len(tcp) // 500), :3])
     arm = max(float(np.linalg.norm(points - base, axis=1).max(initial=0.0)) for points in near)
-    away = np.array(explained or [base]) - base
+    away = np.array(framing.explained or [base]) - base
     near.append(base + away * np.clip(OUTSIDE * arm / _lengths(away), 0, 1)[:, None])
-    touched = {*named, *touched_objects(run)}
+    touched = {*framing.named, *touched_objects(run)}
     wide: list[FloatArray] = []
     for obj in run.objects:
         if any(isinstance(shape.geometry, Plane) for shape in obj.looks):
             continue
-        centres, reach = _extent(run, obj)
+        centres, reach = _extent(run, obj, moments)
         if reach < LARGE and obj.name in touched:
             seen = centres[np.linalg.norm(centres - base, axis=1) < NEARBY * arm]
             near += [seen - reach, seen + reach]
         corners = np.concatenate([centres - reach, centres + reach])
         wide.append(np.clip(corners, base - 2.5, base + 2.5))
-    focus = {"points": _outermost(np.concatenate(near)), "arm": round(max(THINNEST_ARM, arm), 4)}
-    return focus, _sphere([*near, *wide])
+    return near, wide, arm
 
 
 def _lengths(vectors: FloatArray) -> FloatArray:
@@ -69,11 +115,11 @@ def _outermost(points: FloatArray) -> list[list[float]]:
     return [rounded(known[row], 4) for row in np.unique(np.argmax(known @ around, axis=0))]
 
 
-def _extent(run: Run, obj: ObjectRecord) -> tuple[FloatArray, float]:
+def _extent(run: Run, obj: ObjectRecord, moments: slice) -> tuple[FloatArray, float]:
     """Where an object's centre was, a few times, and how far it reaches from there [m]."""
     reach = max((bounding_radius(shape) for shape in obj.looks), default=0.0)
     recorded = run.signals.object_poses.get(obj.name)
-    rows = np.array([obj.pose or (0.0,) * 7]) if recorded is None else recorded
+    rows = np.array([obj.pose or (0.0,) * 7]) if recorded is None else recorded[moments]
     rows = rows[:: max(1, len(rows) // 20)]
     centres = rows[np.isfinite(rows).all(axis=1), :3]
     return np.clip(centres, -FARTHEST, FARTHEST), reach if np.isfinite(reach) else 0.3

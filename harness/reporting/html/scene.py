@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from harness.core.types import FloatArray, IntArray
 from harness.recording.drawings import MeshRecord
 from harness.recording.link_poses import replayed_link_poses
 from harness.recording.run import Run
-from harness.reporting.html.first_view import FARTHEST, first_view, rounded
+from harness.reporting.html.first_view import FARTHEST, WHOLE_RUN, Framing, first_view, rounded
 from harness.reporting.html.packing import Packer, differences, zigzag
 
 FASTEST_RATE, SLOWEST_RATE = 50.0, 10.0  # poses a second, with straight lines between them
@@ -47,8 +47,7 @@ def pack_scene(
     run: Run,
     meshes: Sequence[MeshRecord],
     packer: Packer,
-    named: Collection[str] = (),
-    explained: Sequence[Sequence[float]] = (),
+    framing: Framing = WHOLE_RUN,
 ) -> dict[str, Any]:
     """Bodies, meshes, frames and what the first view holds.
 
@@ -56,8 +55,7 @@ def pack_scene(
         run: The run that is shown.
         meshes: The triangles of its mesh files.
         packer: Takes poses and meshes.
-        named: Objects that the first view holds even if the robot did not touch them.
-        explained: Points that it holds because they explain a failure.
+        framing: What a view holds besides the arm and what it touched.
     """
     step, samples = frame_samples(run.signals.times)
     poses = replayed_link_poses(run.robot, run.signals.joint_positions[samples])
@@ -118,14 +116,12 @@ def pack_scene(
     _pack_apart(
         [poses[name] for name in moving], [commanded[name] for name in moving], unit, packer
     )
-    focus, bounds = first_view(run, poses, named, explained)
     return {
         "bodies": bodies,
         "meshes": [pack_mesh(mesh, number, packer) for number, mesh in enumerate(meshes)],
         "frames": {"count": len(samples), "step": step, "unit": unit},
         "toolBody": run.robot.tcp_link,
-        "focus": focus,
-        "bounds": bounds,
+        **first_view(run, poses, step, framing),
     }
 
 

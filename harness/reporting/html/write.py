@@ -12,6 +12,7 @@ from harness.recording.stored_run import PAGE, StoredRun, blames_changes
 from harness.recording.verdict import Verdict
 from harness.reporting.html import bundle
 from harness.reporting.html.bundle import rendered
+from harness.reporting.html.first_view import Framing, decisive_time
 from harness.reporting.html.groups import pack_groups
 from harness.reporting.html.packing import Packer
 from harness.reporting.html.paths import explained_points, pack_plan, pack_tcp_path
@@ -84,6 +85,7 @@ class Page:
         blamed = {
             name for each in verdicts if each["status"] != "passed" for name in each["bodies"]
         }
+        framing = Framing(blamed, explained_points(self._plans), decisive_time(stored))
         return packer.text(
             {
                 "title": run.scenario,
@@ -99,9 +101,7 @@ class Page:
                 "source": run.source,
                 **self._facts,
                 "cameras": pack_cameras(stored, packer),
-                **pack_scene(
-                    run, stored.drawings.meshes, packer, blamed, explained_points(self._plans)
-                ),
+                **pack_scene(run, stored.drawings.meshes, packer, framing),
             }
         )
 

@@ -314,12 +314,33 @@ def test_margins_are_explained_where_no_run_failed():
         for i in range(50)
     ]
     [found] = sensitivities(Columns(cases))
-    assert found.conclusion == "x (larger with larger values) explains the margins."
+    assert found.conclusion == "The margins are larger with larger values of x."
     alike = [SuiteCase(each.result, {"y": i // 10}) for i, each in enumerate(cases)]
     [found] = sensitivities(Columns(alike))
     assert (
         found.conclusion == "No parameter explains the margins: none has an effect beyond chance."
     )
+
+
+@pytest.mark.parametrize("step", [1e-6, 1e-4])
+def test_margins_that_hardly_differ_are_explained_by_nothing(step):
+    """However regular they are: a curve of them is flat."""
+    cases = [SuiteCase(passed(i, 0.06 + step * i), {"x": i}) for i in range(20)]
+    [found] = sensitivities(Columns(cases))
+    assert not any(effect.is_shown for effect in found.effects)
+    assert found.conclusion.startswith("The worst margins hardly differ: 16.7% to ")
+
+
+def test_margins_that_are_smallest_in_the_middle_or_with_a_word_are_said_in_a_sentence():
+    middle = [SuiteCase(passed(i, 0.06 + 0.001 * abs(i - 20)), {"x": i}) for i in range(41)]
+    [found] = sensitivities(Columns(middle))
+    assert found.conclusion == "The margins are larger towards the ends of the range of x."
+    kinds = ("box", "ball", "cone")
+    words = [
+        SuiteCase(passed(i, 0.06 + 0.01 * (i % 3)), {"object": kinds[i % 3]}) for i in range(40)
+    ]
+    [found] = sensitivities(Columns(words))
+    assert found.conclusion == "The margins are smallest with the value box of object."
 
 
 def test_a_parameter_is_judged_among_the_runs_of_the_files_that_have_it():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,7 @@ from harness.reporting.suite.columns import Columns, VariedQuantity
 FEWEST_RUNS = 8  # with fewer runs no effect can be shown
 LEVEL = 0.05  # chance of such an effect of any parameter below which one is named
 RESHUFFLES = 1999  # permutations of a test: they resolve a hundredth of `LEVEL`
+NEGLIGIBLE = 0.05  # of the limit: margins that differ by less are a flat curve
 MOST_RUNS = 1000  # failed runs, and passed runs, that a test looks at; of more, an even choice
 
 
@@ -47,6 +49,13 @@ class Effect:
         """Whether the effect is more than chance gives."""
         return self.share is not None and self.chance < LEVEL
 
+    @property
+    def dependence(self) -> str:
+        """How margins depend on it: `smaller with larger values of friction`."""
+        if "its range" in self.words:
+            return self.words.replace("its range", f"the range of {self.path}")
+        return f"{self.words} of {self.path}"
+
 
 @dataclass(frozen=True)
 class FileSensitivity:
@@ -57,6 +66,8 @@ class FileSensitivity:
         failures: The number of failed runs.
         causes: The number of causes for which they failed.
         effects: The clearest one first; empty where the file has too few runs.
+        margins: The least and the largest worst margin, as shares of the limit, where these are
+            explained.
     """
 
     file: str
@@ -65,17 +76,23 @@ class FileSensitivity:
     failures: int = 0
     effects: Sequence[Effect] = ()
     causes: int = 1
+    margins: tuple[float, float] = (-math.inf, math.inf)
 
     @property
     def conclusion(self) -> str:
         """What the runs show, in a sentence."""
         what = "these failures" if self.measured == "outcome" else "the margins"
         found = [each for each in self.effects if each.is_shown]
+        low, high = self.margins
+        if high - low < NEGLIGIBLE:
+            return f"The worst margins hardly differ: {low:.1%} to {high:.1%} of the limit."
         if not found:
             return f"No parameter explains {what}: none has an effect beyond chance."
         if self.causes > 1:
             parts = [f"{each.path} ({each.words}) explains {each.explained}" for each in found]
             return f"Of {self.failures} failures {' and '.join(parts)}."
+        if self.measured != "outcome":
+            return f"The margins are {' and '.join(each.dependence for each in found)}."
         shown = [f"{each.path} ({each.words})" for each in found]
         verb = "explains" if len(shown) == 1 else "explain"
         return f"{' and '.join(shown)} {verb} {what}."
@@ -109,6 +126,9 @@ def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
         else:
             values = shares
             chosen = evenly(chosen[np.isfinite(shares[chosen])], 2 * MOST_RUNS)
+            if len(chosen) and 0 < np.ptp(shares[chosen]) < NEGLIGIBLE:
+                yield _flat(columns, file, chosen, failures)
+                continue
         causes = _causes(columns, chosen) if has_both else {}
         if len(causes) > 1:
             effects = _effects_by_cause(columns, chosen, causes)
@@ -117,6 +137,18 @@ def sensitivities(columns: Columns) -> Iterator[FileSensitivity]:
         measured = "outcome" if has_both else "worst margin"
         runs = int((files == number).sum())
         yield FileSensitivity(file, runs, measured, failures, effects, max(1, len(causes)))
+
+
+def _flat(columns: Columns, file: str, chosen: IntArray, failures: int) -> FileSensitivity:
+    """Runs whose margins no parameter changes much, however regularly it does."""
+    shares = np.array(columns.shares)[chosen]
+    effects = [
+        Effect(each.path, None, "the margins hardly differ")
+        for each in columns.parameters
+        if len(np.unique(each.numbers[chosen][np.isfinite(each.numbers[chosen])])) > 1
+    ]
+    margins = float(shares.min()), float(shares.max())
+    return FileSensitivity(file, len(chosen), "worst margin", failures, effects, margins=margins)
 
 
 def _causes(columns: Columns, chosen: IntArray) -> dict[str, IntArray]:
@@ -254,7 +286,7 @@ def _effect(
         worst = int(np.argmax(means) if is_outcome else np.argmin(means))
         of_worst = values[numbers == words[worst]]
         name = parameter.words[int(words[worst])]
-        text = f"the lowest margins with {name}"
+        text = f"smallest with the value {name}"
         if is_outcome:
             text = f"{int(of_worst.sum())} of {len(of_worst)} failed with {name}"
         return Effect(parameter.path, min(1.0, share), "", float(chance), text)

@@ -24,6 +24,7 @@ export class Orbit {
    */
   constructor(focus, changed) {
     this.focus = focus;
+    this.framed = focus.points;
     this.changed = changed;
     this.isHeld = false;
     this.target = [0, 0, 0];
@@ -34,8 +35,16 @@ export class Orbit {
 
   /** Frame what is of interest from a side. @param {keyof SIDES} side */
   look(side) {
+    this.framed = this.focus.points;
     Object.assign(this, SIDES[side]);
     this.side = side;
+    this.framedFor = 0;
+    this.changed();
+  }
+
+  /** Frame some points until a side is chosen. @param {number[][]} points [m] */
+  open(points) {
+    this.framed = points;
     this.framedFor = 0;
     this.changed();
   }
@@ -87,7 +96,7 @@ export class Orbit {
   #frame(aspect) {
     const { right, up } = this.#axes();
     const room = Math.max(THICKNESS.least, THICKNESS.share * this.focus.arm);
-    const placed = this.focus.points.map((point) => [dot(point, right), dot(point, up), dot(point, this.back)]);
+    const placed = this.framed.map((point) => [dot(point, right), dot(point, up), dot(point, this.back)]);
     const farthest = (axis, sign, slope) => Math.max(...placed.map((at) => sign * at[axis] + room + slope * at[2]));
     const slopes = [
       [this.tangent * aspect * FRAMED.right, this.tangent * aspect * FRAMED.left],

@@ -26,6 +26,7 @@ export function makeView(run, bounds = run.bounds) {
     return null;
   }
   const orbit = new Orbit(run.focus, () => viewer.redraw());
+  if (run.opening) orbit.open(run.opening);
   viewer.canvas.tabIndex = 0;
   viewer.canvas.setAttribute("role", "img");
   viewer.canvas.setAttribute("aria-label", "3D replay of the run; arrow keys turn it, plus and minus zoom, enter shows what is in the middle");

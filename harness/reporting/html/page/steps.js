@@ -78,11 +78,16 @@ function row(step, index, select) {
     element("i.sign", { role: "img", "aria-label": state }),
     element("span.title", {}, element("b", {}, isNamed ? step.id : step.summary), isNamed ? element("span.what", {}, ` ${step.summary}`) : null),
     element("code.place", { title: "Line of the file" }, step.line ? `:${step.line}` : ""),
-    element("span.took", {}, step.status === "not reached" ? "–" : `${(step.end - step.start).toFixed(2)} s`),
+    element("span.took", {}, step.status === "not reached" ? "–" : duration(step)),
     failure && element("span.why", {}, step.errorCode && element("b", {}, step.errorCode), ` ${step.message}`),
     ...step.broken.map((text) => element("span.why", {}, text)),
     step.status === "expected error" && element("span.what.wide", {}, "failed as the file expects"),
   );
+}
+
+/** How long a step took; nothing where it took no time. */
+function duration({ start, end }) {
+  return end - start < 0.005 ? "" : `${(end - start).toFixed(2)} s`;
 }
 
 /** What programs outside commanded, folded where it went well. */

@@ -36,21 +36,21 @@ function verdict(run, each, index, select) {
     ...each.warnings.map((warning) => element("span.reason", {}, `warning: ${warning}`)),
     ...each.measures.slice(0, each.status === "passed" ? 1 : WORST_SHOWN).map((measure) => measured(measure)),
     each.status === "passed" && !each.measures.length ? element("span.what", {}, each.reason) : null,
-    marginBar(each),
-    element("span.what", { title: each.reason }, place.filter(Boolean).join(" · ")),
+    ...marginBar(each, element("span.place", { title: each.reason }, place.filter(Boolean).join(" · "))),
   );
 }
 
-/** A bar of the allowance: how much of it was used. */
-function marginBar({ margin, unit, used, status, tightest }) {
-  if (margin === null) return null;
+/** A bar of the allowance: how much of it was used; below it the margin, and the place. */
+function marginBar({ margin, unit, used, status, tightest }, place) {
+  const below = (...words) => element("span.below", {}, ...words, place);
+  if (margin === null) return [below()];
   const marginText = `${tightest && `${tightest}: `}${margin >= 0 ? "margin" : "missed by"} ${amount(Math.abs(margin), unit)}`;
-  if (used === null) return element("span.margin-text", {}, marginText);
+  if (used === null) return [below(element("span", {}, marginText))];
   const percent = Math.round(100 * used);
   const bar = element("span.margin", { role: "img", "aria-label": `${percent} % of the allowance used` }, element("i"));
   bar.firstChild.style.width = `${Math.max(1, Math.min(100, percent))}%`;
-  const text = used > 10 ? marginText : `${percent} % of the allowance used · ${marginText}`;
-  return element("span.room", {}, bar, element("span.margin-text", {}, status === "passed" || margin < 0 ? text : marginText));
+  const text = used > 10 || status !== "passed" ? marginText : `${percent} % used · ${marginText}`;
+  return [bar, below(element("span", { title: bar.ariaLabel }, text))];
 }
 
 function measured({ name, value, limit, comparison, unit, detail }) {

@@ -58,7 +58,7 @@ export function startTable(payload) {
       element("td.still", {}, row.link && still ? element("a", { href: row.link, tabindex: -1 }, still) : still),
       element("td.about", {},
         element("span.title", {}, name, ...row.tags.map((tag) => element("span.tag", {}, tag))),
-        element("div.quiet", {}, row.file, ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
+        element("div.quiet", {}, ...breakable(row.file), ...row.pages.map(({ name, link }) => element("a.page", { href: link }, name)), row.drawn && " ", row.drawn && element("span.drawn", {}, row.drawn), row.why ? "" : why(row)),
         row.why && why(row)),
       element("td.nearest", {}, ...(hasNearest(row) ? [allowance(row), element("div.quiet", {}, row.expectation)] : [])),
       payload.run.history && element("td.history", {}, row.trend && spark(row.trend)),
@@ -81,6 +81,11 @@ export function startTable(payload) {
   return { show: watched(more, extend, show) };
 }
 
+
+/** A path that breaks after its folders. */
+function breakable(path) {
+  return path.split(/(?<=\/)/).flatMap((part) => [part, element("wbr")]);
+}
 
 /** Whether a margin says something of the outcome: one that holds says nothing of a failure. */
 function hasNearest({ margin, holds, outcome }) {
