@@ -63,8 +63,7 @@ def test_another_verdict_on_the_same_motion_is_reported_with_both_margins(record
     assert code == 1
     assert "different  the recorded signals are the same; commands or verdicts differ" in text
     assert "outcome\n  passed -> failed" in text
-    assert "duration is at least 0.05 s: passed by 0.05 s -> -" in text
-    assert "duration is at least 2.0 s: - -> failed by 1.9 s" in text
+    assert "duration is at least 0.05 → 2.0 s: passed by 0.05 s -> failed by 1.9 s" in text
     assert "trajectories" not in text
     expected = "duration: {at_least: %s}"
     assert f"scenario\n  {expected % '50 ms'} -> {expected % '2 s'}\nverdicts" in text
@@ -179,3 +178,30 @@ def test_forces_of_two_bodies_are_named_with_their_unit(name, words):
     runs = [make_run(**{name: {("box", "bin"): np.full(200, value)}}) for value in (1.0, 2.0)]
     stored = [StoredRun(run, (), "passed", str(n), {}) for n, run in enumerate(runs)]
     assert words in "\n".join(comparison_lines(compare(*stored)))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "names"),
+    [
+        (["height is 5.0 mm"], ["height is 7.0 mm"], ["height is 5.0 → 7.0 mm"]),
+        (["at (1, -2, 3) mm"], ["at (1, 2, 3) mm"], ["at (1, -2 → 2, 3) mm"]),
+        (["up 1 s", "up 2 s"], ["up 3 s", "up 2 s"], ["up 1 → 3 s"]),
+        (["up 1 s"], ["up 2 s", "up 3 s"], ["up 1 → 2 s", "up 3 s"]),
+        (["up 1 s"], ["down 1 s"], ["up 1 s", "down 1 s"]),
+    ],
+)
+def test_an_expectation_whose_numbers_changed_is_one_change(first, second, names):
+    run = make_run()
+    stored = [
+        StoredRun(run, tuple(verdict(text, status) for text in texts), "passed", "0" * 64, {})
+        for texts, status in ((first, "passed"), (second, "failed"))
+    ]
+    changes = compare(*stored).changes
+    kept = {*first} & {*second}
+    assert [
+        each.name for each in changes if each.what == "verdict" and each.name not in kept
+    ] == names
+
+
+def verdict(text, status):
+    return Verdict(text, status, 0.1, "m", 0.5)

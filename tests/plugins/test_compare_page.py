@@ -70,7 +70,7 @@ def test_steps_are_aligned_and_a_new_one_stands_alone(page):
     assert steps.count() == 4
     assert steps.nth(0).inner_text().startswith("turn")
     assert "only in B" in steps.nth(1).inner_text()
-    assert [each.get_attribute("class") for each in steps.all()][2:] == ["step good"] * 2
+    assert [each.get_attribute("class") for each in steps.all()][2:] == ["step good", "step open"]
 
 
 def test_both_robots_are_drawn_over_and_next_to_each_other(visit, file):
@@ -196,3 +196,12 @@ def test_a_step_without_an_id_is_named_by_what_it_does(folders):
 )
 def test_folders_are_named_by_what_differs(one, two, names):
     assert distinct_parts(Path(one), Path(two)) == names
+
+
+def test_a_step_that_lasted_longer_differs(page):
+    signs = page.locator("#steps .step").evaluate_all(
+        "rows => rows.map((row) => [...row.querySelectorAll('.took')].map((each) => each.innerText)"
+        ".concat(row.querySelector('.sign').ariaLabel))"
+    )
+    assert any(one != two for one, two, _ in signs)
+    assert all(sign == "differs" for one, two, sign in signs if one != two)

@@ -22,6 +22,7 @@ from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Verdict
 
 DRAWN = re.compile(r"-?\d+\.\d{7,}")  # as `randomize` draws them, not as people write them
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 EVERY_DIGIT = 17  # of a double
 
 
@@ -182,13 +183,41 @@ def _resampled(trajectory: JointTrajectory) -> FloatArray:
 
 def _verdicts(ours: Mapping[str, Verdict], theirs: Mapping[str, Verdict]) -> list[Change]:
     changes: list[Change] = []
+    twins = _twins([each for each in ours if each not in theirs],
+                   [each for each in theirs if each not in ours])  # fmt: skip
     for name in dict.fromkeys([*ours, *theirs]):
-        a, b = ours.get(name), theirs.get(name)
-        if a is None or b is None or a.status != b.status:
+        if name in twins.values():
+            continue
+        a, b = ours.get(name), theirs.get(twins.get(name, name))
+        if name in twins:
+            changes.append(Change("verdict", _both(name, twins[name]), _judged(a), _judged(b)))
+        elif a is None or b is None or a.status != b.status:
             changes += _words("verdict", name, _judged(a), _judged(b))
         elif a.unit != b.unit or is_visible(b.margin - a.margin, a.unit):
             changes.append(_margin(name, a, b))
     return changes
+
+
+def _twins(ours: Sequence[str], theirs: Sequence[str]) -> dict[str, str]:
+    """Expectations of one run, and of the other one those that differ from them in numbers."""
+    twins: dict[str, str] = {}
+    for name in ours:
+        alike = (each for each in theirs if NUMBER.sub("#", each) == NUMBER.sub("#", name))
+        twin = next((each for each in alike if each not in twins.values()), None)
+        if twin is not None:
+            twins[name] = twin
+    return twins
+
+
+def _both(one: str, two: str) -> str:
+    """A sentence with the numbers of both: `duration is at least 0.05 → 2.0 s`."""
+    numbers = iter(NUMBER.findall(two))
+
+    def with_other(number: re.Match[str]) -> str:
+        other = next(numbers)
+        return number[0] if number[0] == other else f"{number[0]} → {other}"
+
+    return NUMBER.sub(with_other, one)
 
 
 def _margin(name: str, one: Verdict, two: Verdict) -> Change:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.core.printable import printable
-from harness.plugins.comparison.alignment import aligned_steps
+from harness.plugins.comparison.alignment import aligned_steps, names_of
 from harness.plugins.comparison.compare import Change, RunComparison
 from harness.plugins.comparison.lines import HEADINGS, parting_text
 from harness.recording.stored_run import StoredRun
@@ -34,8 +34,10 @@ def comparison_page(
     groups = _groups(comparison.changes)
     parting = comparison.first_difference
     text = "" if parting is None else parting_text(parting)
+    moments = [each.time for each in (parting, *comparison.farthest[:1]) if each is not None]
+    decisive = (min(moments), max(moments)) if moments else None
     facts = {
-        "pairs": _indices(first, second),
+        "pairs": _indices(first, second, comparison.changes),
         "parting": None if parting is None else {"time": parting.time, "text": text},
         "farthest": [{"time": each.time, "text": each.text} for each in comparison.farthest],
         "warnings": comparison.warnings,
@@ -53,8 +55,8 @@ def comparison_page(
         parting=text,
         groups=groups,
         facts=Packer().text(facts),
-        first=Page(first.run, first.verdicts).data(first),
-        second=Page(second.run, second.verdicts).data(second),
+        first=Page(first.run, first.verdicts).data(first, decisive),
+        second=Page(second.run, second.verdicts).data(second, decisive),
     )
     return page.encode(errors="replace").decode()  # names of files may have half characters
 
@@ -72,15 +74,27 @@ def distinct_parts(one: Path, two: Path) -> tuple[str, str]:
     return first, second
 
 
-def _indices(first: StoredRun, second: StoredRun) -> list[dict[str, int | None]]:
-    """Places of aligned steps in the lists of both pages."""
+OF_STEPS = ("step", "trajectory", "duration")
+
+
+def _indices(
+    first: StoredRun, second: StoredRun, changes: Sequence[Change]
+) -> list[dict[str, int | bool | None]]:
+    """Places of aligned steps in the lists of both pages, and whether they differ."""
+    pairs = aligned_steps(first.run, second.run)
+    names = names_of(pairs)
+    changed = {change.name for change in changes if change.what in OF_STEPS}
     places = [
         {id(step): index for index, step in enumerate(ordered_steps(each.run))}
         for each in (first, second)
     ]
     return [
-        {"first": places[0].get(id(one)), "second": places[1].get(id(two))}
-        for one, two in aligned_steps(first.run, second.run)
+        {
+            "first": places[0].get(id(one)),
+            "second": places[1].get(id(two)),
+            "differs": one is None or two is None or names[0][one.id] in changed,
+        }
+        for one, two in pairs
     ]
 
 

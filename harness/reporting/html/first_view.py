@@ -29,8 +29,8 @@ class Framing:
     Attributes:
         named: Objects, even if the robot did not touch them.
         explained: Points that explain a failure; of a goal that is far away the direction.
-        decisive: From when to when what failed happened [s], on which the page opens; None where
-            it opens on the whole run.
+        decisive: The interval of the failure, on which the page opens [s]; None where it opens on
+            the whole run.
     """
 
     named: Collection[str] = ()
@@ -42,7 +42,7 @@ WHOLE_RUN = Framing()
 
 
 def decisive_time(stored: StoredRun) -> tuple[float, float] | None:
-    """From when to when the first failure happened [s]: its step, or the moment of a verdict."""
+    """The interval of the first failure [s]: its step, or the moment of a verdict."""
     failed = [step for step in stored.run.steps if step.status == "failed"]
     if failed:
         first = max(failed, key=lambda step: step.path.count("."))
@@ -58,7 +58,7 @@ def first_view(
 
     Args:
         poses: Of each link at each frame, shape (N, 7).
-        step: From one frame to the next [s].
+        step: The time from one frame to the next [s].
     """
     near, wide, arm = _held(run, poses, framing)
     focus = {"points": _outermost(np.concatenate(near)), "arm": round(max(THINNEST_ARM, arm), 4)}

@@ -74,8 +74,12 @@ class Page:
         )
         return text.encode(errors="replace").decode()  # names of files may have half characters
 
-    def data(self, stored: StoredRun) -> str:
-        """What the page's scripts show, as text that `payload.js` unpacks."""
+    def data(self, stored: StoredRun, decisive: tuple[float, float] | None = None) -> str:
+        """What the page's scripts show, as text that `payload.js` unpacks.
+
+        Args:
+            decisive: The interval on which the page opens [s]; None for the first failure.
+        """
         run, packer = stored.run, self._packer
         steps = [
             step_facts(run, step, stored.verdicts) | plan
@@ -85,7 +89,7 @@ class Page:
         blamed = {
             name for each in verdicts if each["status"] != "passed" for name in each["bodies"]
         }
-        framing = Framing(blamed, explained_points(self._plans), decisive_time(stored))
+        framing = Framing(blamed, explained_points(self._plans), decisive or decisive_time(stored))
         return packer.text(
             {
                 "title": run.scenario,

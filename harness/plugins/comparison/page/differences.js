@@ -35,7 +35,8 @@ export function makePairs(steps, pairs, select) {
     const [a, b] = [pair.first === null ? null : steps[0][pair.first], pair.second === null ? null : steps[1][pair.second]];
     const step = a ?? b;
     const named = /^steps?[_[]/.test(step.id) ? step.summary : step.id;
-    const isSame = a && b && a.status === b.status && a.summary === b.summary;
+    const doesTheSame = a && b && a.status === b.status && a.summary === b.summary;
+    const isSame = doesTheSame && !pair.differs;
     return element(
       "li", { style: `--depth: ${step.depth}` },
       element(
@@ -44,7 +45,7 @@ export function makePairs(steps, pairs, select) {
         element("span.title", {}, element("b", {}, named)),
         element("span.took", {}, took(a)),
         element("span.took", {}, took(b)),
-        !isSame && element("span.what.wide", {}, changed(a, b)),
+        !doesTheSame && element("span.what.wide", {}, changed(a, b)),
       ),
     );
   });

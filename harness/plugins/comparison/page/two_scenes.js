@@ -13,7 +13,8 @@ const OPACITY = 0.6;
 export function makeTwoScenes(payloads, alignment) {
   const runs = payloads.map(({ run }) => run);
   const focus = { points: runs.flatMap((run) => run.focus.points), arm: Math.max(...runs.map((run) => run.focus.arm)) };
-  const view = makeView({ ...runs[0], focus, opening: null });
+  const opening = runs.flatMap((run) => run.opening ?? []);
+  const view = makeView({ ...runs[0], focus, opening: opening.length ? opening : null });
   if (!view) return null;
   const { viewer, orbit } = view;
   const film = new Orbit(focus, () => {});
