@@ -57,7 +57,7 @@ def first_view(
     """What the view holds, what it opens on, and a sphere around what the sun's shadow covers.
 
     Args:
-        poses: Of each link at each frame, shape (N, 7).
+        poses: The poses of each link, frame by frame, shape (N, 7).
         step: The time from one frame to the next [s].
     """
     near, wide, arm = _held(run, poses, framing)
