@@ -145,7 +145,7 @@ class ProgressLines:
             begin = self._activities[index][1]
 
         def text() -> str:
-            suite = self._suite_status()[: self._output.columns - 1]  # the rate, at the end, is cut
+            suite = self._suite_status()
             room = self._output.columns - 1 - columns_of(suite)
             case = printable(self._case_status(event, index, begin, now))
             return suite + (cropped(case, room) if room >= NARROWEST else "")
@@ -157,7 +157,8 @@ class ProgressLines:
         if total < 2:
             return ""
         times = self._start, self._last_end, self._clock()
-        return f"  {pace(*times, done, total, has_signs=self._style.has_signs)}"
+        room = self._output.columns - 3
+        return f"  {pace(*times, done, total, has_signs=self._style.has_signs, room=room)}"
 
     def _case_status(
         self, event: StepStarted | Working | None, index: int, begin: float, now: float

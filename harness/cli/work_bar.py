@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 
@@ -38,8 +39,13 @@ class WorkBar:
     def _text(self) -> str:
         now = time.monotonic()
         times, parts = (self._begin, self._last, now), (self._done, self._total)
-        bar = pace(*times, *parts, known=self._known, has_signs=self._has_signs)
-        return f"  {self._stage}: {bar}{self._note}"
+
+        def bar(room: int) -> str:
+            return pace(*times, *parts, known=self._known, has_signs=self._has_signs, room=room)
+
+        columns, head = output().columns - 1, f"  {self._stage}: "
+        text = f"{head}{bar(columns - len(head) - len(self._note))}{self._note}"
+        return text if len(text) <= columns else f"  {bar(columns - 2)}"
 
 
 def pace(
@@ -51,26 +57,30 @@ def pace(
     *,
     known: int = 0,
     has_signs: bool,
+    room: float = math.inf,
 ) -> str:
-    """`####------ 3 of 8, about 25 s left, 12 a minute`.
+    """`####------ 3 of 8, about 25 s left, 12 a minute`; where it is too long without its ends.
 
     Args:
         begin: When the first part began [s].
         last: When the last of those that are done ended [s].
         known: How many of those that are done were so before the first part began.
         has_signs: Whether the terminal has signs beyond ASCII.
+        room: How many characters have room; the remaining time is left out last.
     """
     full, empty = "█░" if has_signs else "#-"
     filled = BAR_WIDTH * min(done, total) // max(1, total)
-    text = f"{full * filled}{empty * (BAR_WIDTH - filled)} {done} of {total}"
-    text += remaining(begin, last, now, done - known, total - known)
+    bar = f"{full * filled}{empty * (BAR_WIDTH - filled)} "
+    text = f"{done} of {total}{remaining(begin, last, now, done - known, total - known)}"
+    rate_text = ""
     if done > known and last - begin >= ENOUGH_FOR_AN_ESTIMATE:
         rate = (done - known) / (last - begin)
         if rate >= 2:
-            text += f", {rate:.0f} a second"
+            rate_text = f", {rate:.0f} a second"
         elif 60 * rate >= 1:
-            text += f", {60 * rate:.0f} a minute"
-    return text
+            rate_text = f", {60 * rate:.0f} a minute"
+    choices = (f"{bar}{text}{rate_text}", f"{bar}{text}")
+    return next((each for each in choices if len(each) <= room), text)
 
 
 def remaining(begin: float, last: float, now: float, done: int, total: int) -> str:

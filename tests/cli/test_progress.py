@@ -203,6 +203,17 @@ def test_a_terminal_without_control_sequences_gets_none(tmp_path):
     assert "1/2  wait 0.3 s" in session.text
 
 
+@pytest.mark.parametrize(("done", "total"), [(3, 8), (120, 500), (4321, 10_000)])
+@pytest.mark.parametrize("room", [24, 30, 37, 60])
+def test_the_remaining_time_is_what_a_narrow_terminal_leaves_out_last(done, total, room):
+    text = pace(0.0, 60.0, 60.0, done, total, has_signs=True, room=room)
+    left = remaining(0.0, 60.0, 60.0, done, total)
+    assert text.endswith((left, "a minute", "a second"))
+    assert left in text
+    assert len(text) <= max(room, len(f"{done} of {total}{left}"))
+    assert ("█" in text) == (room >= 11 + len(f"{done} of {total}{left}"))
+
+
 def test_the_time_left_is_estimated_at_the_pace_so_far():
     assert remaining(0.0, 10.0, 10.0, 1, 5) == ", about 40 s left"
     assert remaining(0.0, 10.0, 15.0, 1, 5) == ", about 35 s left"
