@@ -94,6 +94,15 @@ def test_a_sequential_test_ends_the_sampling_at_the_same_sample(tmp_path):
     assert lines_in(tmp_path / "ray") < 200
 
 
+@pytest.mark.parametrize("folder", ["/proc/none", "/etc/hostname", 120 * "x"])
+def test_a_cluster_that_does_not_start_is_reported_in_one_line(tmp_path, folder):
+    scenario(tmp_path, 2)
+    done = harness(tmp_path, "--on", "ray", RAY_TMPDIR=str(tmp_path / folder))
+    assert done.returncode == 3
+    [line] = done.stderr.splitlines()
+    assert line.startswith("harness: the Ray cluster on this machine cannot be reached: ")
+
+
 def test_a_killed_worker_loses_and_repeats_no_case(local):
     running = subprocess.Popen(
         command("-j", "2", "--on", "ray", "--report-dir", "killed"), cwd=local, env=ENVIRONMENT

@@ -226,7 +226,7 @@ def _connected(name: str, workers: int) -> Iterator[Any]:
         options |= {"address": address}
     try:
         _initialize(ray, options)
-    except (ConnectionError, ImportError, RuntimeError, ValueError) as error:
+    except Exception as error:  # Ray raises this class itself, and whatever its folder does
         where = "on this machine" if is_local else f"at '{address}'"
         raise HarnessError(f"the Ray cluster {where} cannot be reached: {error}") from error
     try:
