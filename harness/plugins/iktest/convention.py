@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
@@ -107,26 +107,30 @@ def answer_units(chain: Chain, convention: Convention) -> Iterator[Convention]:
 
 
 def with_fitted_zeros(
-    chain: Chain, task: Task, convention: Convention, pairs: Sequence[tuple[Target, FloatArray]]
+    chain: Chain,
+    task: Task,
+    convention: Convention,
+    pairs: Sequence[tuple[Target, FloatArray]],
+    *,
+    is_shifted: bool,
 ) -> Iterator[Convention]:
-    """The convention with zeros and a direction of joints for which answers reach their targets.
+    """The convention with zeros and directions of joints for which answers reach their targets.
 
-    Gauss-Newton on the offsets of all joints at once, for each joint in both directions and from
-    a few zeros, on the answers that fit best.
+    Gauss-Newton on the offsets of all joints at once, for up to two joints in the other direction
+    and from a few zeros, on the answers that fit best.
 
     Args:
         pairs: Targets and what the function answered.
+        is_shifted: Whether the base and the tool may be elsewhere, too.
     """
     if not pairs:
         return
     step = 1 + (len(pairs) - 1) // MOST_SAMPLES
     targets = [target.pose for target, _ in pairs[::step]]
     answers = np.array([answer for _, answer in pairs[::step]])
-    for joint, direction, start in product(range(chain.dof), (1.0, -1.0), STARTS):
-        scale, offset = convention.scale.copy(), np.zeros(chain.dof)
-        scale[joint] *= direction
-        offset[joint] = start if chain.is_turning[joint] else 0.0
-        found = _fitted_offset(chain, task, targets, scale * answers, offset)
+    for directions, offset in _starts(chain):
+        scale = directions * convention.scale
+        found = _fitted_offset(chain, task, targets, scale * answers, offset, is_shifted)
         if found is not None:
             turns = 2 * np.pi * np.round(found / (2 * np.pi)) * chain.is_turning
             found = np.round(found - turns, 9)
@@ -134,24 +138,61 @@ def with_fitted_zeros(
             yield replace(convention, scale=scale, offset=offset)
 
 
+def _starts(chain: Chain) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Directions and zeros of the joints from which a fit starts, shape (dof,) each."""
+    for joint, direction, start in product(range(chain.dof), (1.0, -1.0), STARTS):
+        directions, offset = np.ones(chain.dof), np.zeros(chain.dof)
+        directions[joint] = direction
+        offset[joint] = start if chain.is_turning[joint] else 0.0
+        yield directions, offset
+    for both in combinations(range(chain.dof), 2):
+        directions = np.ones(chain.dof)
+        directions[[*both]] = -1.0
+        yield directions, np.zeros(chain.dof)
+
+
 def _fitted_offset(
-    chain: Chain, task: Task, targets: Sequence[SE3], answers: FloatArray, offset: FloatArray
+    chain: Chain,
+    task: Task,
+    targets: Sequence[SE3],
+    answers: FloatArray,
+    offset: FloatArray,
+    is_shifted: bool,
 ) -> FloatArray | None:
-    """Offsets of the joints with which most answers reach their targets, or None."""
+    """Offsets of the joints with which most answers reach their targets, or None.
+
+    Of a shifted function its base is shifted in the world, its tool in the reached link.
+    """
     reach = max(chain.farthest()[1], 1e-6)
     count = max(1, round(KEPT * len(targets)))
+    base, tool = np.zeros((2, 3))
     for _ in range(MOST_STEPS):
         samples = answers + offset
+        reached = [chain.link_pose(each) for each in samples]
         errors = np.array(
             [
-                task_error(task, target, chain.link_pose(each), reach)
-                for target, each in zip(targets, samples, strict=True)
+                task_error(task, target, _shifted(pose, base, tool), reach)
+                for target, pose in zip(targets, reached, strict=True)
             ]
         )
         best = np.argsort(np.abs(errors).max(axis=1), kind="stable")[:count]
-        rows = task_jacobians(chain, task, samples[best]).reshape(-1, chain.dof)
+        columns = task_jacobians(chain, task, samples[best])
+        if is_shifted:
+            shifts = np.zeros((count, columns.shape[1], 6))
+            shifts[:, :3, :3] = np.eye(3) / reach
+            shifts[:, :3, 3:] = np.array([reached[each].rotation for each in best]) / reach
+            columns = np.concatenate([columns, shifts], axis=2)
+        rows = columns.reshape(-1, columns.shape[2])
         change = np.linalg.lstsq(rows, errors[best].ravel(), rcond=1e-9)[0]
-        offset = offset + change / max(1.0, float(np.abs(change).max()))
-        if np.abs(change).max() < CONVERGED:
+        size = float(np.abs(change).max())
+        change /= max(1.0, size)
+        offset = offset + change[: chain.dof]
+        if is_shifted:
+            base, tool = base + change[-6:-3], tool + change[-3:]
+        if size < CONVERGED:
             return offset if np.abs(errors[best]).max() < NEARLY_RIGHT else None
     return None
+
+
+def _shifted(pose: SE3, base: FloatArray, tool: FloatArray) -> SE3:
+    return SE3(pose.rotation, pose.translation + base + pose.rotation @ tool)

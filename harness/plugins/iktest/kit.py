@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -212,7 +213,7 @@ class _Search:
         plain, pairs = trial.convention, self._answers(targets)
         learned = self._learned(plain, pairs)
         if learned.share < MOSTLY:
-            found = next(self._conventions(targets, pairs), None)
+            found = next(self._conventions(targets), None)
             if found is not None:
                 learned, trial.other_convention = found, found.text(trial.chain)
         trial.count_by(learned.convention)
@@ -249,29 +250,28 @@ class _Search:
             pairs += [(target, each) for each in answers if np.all(np.isfinite(each))]
         return pairs
 
-    def _conventions(
-        self, targets: Sequence[Target], plain: Sequence[tuple[Target, FloatArray]]
-    ) -> Iterator[Learned]:
-        """Conventions by which most answers are right, the simplest first.
-
-        Args:
-            targets: Targets that the arm reaches.
-            plain: Answers to them by the convention of the contract.
-        """
+    def _conventions(self, targets: Sequence[Target]) -> Iterator[Learned]:
+        """Conventions by which most answers are right, the simplest first."""
         trial = self._trial
-        chain, words = trial.chain, trial.solver.words
-        for units in target_units(chain, words):
+        chain = trial.chain
+        answered: list[tuple[Convention, list[tuple[Target, FloatArray]]]] = []
+        for units in target_units(chain, trial.solver.words):
             trial.count_by(units)
-            pairs = self._answers(targets)
+            answered.append((units, self._answers(targets)))
             for convention in answer_units(chain, units):
-                yield from self._if_right(convention, pairs)
-        zeros = (
-            found
-            for units in answer_units(chain, Convention.plain(chain.dof))
-            for fitted in with_fitted_zeros(chain, trial.task, units, plain)
-            for found in self._if_right(fitted, plain)
-        )
-        yield from sorted(zeros, key=lambda found: found.convention.changes())
+                yield from self._if_right(convention, answered[-1][1])
+        most = max(len(pairs) for _, pairs in answered)
+        likely = [(units, pairs) for units, pairs in answered if len(pairs) >= KEPT * most]
+        for is_shifted, (target, pairs) in product((False, True), likely):
+            zeros = (
+                found
+                for units in answer_units(chain, target)
+                for fitted in with_fitted_zeros(
+                    chain, trial.task, units, pairs, is_shifted=is_shifted
+                )
+                for found in self._if_right(fitted, pairs)
+            )
+            yield from sorted(zeros, key=lambda found: found.convention.changes())
 
     def _if_right(
         self, convention: Convention, pairs: Sequence[tuple[Target, FloatArray]]

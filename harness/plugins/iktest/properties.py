@@ -113,6 +113,8 @@ def _refuses(trial: SolverTrial, target: Target) -> list[Flaw]:
     wrong = next((each for each in found if each is not None), None)
     if wrong is None:
         return []
+    if trial.offset is not None and wrong.kind == trial.offset.text():
+        return [wrong]
     return [trial.flaw("answers a target out of reach", wrong.detail, target, wrong.answer)]
 
 

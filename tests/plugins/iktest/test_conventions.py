@@ -34,6 +34,19 @@ def in_degrees(*answer):
     return [degrees(each) for each in answer]
 
 
+def both(first, second):
+    """Targets of one solver, the answers changed as by another."""
+
+    def ik(x, y, z, pitch):
+        return [second(*answer) for answer in first(x, y, z, pitch)]
+
+    return ik
+
+
+def lower_base(x, y, z, pitch):
+    return correct(x, y, z - 0.017, pitch)
+
+
 def centimetres_and_degrees(x, y, z, pitch):
     return [in_degrees(*each) for each in targets(0.01, pi / 180)(x, y, z, pitch)]
 
@@ -73,6 +86,57 @@ def test_a_convention_is_one_finding(ik, words):
     assert finding.kind == f"counts otherwise: every answer is right when {words}"
     assert finding.shown == finding.tried
     assert not report.has_passed
+
+
+REVERSED = "joint3 counts in the other direction"
+IN_MILLIMETRES = "the target is given in millimetres"
+
+
+@pytest.mark.parametrize(
+    ("ik", "words"),
+    [
+        (
+            both(targets(0.001), lambda a, b, c, d: [a, b, -c, d]),
+            f"{REVERSED} and {IN_MILLIMETRES}",
+        ),
+        pytest.param(
+            both(targets(0.001), lambda a, b, c, d: [a, b + 0.17, c, d]),
+            f"joint2 is 0.17 rad less and {IN_MILLIMETRES}",
+            marks=pytest.mark.nightly,
+        ),
+        pytest.param(
+            both(targets(angle=-1), lambda a, b, c, d: [a, b, -c, d]),
+            f"{REVERSED} and `pitch` counts upwards",
+            marks=pytest.mark.nightly,
+        ),
+        pytest.param(
+            answers(lambda a, b, c, d: [-a, b, -c, d]),
+            f"joint1 counts in the other direction and {REVERSED}",
+            marks=pytest.mark.nightly,
+        ),
+    ],
+)
+def test_two_conventions_at_once_are_one_finding(ik, words):
+    [finding] = run_ik_test(IkTest(ik, OM, examples=20)).findings
+    assert finding.kind == f"counts otherwise: every answer is right when {words}"
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda a, b, c, d: [a, b, -c, d], REVERSED),
+        (lambda a, b, c, d: [a, b + 0.17, c, d], "joint2 is 0.17 rad less"),
+        (in_degrees, "it is taken in degrees"),
+    ],
+)
+def test_a_convention_and_a_shifted_base_are_two_findings(change, words):
+    findings = run_ik_test(IkTest(both(lower_base, change), OM, examples=40)).findings
+    assert [each.kind for each in findings] == [
+        "counts otherwise: every answer is right, but for an error that is the same at every "
+        f"target, when {words}",
+        "is off by (0.0, 0.0, -17.0) mm in the world's axes, at every target",
+    ]
 
 
 @pytest.mark.nightly
