@@ -159,6 +159,9 @@ JointVelocity = Annotated[float, BeforeValidator(quantity("rad/s", "m/s"))]
 JointAcceleration = Annotated[float, BeforeValidator(quantity("rad/s**2", "m/s**2"))]
 JointJerk = Annotated[float, BeforeValidator(quantity("rad/s**3", "m/s**3"))]
 LinearAcceleration = Annotated[float, BeforeValidator(quantity("m/s**2"))]
+RestSpeed = Annotated[LinearVelocity, Field(gt=0, le=1)]
+RestTurning = Annotated[AngularVelocity, Field(gt=0, le=10)]
+"""The largest speed at which something still counts as at rest; what moves faster never does."""
 JointValue = Annotated[float, BeforeValidator(quantity("rad", "m"))]
 """A joint's position: rad where it turns, m where it slides; an `Angle` refuses the latter."""
 JointEffort = Annotated[float, BeforeValidator(quantity("N*m", "N"))]

@@ -44,6 +44,7 @@ class StepFields(SpecModel):
     Attributes:
         verb: The key of the step in a file; empty in classes that several steps share.
         synonyms: What other programs call the step; an error suggests the verb for them.
+        plans: Whether the step plans motions; `planning` has no effect on one that does not.
         moves_arm: Whether the step is one motion of the arm, which `parallel` can combine with a
             `gripper` step.
         has_corners: Whether that motion passes several points or goals.
@@ -60,6 +61,7 @@ class StepFields(SpecModel):
     plugin_kind: ClassVar[str] = "step"
     verb: ClassVar[str] = ""
     synonyms: ClassVar[tuple[str, ...]] = ()
+    plans: ClassVar[bool] = True
     moves_arm: ClassVar[bool] = False
     has_corners: ClassVar[bool] = False
     is_arc: ClassVar[bool] = False

@@ -323,6 +323,13 @@ class _Compiler:
             for keys, obj in spec.new_objects():
                 with self._gaps_allowed(obj.name):
                     self._later_object(obj, (*loc, *keys))
+        if spec.planning is not None and not spec.plans:
+            self.problems.add(
+                (*loc, "planning"),
+                f"`planning` has no effect on `{spec.verb}`, which plans nothing itself",
+                "write it at a step that moves the arm, or at the top of the file for all of them",
+                needs=(),
+            )
         if spec.group is not None:
             self.scope.check_group(spec.group, (*loc, "group"))
         stated = self.scope.arm_of(spec.robot, spec.group, loc)

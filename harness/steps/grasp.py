@@ -47,6 +47,7 @@ class Grasp(Step):
     short = "object"
 
     verb: ClassVar[str] = "grasp"
+    plans: ClassVar[bool] = False
     moves_gripper: ClassVar[bool] = True
     keeps_arm_still: ClassVar[bool] = True
     results = (GripperOutcome, GraspMode)

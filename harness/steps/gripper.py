@@ -27,6 +27,7 @@ class Gripper(Step):
     one_of = ("named_target", "position", "width")
 
     verb: ClassVar[str] = "gripper"
+    plans: ClassVar[bool] = False
     synonyms = ("open_gripper", "close_gripper", "hand")
     moves_gripper: ClassVar[bool] = True
     keeps_arm_still: ClassVar[bool] = True

@@ -20,6 +20,7 @@ class Include(Step):
     short = "file"
 
     verb: ClassVar[str] = "include"
+    plans: ClassVar[bool] = False
 
     file: str = Field(description="The path of the file, from this file.")
     params: dict[Name, Any] = Field(

@@ -17,6 +17,7 @@ class MoveObject(Step):
     """Put an object somewhere else, at rest."""
 
     verb: ClassVar[str] = "move_object"
+    plans: ClassVar[bool] = False
     synonyms = ("teleport", "set_model_pose", "set_entity_pose")
     moves_objects: ClassVar[bool] = True
 

@@ -31,6 +31,7 @@ class Release(Step):
     short = "object"
 
     verb: ClassVar[str] = "release"
+    plans: ClassVar[bool] = False
     moves_gripper: ClassVar[bool] = True
     keeps_arm_still: ClassVar[bool] = True
     detaches_object: ClassVar[bool] = True

@@ -27,6 +27,7 @@ class Repeat(Step):
     """Run the same steps several times; an `id` inside gets `#1`, `#2` ... appended to it."""
 
     verb: ClassVar[str] = "repeat"
+    plans: ClassVar[bool] = False
     synonyms = ("loop", "for")
     results = (Times,)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
 from harness.cell.cell import Cell
 from harness.cell.step import Step
-from harness.language.base import LinearVelocity
+from harness.language.base import RestSpeed
 
 DEFAULT_TIMEOUT = 10.0  # [s] of simulation
 
@@ -19,9 +19,10 @@ class Settle(Step):
     short = "max_velocity"
 
     verb: ClassVar[str] = "settle"
+    plans: ClassVar[bool] = False
     keeps_arm_still: ClassVar[bool] = True
 
-    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+    max_velocity: RestSpeed = Field(
         default=1e-3,
         description="Every object [m/s] and every joint [rad/s] is slower than this at the end.",
     )

@@ -35,6 +35,7 @@ class Wait(Step):
     one_of = ("duration", "until")
 
     verb: ClassVar[str] = "wait"
+    plans: ClassVar[bool] = False
     synonyms = ("sleep", "delay", "pause")
     keeps_arm_still: ClassVar[bool] = True
     keys_inside: ClassVar[tuple[str, ...]] = ("timeout",)

@@ -160,6 +160,39 @@ def test_a_key_that_changes_no_verdict_is_refused(expected, message, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("expected", "is_possible"),
+    [
+        ("placed: {object: cube, max_velocity: 5}", False),
+        ("placed: {object: cube, max_velocity: 5 cm/s}", True),
+        ("static: {max_velocity: 100 m/s}", False),
+        ("static: {object: cube, max_angular_velocity: 50}", False),
+        ("static: {object: cube, max_angular_velocity: 50 deg/s}", True),
+    ],
+)
+def test_what_moves_fast_is_never_at_rest(expected, is_possible, tmp_path):
+    said = messages(tmp_path, rest=f"objects: [{CUBE % 'cube'}]\nexpect: [{{{expected}}}]")
+    assert (said == []) == is_possible, said
+
+
+@pytest.mark.parametrize(
+    ("step", "has_effect"),
+    [
+        ("wait: 1 s", False),
+        ("settle: 1 cm/s", False),
+        ("gripper: open", False),
+        ("repeat: {times: 2, steps: [{wait: 1 s}]}", False),
+        ("remove_object: cube", False),
+        ("move_to: home", True),
+        ("pick: cube", True),
+    ],
+)
+def test_planning_parameters_of_a_step_that_plans_nothing_are_refused(step, has_effect, tmp_path):
+    text = f"- {{{step}, planning: {{padding: 3 mm}}}}"
+    said = messages(tmp_path, text, rest=f"objects: [{CUBE % 'cube'}]")
+    assert not any("`planning` has no effect on" in each for each in said) == has_effect, said
+
+
+@pytest.mark.parametrize(
     "step",
     [
         "release: {object: cube, named_target: open, position: 5 mm}",

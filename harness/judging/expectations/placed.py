@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -40,7 +40,7 @@ from harness.judging.observations import Observations
 from harness.judging.poses import JUMP, UP, frame_poses, object_poses, present, start_samples
 from harness.judging.support import required_support, standing, supports
 from harness.judging.window import Window, object_record
-from harness.language.base import AngularVelocity, LinearVelocity, Name
+from harness.language.base import Name, RestSpeed, RestTurning
 from harness.language.expectation import Quantity
 from harness.language.poses import Pose, PoseTolerance
 from harness.recording.run import Run
@@ -89,10 +89,10 @@ class Placed(ObjectPredicate):
         description="The tolerance of `pose`; by default 1 cm, and turns about the vertical are"
         " free. `{position: 5 mm}` requires the orientation too, to its default of 0.01 rad.",
     )
-    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+    max_velocity: RestSpeed = Field(
         default=0.005, description="The largest speed of an object at rest [m/s]."
     )
-    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
+    max_angular_velocity: RestTurning = Field(
         default=0.05, description="The largest turning speed of an object at rest [rad/s]."
     )
 

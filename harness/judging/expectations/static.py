@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 from pydantic import Field
 
@@ -14,7 +12,7 @@ from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.poses import physical_poses, present
 from harness.judging.window import Window, lasting
-from harness.language.base import AngularVelocity, LinearVelocity, Name
+from harness.language.base import Name, RestSpeed, RestTurning
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
@@ -41,11 +39,11 @@ class Static(Predicate):
         default=None,
         description="The name of the object; by default every dynamic object and the robot.",
     )
-    max_velocity: Annotated[LinearVelocity, Field(gt=0)] = Field(
+    max_velocity: RestSpeed = Field(
         default=0.005,
         description="The largest speed of objects [m/s] and of joints that slide [m/s].",
     )
-    max_angular_velocity: Annotated[AngularVelocity, Field(gt=0)] = Field(
+    max_angular_velocity: RestTurning = Field(
         default=0.05,
         description="The largest turning speed of objects and of joints that turn [rad/s].",
     )

@@ -42,6 +42,7 @@ class Parallel(Step):
     short_is_list = True
 
     verb: ClassVar[str] = "parallel"
+    plans: ClassVar[bool] = False
     results = (Delays,)
 
     steps: Annotated[tuple[AnyStep, ...], Field(min_length=2)] = Field(

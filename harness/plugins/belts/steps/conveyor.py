@@ -38,6 +38,7 @@ class Conveyor(Step):
     """
 
     verb: ClassVar[str] = "conveyor"
+    plans: ClassVar[bool] = False
     synonyms = ("belt", "turntable")
     some_of = ("velocity", "rotation")
     keeps_arm_still: ClassVar[bool] = True

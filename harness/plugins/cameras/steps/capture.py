@@ -22,6 +22,7 @@ class Capture(Step):
     short = "camera"
 
     verb: ClassVar[str] = "capture"
+    plans: ClassVar[bool] = False
     synonyms = ("photo", "take_picture", "snapshot")
     results = (TakenPicture,)
 

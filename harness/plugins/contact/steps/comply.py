@@ -52,6 +52,7 @@ class Comply(Step):
     """
 
     verb: ClassVar[str] = "comply"
+    plans: ClassVar[bool] = False
     synonyms = ("impedance", "compliance", "force_mode")
     some_of = ("stiffness", "wrench")
     results = (Yielded,)

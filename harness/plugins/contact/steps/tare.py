@@ -47,6 +47,7 @@ class Tare(Step):
 
     short = "sensor"
     verb: ClassVar[str] = "tare"
+    plans: ClassVar[bool] = False
     synonyms = ("zero_ftsensor", "zero_sensor")
     keeps_arm_still: ClassVar[bool] = True
     results = (Tared,)

@@ -67,14 +67,38 @@ def _calculated(operator: str, ranges: list[Range]) -> Range:
 
 
 def decided(comparison: Comparison, of_signal: RangeOf = range_of_signal) -> bool | None:
-    """Whether a comparison holds in every run, or in none; None where a run decides."""
-    left = range_of(comparison.left, of_signal)
-    right = range_of(comparison.right, of_signal)
+    """Whether a comparison holds in every run, or in none; None where a run decides.
+
+    What both sides have in common is cancelled: `z(box) < z(box) + 1` holds in every run.
+    """
+    terms = _terms(comparison.left)
+    for key, (node, factor) in _terms(comparison.right).items():
+        terms[key] = node, terms.get(key, (node, 0.0))[1] - factor
+    low = high = 0.0
+    for node, factor in terms.values():
+        if factor:
+            least, most = _calculated("*", [(factor, factor), range_of(node, of_signal)])
+            low, high = low + least, high + most
     if comparison.operator.startswith("<"):
-        left, right = right, left
-    if left[0] > right[1] or left[1] < right[0]:
-        return left[0] > right[1]
-    is_strict = "=" not in comparison.operator
-    if is_strict:
-        return False if left[1] == right[0] else None
-    return True if left[0] == right[1] else None
+        low, high = -high, -low
+    if "=" in comparison.operator:
+        return True if low >= 0 else False if high < 0 else None
+    return True if low > 0 else False if high <= 0 else None
+
+
+def _terms(node: Number) -> dict[str, tuple[Number, float]]:
+    """What a number is the sum of, each with its factor, by a text that is equal for equal ones."""
+    if isinstance(node, Arithmetic) and node.operator in ("+", "-", "neg"):
+        found: dict[str, tuple[Number, float]] = {}
+        signs = {"+": (1.0, 1.0), "-": (1.0, -1.0), "neg": (-1.0,)}[node.operator]
+        for operand, sign in zip(node.operands, signs, strict=True):
+            for key, (part, factor) in _terms(operand).items():
+                found[key] = part, found.get(key, (part, 0.0))[1] + sign * factor
+        return found
+    return {_key(node): (node, 1.0)}
+
+
+def _key(node: Number) -> str:
+    if isinstance(node, Arithmetic):
+        return f"{node.operator}({', '.join(_key(each) for each in node.operands)})"
+    return repr(node.value) if isinstance(node, Const) else str(node)

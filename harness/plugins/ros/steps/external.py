@@ -29,6 +29,7 @@ class External(Step):
     """
 
     verb: ClassVar[str] = "external"
+    plans: ClassVar[bool] = False
     keys_inside: ClassVar[tuple[str, ...]] = ("timeout",)
     results = (ExternalResult,)
 

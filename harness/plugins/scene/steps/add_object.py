@@ -22,6 +22,7 @@ class AddObject(Step):
     short_is_list = True
 
     verb: ClassVar[str] = "add_object"
+    plans: ClassVar[bool] = False
     synonyms = ("spawn", "add", "create_object", "add_collision_object")
     moves_objects: ClassVar[bool] = True
 

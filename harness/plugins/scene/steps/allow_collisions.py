@@ -23,6 +23,7 @@ class AllowCollisions(Step):
     """Allow collisions of pairs while the nested steps run."""
 
     verb: ClassVar[str] = "allow_collisions"
+    plans: ClassVar[bool] = False
     results = (AllowedCollisions,)
 
     pairs: Annotated[tuple[tuple[Name, Name], ...], Field(min_length=1)] = Field(

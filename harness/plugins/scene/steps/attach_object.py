@@ -21,6 +21,7 @@ class AttachObject(Step):
     short = "object"
 
     verb: ClassVar[str] = "attach_object"
+    plans: ClassVar[bool] = False
 
     object: Annotated[
         Annotated[Name, Tag("one")] | Annotated[ObjectSpec, Tag("many")], Discriminator(kind_of)

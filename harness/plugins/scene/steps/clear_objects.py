@@ -16,6 +16,7 @@ class ClearObjects(Step):
     """Remove the objects that steps added; with `world: true` the world's objects too."""
 
     verb: ClassVar[str] = "clear_objects"
+    plans: ClassVar[bool] = False
     moves_objects: ClassVar[bool] = True
 
     world: Flag = Field(default=False, description="The world's objects are removed too.")

@@ -27,6 +27,7 @@ class DetachObject(Step):
     short = "object"
 
     verb: ClassVar[str] = "detach_object"
+    plans: ClassVar[bool] = False
     detaches_object: ClassVar[bool] = True
     results = (Detached,)
 

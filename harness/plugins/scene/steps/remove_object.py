@@ -19,6 +19,7 @@ class RemoveObject(Step):
     short_is_list = True
 
     verb: ClassVar[str] = "remove_object"
+    plans: ClassVar[bool] = False
     synonyms = ("delete", "remove", "despawn", "delete_object")
     moves_objects: ClassVar[bool] = True
 
