@@ -9,7 +9,7 @@ from harness.core.quantity import distinct
 from harness.judging.expectation import Predicate
 from harness.judging.margins import MarginSignal, Part, all_of
 from harness.judging.window import NotReached, Window
-from harness.language.base import Duration
+from harness.language.base import PositiveDuration
 from harness.language.expectation import Quantity
 from harness.recording.verdict import Measure
 
@@ -26,11 +26,11 @@ class DurationCheck(Predicate):
     sentence = "duration is[ at least {at_least}][ at most {at_most}]"
     quantities = (DURATION,)
 
-    at_most: Duration | None = Field(
+    at_most: PositiveDuration | None = Field(
         default=None,
         description="The longest simulated time that the step or the run may take [s].",
     )
-    at_least: Duration | None = Field(
+    at_least: PositiveDuration | None = Field(
         default=None,
         description="The shortest simulated time that the step or the run may take [s].",
     )

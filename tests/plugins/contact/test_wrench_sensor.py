@@ -254,6 +254,8 @@ TWO = ", wrench_sensors: {wrist: rh_p12_rn_base, elbow: forearm_link}"
         ("", "expect: [{wrench: {below: 5}}]", ["6:", "no sensor of force and torque"]),
         (ONE, "expect: [{wrench: {below: 5, above: 6}}]", ["6:", "must not be more than"]),
         (ONE, "expect: [{wrench: {below: 0}}]", ["6:", "a magnitude, which is never below 0"]),
+        (ONE, "expect: [{wrench: {above: 0}}]", ["6:", "a magnitude, which is never below 0"]),
+        (ONE, "expect: [{wrench: {torque_above: -1}}]", ["6:", "a magnitude, which is never"]),
         (ONE, "expect: [{wrench: {below: 5 N*m}}]", ["6:", "N*m"]),
         (ONE, "expect: [{wrench: {sensor: wrist}}]", ["6:", "`torque_above`"]),
         (ONE, "expect: [{wrench: {below: 5, direction: {xyz: [0, 0, 1], frame: wirst}}}]", ["6:"]),

@@ -75,11 +75,12 @@ class Wrench(Predicate):
             least, most = getattr(self, low), getattr(self, high)
             if least is not None and most is not None and least > most:
                 raise ValueError(f"`{low}` must not be more than `{high}`")
-            if self.direction is None and most is not None and most <= 0:
-                raise ValueError(
-                    f"`{high}` bounds a magnitude, which is never below 0; a component along a"
-                    " `direction` may be"
-                )
+            for key, bound in ((low, least), (high, most)):
+                if self.direction is None and bound is not None and bound <= 0:
+                    raise ValueError(
+                        f"`{key}` bounds a magnitude, which is never below 0; a component along a"
+                        " `direction` may be"
+                    )
         return self
 
     def check(self, at: At) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
+from harness.cell.scope import At
 from harness.core.amounts import amounts
 from harness.core.types import FloatArray
 from harness.judging.expectation import Predicate
@@ -43,6 +44,17 @@ class Jerk(Predicate):
         description="The time over which velocities and accelerations change [s]; that between two"
         " samples, where it is longer.",
     )
+
+    def check(self, at: At) -> None:
+        fastest = max((each.velocity for each in at.scope.description.movable_joints), default=0.0)
+        largest = 4 * fastest / self.window**2  # the velocity changes its sign twice
+        if self.at_most >= largest > 0:
+            at.scope.problems.add(
+                at.key("at_most"),
+                f"no jerk is beyond this: joints that move at most {fastest:.3g} rad/s or m/s have"
+                f" at most {largest:.3g} over {self.window:g} s",
+                "give a smaller `at_most`, or a shorter `window`",
+            )
 
     def signal(self, window: Window) -> MarginSignal:
         """Largest jerk of a joint at each sample [rad/s^3 or m/s^3].
