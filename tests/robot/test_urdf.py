@@ -53,6 +53,25 @@ def test_what_is_no_urdf_is_refused_by_name(text, words):
         assert word in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("<robot name='a'><!-- a -- b --></robot>", "no `--` in a comment"),
+        ("<robot name='a & b'/>", "`&amp;` for &"),
+        ("<robot name=a/>", "values in quotes"),
+        ("<robot name='a'><link name='b'></robot>", "<link> of line 1 is not closed"),
+        ("<robot name='a'><link name='b'/>", "<robot> of line 1 is not closed"),
+        ("<robot name='a'><link name='b' name='c'/></robot>", ""),
+    ],
+)
+def test_the_advice_on_broken_xml_names_what_breaks_it(text, advice):
+    with pytest.raises(SpecError) as caught:
+        read(text)
+    [problem] = caught.value.problems
+    assert advice in problem.hint
+    assert bool(problem.hint) == bool(advice)
+
+
 def test_soft_limits_narrow_the_position_limits():
     soft = '<safety_controller soft_lower_limit="-0.5" soft_upper_limit="2" k_velocity="0"/>'
     joint = read(ARM.format(limit=LIMIT + soft)).joints[0]

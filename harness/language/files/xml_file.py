@@ -126,6 +126,18 @@ def parse_xml(content: str | bytes, named: str) -> XmlElement:
     return XmlReader(content, named).root()
 
 
+INVALID_TOKEN = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
+UNFINISHED = {
+    expat.errors.codes[each]
+    for each in (
+        expat.errors.XML_ERROR_NO_ELEMENTS,
+        expat.errors.XML_ERROR_UNCLOSED_TOKEN,
+        expat.errors.XML_ERROR_TAG_MISMATCH,
+    )
+}
+"""What expat says of a file that ends, or closes another element, before one is closed."""
+
+
 class XmlReader:
     """Builds elements from expat's events."""
 
@@ -150,7 +162,7 @@ class XmlReader:
             place = Place(self._quoted(), error.lineno, error.offset + 1)
             reason = expat.errors.messages.get(error.code, "")
             message = f"not well-formed XML: {reason or expat.ErrorString(error.code)}"
-            raise SpecError([place.problem(message, self._still_open())]) from error
+            raise SpecError([place.problem(message, self._advice(error.code))]) from error
         except (LookupError, ValueError) as error:  # the encoding that it declares
             raise SpecError(
                 [Place(self._quoted(), 1, 1).problem(str(error), "write the file in UTF-8")]
@@ -158,8 +170,10 @@ class XmlReader:
         assert self._root is not None
         return self._root
 
-    def _still_open(self) -> str:
-        if not self._open or not self._quoted().lines:
+    def _advice(self, code: int) -> str:
+        if code == INVALID_TOKEN:
+            return "write `&amp;` for &, `&lt;` for <, values in quotes, and no `--` in a comment"
+        if code not in UNFINISHED or not self._open or not self._quoted().lines:
             return ""
         last = self._open[-1]
         return f"<{last.tag}> of line {last.place.line} is not closed before this"
