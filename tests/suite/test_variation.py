@@ -232,6 +232,23 @@ def test_what_the_cases_follow_from_does_not_vary_with_them(tmp_path, lines, sai
 
 
 @pytest.mark.parametrize(
+    ("drawn", "is_free"),
+    [("params.n", False), ("n", False), ("params.low", True)],
+)
+@pytest.mark.parametrize("cases", ["{params.n: [3, 4]}", "{n: [3, 4]}", "[{id: a, n: 3}]"])
+def test_what_the_cases_set_is_not_drawn_as_well(tmp_path, cases, drawn, is_free):
+    file = tmp_path / "a.scenario.yaml"
+    draws = f"randomize: {{{drawn}: {{choice: [5, 6]}}}}\n"
+    file.write_text(f"{HEADER}samples: 2\nparametrize: {cases}\n{draws}")
+    if is_free:
+        assert load_scenario(file)
+        return
+    with pytest.raises(SpecError, match="is set by the cases of `parametrize`") as caught:
+        load_scenario(file)
+    assert caught.value.problems[0].line == 9
+
+
+@pytest.mark.parametrize(
     "lines", ["expect_rate: 1\nrandomize: {}", "redraw_overlaps: true\nrandomize: {}"]
 )
 def test_an_empty_randomize_draws_nothing(tmp_path, lines):

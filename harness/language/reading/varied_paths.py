@@ -34,6 +34,7 @@ def check_variation(
     """
     drawn: dict[str, list[Override]] = {}
     _, decisive = case_entries(root, [])
+    problems += _set_twice(root)
     for paths, is_random in ((_parametrized(root), False), (_randomized(root), True)):
         for path, entry in paths:
             if path.partition(".")[0] in VARIATION_KEYS:
@@ -48,6 +49,21 @@ def check_variation(
                 if is_random and not wrong and not is_known:
                     drawn[path] = _corners(path, entry)
     _check_values(root, {path: values for path, values in drawn.items() if values}, judge, problems)
+
+
+def _set_twice(root: Located) -> Iterator[Problem]:
+    """Draws of what the cases of `parametrize` set, of which one would be overwritten."""
+    params = root.mapping()[PARAMS].value.mapping() if PARAMS in root.mapping() else {}
+
+    def whole(path: str) -> str:
+        return f"{PARAMS}.{path}" if path.partition(".")[0] in params else path
+
+    cases = {f"{whole(path)}." for path, _ in _parametrized(root)}
+    for path, entry in _randomized(root):
+        here = f"{whole(path)}."
+        if any(each.startswith(here) for each in cases):
+            message = f"`{path}` is set by the cases of `parametrize`"
+            yield entry.key.problem(message, "leave it out of one of them")
 
 
 def _why_constant(root: Located, path: str, decisive: Set[str]) -> str:
