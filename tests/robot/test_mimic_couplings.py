@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from harness.session.observation.couplings import coupling_findings
+from harness.simulation.robot_mjcf import joint_range
 from tests.robot.arm_files import load_arm, write_arm
 from tests.robot.hands import BLOCK, HAND, PALM, PICK, SIX
 from tests.session.front_door import run
@@ -44,6 +45,24 @@ def test_a_follower_s_damping_acts_at_the_joint_that_it_follows(tmp_path):
     joints = load_arm(tmp_path, srdf=None).joint_by_name
     assert joints["left_joint"].damping == pytest.approx(0.7 * (1 + 0.25 + 1 + 1))
     assert joints["right_joint"].damping == joints["left_tip_joint"].damping == 0
+
+
+@pytest.mark.parametrize(
+    ("multiplier", "limits", "expected"),
+    [("-1", (0, 1), (0, 1)), ("-1", (-0.5, 1), (0, 0.5)), ("2", (0, 1), (0, 0.5))],
+)
+def test_limits_of_a_follower_narrow_its_leader_unless_they_leave_nothing(
+    tmp_path, multiplier, limits, expected
+):
+    """The fingers of PR2 follow with -1, within limits of the other sign."""
+    text = hand(0.7).replace(MIMIC, f'<mimic joint="left_joint" multiplier="{multiplier}"/>', 1)
+    write_arm(tmp_path, SIX.replace(HAND, text))
+    arm = load_arm(tmp_path, srdf=None)
+    lower, upper = limits
+    follower = replace(arm.joint_by_name["right_joint"], lower=lower, upper=upper)
+    joints = tuple(follower if each.name == follower.name else each for each in arm.joints)
+    arm = replace(arm, joints=joints)
+    assert joint_range(arm, arm.joint_by_name["left_joint"]) == pytest.approx(expected)
 
 
 @pytest.mark.nightly(but=["3"])

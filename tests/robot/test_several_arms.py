@@ -140,6 +140,29 @@ def test_an_srdf_names_arms_by_its_end_effectors(tmp_path):
     assert stated.arms[0].name == stated.arm_group == "other_arm"
 
 
+WAISTED = """<group name="long_one"><chain base_link="root" tip_link="l_5"/></group>
+<group name="long_other"><chain base_link="root" tip_link="r_5"/></group>"""
+
+
+@pytest.mark.parametrize("is_waist_first", [True, False])
+def test_an_end_effector_that_names_no_arm_hangs_on_the_shortest_one(tmp_path, is_waist_first):
+    """As of PR2: its end effectors have a parent link alone, and a torso carries both arms."""
+    groups = SRDF.replace(' parent_group="one_arm"', "").replace(' parent_group="other_arm"', "")
+    head = groups.partition("\n")[0]
+    place = head if is_waist_first else '<group name="one_hand">'
+    groups = groups.replace(place, head + WAISTED if is_waist_first else WAISTED + place)
+    (tmp_path / "two.srdf").write_text(groups, encoding="utf-8")
+    waist = LINK.format(name="body", parent="root", x=0, axis="0 0 1").replace(
+        "body_joint", "waist"
+    )
+    sides = side("l", -0.4, 6) + side("r", 0.4, 6)
+    text = f"<robot name='two'><link name='root'/>{waist}{sides}</robot>"
+    (tmp_path / "two.urdf").write_text(text, encoding="utf-8")
+    spec = RobotSpec.model_validate({"urdf": "two.urdf", "srdf": "two.srdf"})
+    grippers = {arm.name: arm.gripper.group for arm in load_robot(spec, tmp_path).arms}
+    assert grippers == {"one_arm": "one_hand", "other_arm": "other_hand"}
+
+
 @pytest.mark.parametrize("joints", [2, 4])
 def test_chains_as_short_as_fingers_are_no_arms(tmp_path, joints):
     found = two_armed(tmp_path, joints)

@@ -30,7 +30,7 @@ from harness.robot.groups import planning_groups
 from harness.robot.mechanism import Joint
 from harness.robot.robot_yaml import RobotYaml
 from harness.robot.srdf.all_arms import with_group_of_all
-from harness.robot.srdf.srdf import Srdf
+from harness.robot.srdf.srdf import EndEffector, Srdf
 from harness.robot.urdf.urdf import Urdf
 
 DAMPED_SHARE = 0.5  # Share of a joint's effort that its damping may take at the velocity limit
@@ -81,6 +81,7 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     limited = tuple(_limited(joint, described_in, notes) for joint in joints)
     urdf = replace(urdf, joints=limited)
     groups = planning_groups(srdf, urdf.joints, source)
+    srdf = _with_parent_groups(srdf, groups)
     arm = _arm_group(spec, srdf, groups, source)
     last = next(j.child for j in urdf.joints[::-1] if j.name == arm.joint_names[-1])
     tip = arm.tip_link or last
@@ -137,13 +138,31 @@ def imported_part(spec: RobotSpec, urdf: Urdf, srdf: Srdf, path: Path, source: s
     )
 
 
+def _with_parent_groups(srdf: Srdf, groups: Mapping[str, PlanningGroup]) -> Srdf:
+    """The SRDF with the arm of each of several end effectors that name none.
+
+    As in MoveIt, it is the group that ends at the parent link with the fewest joints: an arm, and
+    not the arm with its torso.
+    """
+    if len(srdf.end_effectors) < 2:
+        return srdf
+
+    def parent_group(tool: EndEffector) -> str:
+        ends = [each for each in groups.values() if each.tip_link == tool.parent_link]
+        nearest = min(ends, key=lambda each: len(each.joint_names), default=None)
+        return tool.parent_group or (nearest.name if nearest else "")
+
+    tools = tuple(replace(tool, parent_group=parent_group(tool)) for tool in srdf.end_effectors)
+    return replace(srdf, end_effectors=tools)
+
+
 def other_arms(
     first: PlanningGroup, srdf: Srdf, groups: Mapping[str, PlanningGroup]
 ) -> list[PlanningGroup]:
     """The arms besides the first: chains of other joints that carry a tool, or are no fingers."""
     parents = {tool.parent_group for tool in srdf.end_effectors}
     found = [first]
-    for group in groups.values():
+    for group in sorted(groups.values(), key=lambda each: each.name not in parents):
         is_chain = bool(group.tip_link and group.joint_names)
         is_arm = group.name in parents or len(group.joint_names) > MOST_FINGER_JOINTS
         taken = {name for each in found for name in each.joint_names}
