@@ -202,8 +202,8 @@ def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:
     refuse_unreadable(geometry.path.read_bytes(), geometry.path.name)
     unknown = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
     try:
-        with warnings.catch_warnings():  # the library uses numpy.matrix
-            warnings.simplefilter("ignore", PendingDeprecationWarning)
+        with warnings.catch_warnings():  # the library uses numpy.matrix, and sets shapes of arrays
+            warnings.simplefilter("ignore")
             scene = collada.Collada(str(geometry.path), ignore=unknown).scene
             pieces = _pieces(scene, scale) if scene else {}
     except (collada.common.DaeError, AttributeError, ValueError, IndexError) as error:
