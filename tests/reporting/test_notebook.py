@@ -4,14 +4,16 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
+import pytest
 
 from harness.reporting.notebook import result_html
+from harness.reporting.suite.failure_picture import deciding_still
 from tests.reporting.suites import BROKEN, HOSTILE, STUCK, failed, passed
 
 
 def test_a_result_shows_its_outcome_and_its_verdicts():
     shown = result_html(passed(0))
-    assert ">passed</b> Pick [c0]" in shown
+    assert ">passed</b> <b>Pick [c0]</b>" in shown
     assert "lifted cube" in shown
     assert "passed by 10.0 mm" in shown
     assert "<pre>" not in shown
@@ -26,6 +28,28 @@ def test_a_failure_shows_its_causes_its_picture_and_its_page(tmp_path):
     assert 'src="data:image/webp;base64,' in shown
     assert f'href="{page.as_uri()}#t=4.00&amp;tab=planner"' in shown
     assert "height: 30.0 mm (at least 50.0 mm)" in result_html(failed(1))
+
+
+@pytest.mark.parametrize(
+    ("files", "shown"),
+    [
+        (["01-go.jpg"], "01-go.jpg"),
+        (["01-go.jpg", "01-go-why.jpg"], "01-go-why.jpg"),
+        (["01-steps-0.jpg", "01-steps-0-why.jpg", "02-b-why.jpg"], "01-steps-0-why.jpg"),
+        (["02-b.jpg"], None),
+    ],
+)
+def test_the_picture_that_explains_a_failure_is_the_one_that_is_shown(tmp_path, files, shown):
+    (tmp_path / "images").mkdir()
+    for name in files:
+        (tmp_path / "images" / name).touch()
+    found = deciding_still(replace(STUCK, report_dir=str(tmp_path)))
+    assert (found and found.name) == shown
+
+
+def test_everything_that_was_found_is_folded_where_the_table_says_it():
+    assert "<details><summary" in result_html(failed(1))
+    assert "<details open><summary" in result_html(STUCK), "what a step says is in no table"
 
 
 def test_what_does_not_hold_stands_first_and_no_line_is_wider_than_the_cell():

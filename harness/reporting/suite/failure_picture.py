@@ -19,14 +19,15 @@ def picture_of(case: SuiteCase) -> str:
 def deciding_still(result: CaseResult) -> Path | None:
     """The picture of the step within which a case failed, else of the last one.
 
-    Pictures are numbered as the steps that were carried out: `03-pick-lift.jpg`; what explains a
-    failure comes last.
+    Pictures are numbered as the steps that were carried out: `03-pick-lift.jpg`. The one that
+    explains a failure comes first: `03-pick-lift-why.jpg`.
     """
     if not result.report_dir:
         return None
     number = _deciding_step(result)
     files = sorted(Path(result.report_dir, "images").glob(f"{number:02d}-*.jpg"))
-    return files[-1] if files else None
+    why = [file for file in files if file.stem.endswith("-why")]
+    return next(iter([*why, *files]), None)
 
 
 def deciding_picture(result: CaseResult, width: int) -> bytes | None:
