@@ -23,9 +23,11 @@ from harness.core.limits import READING_MEMORY
 from harness.core.memory import limited_memory
 from harness.core.types import FloatArray, IntArray
 from harness.core.user_cache import cached, store
+from harness.core.world import WorldObject
 from harness.language.base import LARGEST_NUMBER
 from harness.language.files.yaml_file import read_text
 from harness.robot.collada import refuse_unreadable
+from harness.robot.description import RobotDescription
 from harness.robot.mesh_file import metres_per_unit, read_triangles
 
 GRID = 0.002  # [m], of the cells in which vertices merge: about a pixel in a picture of an arm
@@ -180,6 +182,15 @@ def mesh_parts(geometry: Mesh) -> tuple[MeshPart, ...]:
         raise
     except (RobotError, OSError, ValueError, IndexError, MemoryError):
         return ()
+
+
+def undrawn(description: RobotDescription, objects: Sequence[WorldObject]) -> tuple[str, ...]:
+    """Names of mesh files that cannot be drawn, sorted."""
+    looks = [link.visuals for link in description.links]
+    looks += [obj.visuals or obj.shapes for obj in objects]
+    shapes = [shape.geometry for look in looks for shape in look]
+    meshes = [geometry for geometry in shapes if isinstance(geometry, Mesh)]
+    return tuple(sorted({mesh.path.name for mesh in meshes if not mesh_parts(mesh)}))
 
 
 def load_collada(geometry: Mesh) -> tuple[MeshPart, ...]:

@@ -180,6 +180,10 @@ class Registry(Mapping[str, P]):
         """The module that defines a plug-in, or is a built-in one."""
         return self._built_in_modules.get(name) or str(getattr(self[name], "__module__", ""))
 
+    def built_in_modules(self) -> tuple[str, ...]:
+        """The modules of the built-in plug-ins."""
+        return tuple(self._built_in_modules.values())
+
     @property
     def built_in_names(self) -> Set[str]:
         """The names of the built-in plug-ins, which may not be imported yet."""

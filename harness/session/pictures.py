@@ -9,11 +9,16 @@ from functools import partial
 
 import numpy as np
 
-from harness.cameras.camera_recorder import CameraRecorder, Captures
+from harness.cameras.camera_recorder import (
+    CameraRecorder,
+    Captures,
+    Stills,
+    camera_recorder,
+    has_recorder,
+)
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
-from harness.core.registry import registry
 from harness.judging.pictures import looks_of_expectations
 from harness.recording.drawings import Drawings
 from harness.recording.explanation import Explanation, recorded_explanation
@@ -26,6 +31,7 @@ from harness.session.prepare import Prepared
 from harness.session.run_request import RunRequest
 
 FOLDER = "images"
+NOT_DRAWN = "no pictures of steps: this installation has no plug-in that draws them"
 MOST_EXPLAINED = 100  # most failed steps of which the state that explains them is drawn, 0.2 s each
 
 
@@ -95,12 +101,11 @@ class Pictures:
 
 
 def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
-    return _recorder(prepared, run).pictures(looks, activity)
+    return _recorder(prepared).pictures(run, looks, activity)
 
 
-def _recorder(prepared: Prepared, run: Run) -> CameraRecorder:
-    kind: type[CameraRecorder] = registry(CameraRecorder.plugin_kind).find("rendered")
-    return kind(prepared.program.description, prepared.program.all_objects(), run)
+def _recorder(prepared: Prepared) -> CameraRecorder:
+    return camera_recorder(prepared.program.description, prepared.program.all_objects())
 
 
 def _shown(run: Run) -> Run:
@@ -134,16 +139,17 @@ def _drawings(
     Args:
         get_shown: Waits for what pictures of steps show.
     """
-    from harness.cameras.stills import StepRenderer
     from harness.session.observation.visuals import mesh_records
 
     program = prepared.program
-    description, objects = program.description, program.all_objects()
     if are_steps_drawn:
-        with closing(StepRenderer(description, objects)) as renderer:
-            free_memory()  # of what a picture is made of
-            shown = get_shown()
-            stills = renderer.draw(shown, activity)
+        if has_recorder():
+            with closing(_recorder(prepared).step_pictures()) as pictures:
+                free_memory()  # of what a picture is made of
+                shown = get_shown()
+                stills = pictures.draw(shown, activity)
+        else:
+            shown, stills = get_shown(), Stills(note=NOT_DRAWN)
         files = {f"{FOLDER}/{name}": content for name, content in stills.files.items()}
         files |= _failures(prepared, shown, activity)
         meshes, note = mesh_records(shown), stills.note
@@ -151,7 +157,7 @@ def _drawings(
         files, meshes, note = {}, mesh_records(get_shown()), ""
     if run is None or not program.videos:
         return Drawings(meshes, (), files, note)
-    videos, films = _recorder(prepared, run).videos(program.videos, activity)
+    videos, films = _recorder(prepared).videos(run, program.videos, activity)
     return Drawings(meshes, videos, {**files, **films}, note)
 
 
@@ -164,13 +170,11 @@ def _failures(prepared: Prepared, run: Run, activity: Activity) -> dict[str, byt
     ]
     if not steps:
         return {}
-    from harness.cameras.failure_pictures import draw_failure
-
-    program = prepared.program
+    recorder = _recorder(prepared)
     files: dict[str, bytes] = {}
     for number, (step, picture) in enumerate(steps):
         activity("drawing why steps failed", number, len(steps))
-        files[picture] = draw_failure(program.description, program.all_objects(), run, step)
+        files[picture] = recorder.failure_picture(run, step)
     return files
 
 
@@ -180,7 +184,7 @@ def with_picture_names(steps: Sequence[StepRecord]) -> tuple[StepRecord, ...]:
     Only the first `MOST_EXPLAINED` of them have one.
     """
     named: list[StepRecord] = []
-    left = MOST_EXPLAINED
+    left = MOST_EXPLAINED if has_recorder() else 0
     for number, step in enumerate(steps, start=1):
         has_picture = left > 0 and recorded_explanation(step.explanation).nearest is not None
         left -= has_picture

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from harness.core.errors import HarnessError
+from harness.core.registry import registry
 from harness.suite.environment import server_environment, use_one_thread
 from harness.suite.server import receive, send
 
@@ -38,7 +39,7 @@ RUN_MODULES = (
 
 REPORT_MODULES = (
     "harness.session.observation.looks_differ",
-    "harness.cameras.stills",
+    *registry("camera_recorder").built_in_modules(),
     "harness.reporting.html.write",
     "jinja2",
     "numpy.ma",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import ImageFont
 
-from harness.cameras.caption import ELLIPSIS, SIZE, _wrapped, captioned, strip_height
+from harness.plugins.cameras.caption import ELLIPSIS, SIZE, _wrapped, captioned, strip_height
 
 FONT = ImageFont.load_default(SIZE)
 LONG = "green_cylinder is not between the fingers, though the planning scene has it attached"

@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
-from harness.cameras.camera_scene import CameraScene
-from harness.cameras.renderer import make_renderer
 from harness.core.camera import OPTICAL
 from harness.core.pose_arrays import compose
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
+from harness.plugins.cameras.camera_scene import CameraScene
+from harness.plugins.cameras.renderer import make_renderer
 from harness.robot.load import load_robot
 from tests.cameras.camera_runs import ball, card, every, eye, image, pictures, robot, run_with
 from tests.cameras.recorded_runs import an_object

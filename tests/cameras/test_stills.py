@@ -11,16 +11,16 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from harness.cameras import stills
-from harness.cameras.camera_scene import scene_poses
-from harness.cameras.picture_model import build_picture_model
-from harness.cameras.renderer import make_renderer
-from harness.cameras.stills import MOST_STEPS, UNSEEN, StepRenderer, looks_alike, overview
-from harness.cameras.viewpoint import fit_viewpoint
 from harness.core.details import Details
 from harness.core.geometry import Mesh, Shape
 from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
+from harness.plugins.cameras import stills
+from harness.plugins.cameras.camera_scene import scene_poses
+from harness.plugins.cameras.picture_model import build_picture_model
+from harness.plugins.cameras.renderer import make_renderer
+from harness.plugins.cameras.stills import MOST_STEPS, UNSEEN, StepRenderer, looks_alike, overview
+from harness.plugins.cameras.viewpoint import fit_viewpoint
 from harness.recording.step_results import SceneChange
 from harness.robot.load import load_robot
 from tests.cameras.recorded_runs import IMAGINED, OBJECTS, RED_BOX, a_run
@@ -150,7 +150,7 @@ def test_states_that_turn_or_lose_a_body_do_not_look_alike():
 def test_without_a_graphics_library_the_rays_draw_and_the_note_says_so():
     """PyOpenGL with the name of a missing library stands for a machine without one."""
     program = """
-from harness.cameras.stills import StepRenderer
+from harness.plugins.cameras.stills import StepRenderer
 from harness.robot.load import load_robot
 from harness.language.scenario import RobotSpec
 from tests.cameras.recorded_runs import OBJECTS, a_run

@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 import pytest
 
-from harness.cameras.camera_scene import CameraScene
-from harness.cameras.renderer import make_renderer
-from harness.cameras.sensor import as_delivered
 from harness.core.camera import MOST_FRAMES
+from harness.plugins.cameras.camera_scene import CameraScene
+from harness.plugins.cameras.renderer import make_renderer
+from harness.plugins.cameras.sensor import as_delivered
 from harness.plugins.cameras.videos import record_videos
 from harness.recording.film import decoded_film
 from harness.session.observation.findings import slowed_videos

@@ -77,7 +77,7 @@ def test_the_core_lists_no_packages_of_plug_ins(core):
     assert "Traceback" not in done.stderr
 
 
-def test_the_core_checks_the_lessons_of_urdf_robots_and_runs_one(core):
+def test_the_core_checks_the_lessons_of_urdf_robots_and_runs_one(core, tmp_path):
     lessons = sorted((ROOT / "scenarios/lessons").glob("*.scenario.yaml"))
     of_urdf = [
         f"scenarios/lessons/{file.name}" for file in lessons if "ur3e" not in file.read_text()
@@ -86,8 +86,10 @@ def test_the_core_checks_the_lessons_of_urdf_robots_and_runs_one(core):
     done = core("check", *of_urdf)
     assert done.returncode == 0, done.stdout + done.stderr
     lesson = "scenarios/lessons/04_gripper_alone.scenario.yaml"
-    done = core("run", lesson, "--no-report", "--in-process")
+    done = core("run", lesson, "--report-dir", tmp_path, "--in-process")
     assert done.returncode == 0, done.stdout + done.stderr
+    assert "no pictures of steps" in done.stdout  # pictures are drawn by a plug-in
+    assert [*tmp_path.rglob("report.html")]
 
 
 def test_a_robot_in_xacro_is_refused_by_the_core(core, tmp_path):

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.cameras.camera_scene import floor_height
-from harness.cameras.picture_model import build_picture_model, undrawn
-from harness.cameras.renderer import render_overview
+from harness.cameras.camera_recorder import Overview, camera_recorder
+from harness.cameras.meshes import undrawn
 from harness.core.geometry import bounding_radius
 from harness.core.picture_files import jpeg, png
 from harness.core.types import FloatArray
@@ -34,15 +33,13 @@ def save_robot_picture(
     Raises:
         OSError: The file cannot be written.
     """
-    floor = floor_height(description, ())
-    picture = build_picture_model(description, (), floor_height=floor, width=SIZE, height=SIZE)
     poses = description.link_poses(joint_positions)
     links = [link for link in description.links if link.visuals or link.collisions]
     links = links or description.links[1:]
     centres = np.array([poses[link.name].translation for link in links])
     radii = np.array([_radius(link) for link in links])
-    picture.pose(poses)
-    image = render_overview(picture, centres, radii, SIZE, SIZE)
+    picture = Overview(poses, centres, radii, (SIZE, SIZE))
+    image = camera_recorder(description, ()).overview(picture)
     file.write_bytes(png(image) if file.suffix.lower() == ".png" else jpeg(image))
     missing = undrawn(description, ())
     return f"not in the picture: {', '.join(missing)}" if missing else ""

@@ -14,16 +14,16 @@ from functools import cached_property
 
 import numpy as np
 
-from harness.cameras.camera_scene import CameraScene
-from harness.cameras.ray_renderer import RayRenderer
-from harness.cameras.sensor import as_delivered
-from harness.cameras.viewpoint import FLIP, View
 from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.picture_files import jpeg, png
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.plugins.cameras.camera_scene import CameraScene
 from harness.plugins.cameras.outlines import outline_pixels
+from harness.plugins.cameras.ray_renderer import RayRenderer
+from harness.plugins.cameras.sensor import as_delivered
+from harness.plugins.cameras.viewpoint import FLIP, View
 from harness.recording.arrays import write_npz
 from harness.recording.looks import Look
 from harness.recording.run import Run

@@ -9,8 +9,8 @@ from itertools import combinations, product
 import mujoco
 import numpy as np
 
-from harness.cameras.picture_model import SOLID_GROUP, TRANSLUCENT_GROUP, PictureModel
-from harness.cameras.viewpoint import View
+from harness.plugins.cameras.picture_model import SOLID_GROUP, TRANSLUCENT_GROUP, PictureModel
+from harness.plugins.cameras.viewpoint import View
 
 REACH = 20.0
 """Distance beyond each edge up to which pixels are counted, in picture sizes: 87.6 degrees to each

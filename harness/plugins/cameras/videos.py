@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from harness.cameras.camera_scene import CameraScene
-from harness.cameras.renderer import Renderer, make_renderer
-from harness.cameras.sensor import as_delivered
 from harness.core.activity import Activity, unobserved
 from harness.core.camera import Camera
 from harness.core.world import WorldObject
+from harness.plugins.cameras.camera_scene import CameraScene
 from harness.plugins.cameras.captures import camera_folders
+from harness.plugins.cameras.renderer import Renderer, make_renderer
+from harness.plugins.cameras.sensor import as_delivered
 from harness.recording.film import SUFFIX, encoded_film, film_size
 from harness.recording.run import Run
 from harness.recording.signals import VideoRecord

@@ -7,12 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from harness.cameras.camera_scene import floor_height
-from harness.cameras.caption import captioned_jpeg
+from harness.cameras.camera_recorder import Overview, camera_recorder
 from harness.cameras.marks import frame_mark, line_mark, mark
-from harness.cameras.picture_model import build_picture_model
-from harness.cameras.renderer import render_overview
-from harness.cameras.stills import HEIGHT, WIDTH
+from harness.core.picture_files import jpeg
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
@@ -53,23 +50,15 @@ def draw_ik_comparison(
     if expected is not None and reached is not None:
         ghosts = _ghosts(description, expected)
         caption = f"{caption}  (blue: expected)"
-    picture = build_picture_model(
-        description,
-        [*marks, *ghosts],
-        floor_height=floor_height(description, []),
-        width=WIDTH,
-        height=HEIGHT,
-    )
-    for ghost in ghosts:
-        picture.rgba[picture.geoms[ghost.name], :3] = BLUE_GHOST
-    shown |= {each.name: each.pose for each in (*marks, *ghosts)}
-    picture.pose(shown)
+    bodies = [*marks, *ghosts]
+    shown |= {each.name: each.pose for each in bodies}
     sizes = {each.name: LINK_SIZE for each in description.links if each.visuals}
     sizes |= {ghost.name: LINK_SIZE for ghost in ghosts} | {marks[0].name: AXIS_LENGTH}
     points = np.array([shown[name].translation for name in sizes])
     radii = np.array(list(sizes.values()))
-    pixels = render_overview(picture, points, radii, WIDTH, HEIGHT)
-    file.write_bytes(captioned_jpeg(pixels, caption))
+    tints = {ghost.name: BLUE_GHOST for ghost in ghosts}
+    picture = Overview(shown, points, radii, tints=tints, caption=caption)
+    file.write_bytes(jpeg(camera_recorder(description, bodies).overview(picture)))
 
 
 def _ghosts(description: RobotDescription, state: FloatArray) -> list[WorldObject]:

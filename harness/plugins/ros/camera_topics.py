@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import partial
 from multiprocessing import Pipe
 from multiprocessing.context import SpawnProcess
 from typing import Any
@@ -131,7 +131,7 @@ class _Painter(SpawnProcess):
     """
 
     def __init__(self, seed: int, *scene: Any) -> None:
-        """Start the process for a scene: what `CameraScene` is made of."""
+        """Start the process for a scene: its robot, its objects and its cameras."""
         super().__init__(daemon=True)
         self._seed, self._scene = seed, scene
         self.pictures, self._requests = Pipe()
@@ -139,24 +139,18 @@ class _Painter(SpawnProcess):
         self._requests.close()
 
     def run(self) -> None:
-        from harness.cameras.camera_scene import CameraScene
-        from harness.cameras.renderer import make_renderer
-        from harness.cameras.sensor import as_delivered
+        from harness.cameras.camera_recorder import camera_recorder
         from harness.core.picture_files import jpeg
 
         self.pictures.close()
-        scene = CameraScene(*self._scene)
-        make = cache(partial(make_renderer, scene.picture))
+        description, objects, of_scene = self._scene
+        cameras = camera_recorder(description, objects).live(of_scene)
         while True:
             try:
                 camera, sample, positions, rows = self._requests.recv()
             except (EOFError, KeyboardInterrupt):
                 return
             objects = {name: SE3.from_vector(row) for name, row in rows.items()}
-            view = scene.view(camera, scene.pose_robot(positions, objects))
-            drawn = None
-            if view is not None:
-                ideal = make(camera.width, camera.height).render(view)
-                picture = as_delivered(ideal, camera, self._seed, sample)
-                drawn = picture, jpeg(picture, camera.jpeg_quality)
+            picture = cameras.picture(camera, positions, objects, (self._seed, sample))
+            drawn = None if picture is None else (picture, jpeg(picture, camera.jpeg_quality))
             self._requests.send(drawn)

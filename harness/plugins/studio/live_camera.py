@@ -68,16 +68,16 @@ def camera_picture(cell: LiveCell, camera: Camera, most_pixels: int) -> str:
     Raises:
         HarnessError: The frame that carries the camera is not in the scene.
     """
-    from harness.cameras.camera_scene import CameraScene
-    from harness.cameras.ray_renderer import RayRenderer
+    from harness.cameras.camera_recorder import camera_recorder
 
     program = cell.prepared.program
     shrink = min(1.0, (most_pixels / (camera.width * camera.height)) ** 0.5)
     width, height = max(1, round(shrink * camera.width)), max(1, round(shrink * camera.height))
     camera = replace(camera, width=width, height=height)
-    scene = CameraScene(program.description, program.all_objects(), [camera])
-    view = scene.view(camera, scene.pose_robot(cell.joint_positions(), cell.object_poses()))
-    if view is None:
+    objects = program.all_objects()
+    recorder = camera_recorder(program.description, objects)
+    cameras = recorder.live([camera], in_a_thread=True)
+    picture = cameras.picture(camera, cell.joint_positions(), cell.object_poses())
+    if picture is None:
         raise HarnessError(f"'{camera.frame}', which carries it, is not there")
-    picture = RayRenderer(scene.picture, width, height).render(view)
     return base64.b64encode(jpeg(picture)).decode()

@@ -18,7 +18,7 @@ class FilmReporter(Reporter):
 
     def write(self, folder: Path, stored: StoredRun) -> None:
         """Write the film and the picture."""
-        from harness.plugins.film.draw import draw_film, draw_moment
+        from harness.plugins.cameras.film import draw_film, draw_moment
 
         (folder / "film.mp4").write_bytes(draw_film(stored))
         (folder / "moment.jpg").write_bytes(draw_moment(stored))

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from harness.cli.main import main
-from harness.plugins.film.draw import draw_film, draw_moment
-from harness.plugins.film.story import HELD, deciding_moment, frames_of
+from harness.plugins.cameras.film import draw_film, draw_moment
+from harness.plugins.cameras.film_story import HELD, deciding_moment, frames_of
 from harness.recording.film import decoded_film
 from harness.recording.stored_run import StoredRun
 from harness.recording.verdict import Measure, Verdict

@@ -6,15 +6,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from harness.cameras.camera_scene import floor_height, scene_poses
-from harness.cameras.caption import captioned_jpeg
 from harness.cameras.marks import GOAL, ORANGE, RED, frame_mark, line_mark, mark
-from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.renderer import render_overview
-from harness.cameras.stills import HEIGHT, LINK_RADIUS, WIDTH
 from harness.core.geometry import Shape, Sphere, bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.plugins.cameras.camera_scene import floor_height, scene_poses
+from harness.plugins.cameras.caption import captioned_jpeg
+from harness.plugins.cameras.picture_model import PictureModel, build_picture_model
+from harness.plugins.cameras.renderer import render_overview
+from harness.plugins.cameras.stills import HEIGHT, LINK_RADIUS, WIDTH
 from harness.recording.explanation import NearestState, recorded_explanation
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from harness.cameras.camera_scene import floor_height, scene_poses
-from harness.cameras.caption import DARK, RED, captioned_jpeg, strip_height
-from harness.cameras.picture_model import build_picture_model, undrawn
-from harness.cameras.renderer import make_renderer
-from harness.cameras.viewpoint import Viewpoint, fit_viewpoint
+from harness.cameras.camera_recorder import Stills
+from harness.cameras.meshes import undrawn
 from harness.core.activity import Activity, unobserved
 from harness.core.geometry import bounding_radius
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
+from harness.plugins.cameras.camera_scene import floor_height, scene_poses
+from harness.plugins.cameras.caption import DARK, RED, captioned_jpeg, strip_height
+from harness.plugins.cameras.picture_model import build_picture_model
+from harness.plugins.cameras.renderer import make_renderer
+from harness.plugins.cameras.viewpoint import Viewpoint, fit_viewpoint
 from harness.recording.run import Run
 from harness.recording.touched import touched_objects
 from harness.robot.description import RobotDescription
@@ -29,21 +30,6 @@ UNSEEN = 5e-4  # [m], a motion that a picture does not show, below half a pixel;
 
 INK = {"passed": (40, 130, 60), "expected error": (40, 130, 60), "failed": RED}
 """Colour of a caption's status, RGB."""
-
-
-@dataclass(frozen=True)
-class Stills:
-    """The pictures of a run's steps.
-
-    Attributes:
-        backend: `egl`, `osmesa` or `rays`; empty when no step was executed.
-        files: The content of the JPEG files by name, in order of the steps.
-        note: A line on limitations of the pictures; empty without limitations.
-    """
-
-    backend: str = ""
-    files: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
-    note: str = ""
 
 
 class StepRenderer:

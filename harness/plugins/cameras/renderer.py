@@ -12,10 +12,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from harness.cameras.picture_model import PictureModel
-from harness.cameras.ray_renderer import RayRenderer
-from harness.cameras.viewpoint import View, fit_viewpoint
 from harness.core.types import FloatArray
+from harness.plugins.cameras.picture_model import PictureModel
+from harness.plugins.cameras.ray_renderer import RayRenderer
+from harness.plugins.cameras.viewpoint import View, fit_viewpoint
 
 MAX_GEOMS = 4000  # of a picture; MuJoCo allocates them in advance
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
-from harness.cameras.picture_model import (
+from harness.plugins.cameras.picture_model import (
     FLOOR_COLOUR,
     FLOOR_GROUP,
     FLOOR_LINES,
@@ -20,7 +20,7 @@ from harness.cameras.picture_model import (
     TRANSLUCENT_GROUP,
     PictureModel,
 )
-from harness.cameras.viewpoint import View
+from harness.plugins.cameras.viewpoint import View
 
 LIGHT_DISTANCE = 30.0  # [m], of the sun, which is a point light
 FLOOR_SPACING, LINE_WIDTH = 0.5, 0.006  # [m], of the floor's grid

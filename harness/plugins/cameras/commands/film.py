@@ -28,7 +28,7 @@ class FilmCommand(Command):
     def run(self, arguments: argparse.Namespace) -> int:
         """Draw both files."""
         folder = run_folder(arguments.run)
-        from harness.plugins.film.draw import draw_film, draw_moment
+        from harness.plugins.cameras.film import draw_film, draw_moment
         from harness.recording.read_run import read_run
         from harness.recording.stored_run import blames_changes
         from harness.suite.folders import refuse_unwritable

@@ -7,16 +7,16 @@ from contextlib import closing
 
 import numpy as np
 
-from harness.cameras.camera_scene import floor_height, scene_poses
-from harness.cameras.caption import DARK, RED, captioned, strip_height
-from harness.cameras.picture_model import build_picture_model
-from harness.cameras.renderer import make_renderer
-from harness.cameras.stills import INK, overview
 from harness.core.activity import Activity, unobserved
 from harness.core.picture_files import jpeg
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
-from harness.plugins.film.story import Frame, Moment, deciding_moment, frames_of
+from harness.plugins.cameras.camera_scene import floor_height, scene_poses
+from harness.plugins.cameras.caption import DARK, RED, captioned, strip_height
+from harness.plugins.cameras.film_story import Frame, Moment, deciding_moment, frames_of
+from harness.plugins.cameras.picture_model import build_picture_model
+from harness.plugins.cameras.renderer import make_renderer
+from harness.plugins.cameras.stills import INK, overview
 from harness.recording.run import ObjectRecord
 from harness.recording.stored_run import StoredRun
 

@@ -98,15 +98,6 @@ def build_picture_model(
     return PictureModel(model, mujoco.MjData(model), mocap, geoms, model.geom_rgba.copy())
 
 
-def undrawn(description: RobotDescription, objects: Sequence[WorldObject]) -> tuple[str, ...]:
-    """Names of mesh files that cannot be drawn, sorted."""
-    looks = [link.visuals for link in description.links]
-    looks += [obj.visuals or obj.shapes for obj in objects]
-    shapes = [shape.geometry for look in looks for shape in look]
-    meshes = [geometry for geometry in shapes if isinstance(geometry, Mesh)]
-    return tuple(sorted({mesh.path.name for mesh in meshes if not mesh_parts(mesh)}))
-
-
 def _add_body(spec: mujoco.MjSpec, name: str, shapes: Sequence[Shape], *, ghost: bool) -> None:
     drawn = [shape for shape in shapes if not isinstance(shape.geometry, Plane)]
     if not drawn:

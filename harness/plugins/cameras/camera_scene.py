@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from harness.cameras.picture_model import PictureModel, build_picture_model
-from harness.cameras.viewpoint import View, view_of
 from harness.core.camera import Camera
 from harness.core.geometry import Plane
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
+from harness.plugins.cameras.picture_model import PictureModel, build_picture_model
+from harness.plugins.cameras.viewpoint import View, view_of
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord, is_nested
 from harness.recording.step_results import SceneChange

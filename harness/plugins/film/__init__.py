@@ -1,1 +1,0 @@
-"""Films of runs, for slides, issues and phones."""
