@@ -9,6 +9,7 @@ import numpy as np
 
 from harness.core.details import Details
 from harness.core.errors import PlanningFailed
+from harness.core.registry import registry
 from harness.core.trajectory import JointTrajectory, path_length
 from harness.core.types import FloatArray
 from harness.planning.collision.checker import HOLD_RESOLUTION, MotionChecker
@@ -179,7 +180,8 @@ def _held(
     Raises:
         PlanningFailed: START_STATE_VIOLATES_PATH_CONSTRAINTS, when they do not; INVALID_LINK_NAME.
     """
-    held = HeldConstraints(constraints, space, scene.frame)
+    kind = registry("motion").find("constrained")
+    held: HeldConstraints = kind.bands(constraints, space, scene.frame)
     broken = held.violation(positions)
     if broken is not None:
         raise PlanningFailed(

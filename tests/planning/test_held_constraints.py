@@ -9,7 +9,7 @@ from harness.core.spatial import SE3
 from harness.language.scenario import RobotSpec
 from harness.planning.collision.scene import CoalScene
 from harness.planning.model.robot_model import GroupSpace
-from harness.planning.verification.path_constraints import HeldConstraints
+from harness.plugins.motions.held_constraints import PathBands
 from harness.ports.goals import JointBand, OrientationBand, PathConstraints, PositionBox
 from harness.robot.load import load_robot
 from tests.planning.lesson import at, thing
@@ -62,7 +62,7 @@ def held(scene):
     space = GroupSpace(scene.robot, "arm", np.zeros(4))
 
     def made(**constraints):
-        return HeldConstraints(PathConstraints(**constraints), space, scene.frame)
+        return PathBands(PathConstraints(**constraints), space, scene.frame)
 
     return made
 

@@ -9,8 +9,8 @@ from harness.core.geometry import Box, Shape
 from harness.core.trajectory import JointTrajectory
 from harness.planning.task import make_task
 from harness.planning.timing.timing import BlendedPath, time_blended, time_straight
-from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import find_defect, find_departure
+from harness.plugins.motions.held_constraints import PathBands
 from harness.ports.goals import JointBand, PathConstraints
 from harness.ports.motion_planning import PlanningOptions
 from tests.planning.lesson import ARM, Cell, thing, ur
@@ -91,7 +91,7 @@ def test_efforts_and_constraints_are_part_of_it(task, good):
     pan = task.space.joint_names[0]
     held = PathConstraints(joints=(JointBand(pan, START[0] - 0.1, START[0] + 0.4),))
     assert (
-        broken(task, good, held=HeldConstraints(held, task.space, task.checker.scene.frame))
+        broken(task, good, held=PathBands(held, task.space, task.checker.scene.frame))
         == "path constraints"
     )
 

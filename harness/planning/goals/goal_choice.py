@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 import pinocchio as pin
@@ -16,13 +15,11 @@ from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.planning.collision.wording import counted_noun
-from harness.planning.goals.goal_study import MOST_GOALS
 from harness.planning.goals.goals import GoalCandidates, find_goals
 from harness.planning.ik.kinematics import PinocchioKinematics
-from harness.planning.ik.numeric import sample_group_positions
 from harness.planning.task import PlanningTask
 from harness.planning.verification.path_constraints import HeldConstraints
-from harness.ports.goals import AnyGoal, Goal, PoseGoal, PositionBox, PositionGoal
+from harness.ports.goals import AnyGoal, Goal, PoseGoal
 from harness.recording.explanation import Alternative, Alternatives, GoalRegion
 
 SAMPLES = 24  # Number of poses sampled in a region in addition to its centre
@@ -31,8 +28,6 @@ ROOM = (0.005, 0.05)
 
 WIDE = 0.2  # Angle tolerance from which all poses of a region are equivalent to its centre [rad]
 MOST_CANDIDATES = 16  # goals of one search: those of least effort
-
-PROJECTIONS = 64  # Number of random positions that are projected to a goal and to path constraints
 
 
 def choose_goals(
@@ -114,13 +109,8 @@ def _limited(goal: PoseGoal) -> FloatArray:
 def _holding(
     found: GoalCandidates, held: HeldConstraints, task: PlanningTask, goal: Goal
 ) -> GoalCandidates:
-    """The candidates that satisfy the path constraints.
-
-    A position leaves the orientation open: its candidates are projected to the constraints.
-    """
-    kept = [positions for positions in found.positions if held.hold(positions)]
-    if not kept and isinstance(goal, PositionGoal) and goal.pitch is None:
-        kept = _projected(found, held, task, goal)
+    """The candidates that satisfy the path constraints."""
+    kept = held.solutions(found.positions, goal, task.checker, task.start, task.options.seed)
     if kept:
         return replace(found, positions=tuple(kept))
     broken = held.violation(found.positions[0])
@@ -132,26 +122,6 @@ def _holding(
         *found.explanation,
         *(() if broken is None else (broken.record,)),
     )
-
-
-def _projected(
-    found: GoalCandidates, held: HeldConstraints, task: PlanningTask, goal: PositionGoal
-) -> list[FloatArray]:
-    """Free positions at the goal that satisfy the constraints, least effort first.
-
-    They are sought from the candidates, then from random positions.
-    """
-    side = 2 * goal.position_tolerance / np.sqrt(3)
-    at_goal = held.at(PositionBox(goal.link, SE3(np.eye(3), goal.position), (side, side, side)))
-    rng, kept = np.random.default_rng(task.options.seed % 2**63), list[FloatArray]()
-    drawn = (sample_group_positions(task.space, rng) for _ in range(PROJECTIONS))
-    for start in chain(found.positions, drawn):
-        positions = at_goal.project(start)
-        if positions is not None and task.checker.state_free(positions):
-            kept.append(positions)
-        if len(kept) == MOST_GOALS:
-            break
-    return sorted(kept, key=lambda positions: round(task.space.effort(task.start, positions), 9))
 
 
 def _one_of(

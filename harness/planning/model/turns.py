@@ -1,13 +1,10 @@
 """How far rotations are turned from another one, about the axes of that one."""
 
-# pyright: reportAttributeAccessIssue=false
-
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-import pinocchio as pin
 
 from harness.core.pose_arrays import quats_from_rotations, rotation_vector
 from harness.core.types import FloatArray
@@ -44,17 +41,6 @@ def turns_from(middle: FloatArray, rotations: FloatArray, tolerance: Sequence[fl
     swings[:, first] = -scale * relative[:, second, axis]
     swings[:, second] = np.where(sines > 0, scale * relative[:, first, axis], angles)
     return swings
-
-
-def turn_rates(turn: FloatArray, tolerance: Sequence[float]) -> FloatArray:
-    """Derivative of a turn, as of `turns_from`, by the angular velocity in the middle's axes."""
-    rotation = pin.exp3(turn)
-    rates: FloatArray = pin.Jlog3(rotation).T
-    axis = free_axis(tolerance)
-    if axis is None:
-        return rates
-    about = rates @ rotation[:, axis]
-    return rates - np.outer(about, rates[axis]) / about[axis]
 
 
 def is_within(turn: FloatArray, tolerance: Sequence[float]) -> bool:

@@ -17,9 +17,9 @@ from harness.planning.task import PlanningTask
 from harness.planning.timing.joint_spline import JointSpline
 from harness.planning.timing.limits import TimingError
 from harness.planning.timing.timing import time_stopping, time_straight
-from harness.planning.verification.path_constraints import HeldConstraints
 from harness.planning.verification.verify import FINAL_RESOLUTION, VERIFIED_RESOLUTION, Defect
 from harness.plugins.motions.curve_timing import RatedCurve, time_curve
+from harness.plugins.motions.held_constraints import PathBands
 from harness.ports.motion_planning import MotionPlan
 from harness.ports.path_planning import PathRequest, PathResult
 from harness.recording.motion_failures import SearchFailure
@@ -45,7 +45,7 @@ WORTH = 0.01  # Share of the path that a shortcut must be able to save
 
 def find_constrained_motion(
     task: PlanningTask,
-    held: HeldConstraints,
+    held: PathBands,
     goals: Sequence[FloatArray],
     explanation: Details,
 ) -> MotionPlan:
@@ -131,7 +131,7 @@ def _timed(task: PlanningTask, path: FloatArray, *, with_stops: bool) -> JointTr
     return task.defect(trajectory, end) or trajectory
 
 
-def _spent(task: PlanningTask, held: HeldConstraints) -> int:
+def _spent(task: PlanningTask, held: PathBands) -> int:
     return task.checker.checks + CHECKS_PER_VALUE * held.checks
 
 
@@ -141,7 +141,7 @@ class _Search:
     def __init__(
         self,
         task: PlanningTask,
-        held: HeldConstraints,
+        held: PathBands,
         seeds: np.random.SeedSequence,
         resolution: float,
         budget_end: int,
