@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
 
@@ -16,7 +16,7 @@ from harness.core.registry import Plugin, registry
 from harness.core.spatial import SE3
 from harness.core.types import FloatArray
 from harness.core.world import WorldObject
-from harness.recording.looks import Look
+from harness.judging.placed import PlacedExpectation
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord, VideoRecord
 from harness.recording.step_record import StepRecord
@@ -107,8 +107,13 @@ class CameraRecorder(Plugin, ABC):
     objects: Sequence[WorldObject]
 
     @abstractmethod
-    def pictures(self, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
-        """The requested pictures, in order of time; `activity` hears how many are taken."""
+    def pictures(
+        self, run: Run, expectations: Sequence[PlacedExpectation], *, is_kept: bool
+    ) -> Callable[[Activity], Captures] | None:
+        """What takes the pictures that expectations read, and those of steps where a run is kept.
+
+        None where there are no pictures; an `Activity` hears how many are taken.
+        """
 
     @abstractmethod
     def videos(self, run: Run, rates: Mapping[str, float], activity: Activity) -> Videos:

@@ -19,10 +19,8 @@ from harness.cameras.camera_recorder import (
 from harness.core.activity import Activity
 from harness.core.details import Details
 from harness.core.memory import free_memory
-from harness.judging.pictures import looks_of_expectations
 from harness.recording.drawings import Drawings
 from harness.recording.explanation import Explanation, recorded_explanation
-from harness.recording.looks import Look, looks_of_steps, merged_looks
 from harness.recording.run import Run
 from harness.recording.signals import Signals
 from harness.recording.step_record import StepRecord
@@ -84,24 +82,18 @@ class Pictures:
 
     def _begin_captures(self) -> Background[Captures] | None:
         """The pictures that verdicts read; where the run may be kept, those of steps too."""
-        run = self._run
-        looked = looks_of_expectations(run, self._prepared.expectations)
-        seen = {(look.camera, look.sample) for look in looked}
-        taken = looks_of_steps(run.steps)
-        if self._request.report_dir is None:
-            taken = [look for look in taken if (look.camera, look.sample) in seen]
-        looks = merged_looks([*taken, *looked])
-        return Background(partial(_captures, self._prepared, run, looks)) if looks else None
+        run, prepared = self._run, self._prepared
+        if not run.cameras or not has_recorder():
+            return None
+        is_kept = self._request.report_dir is not None
+        take = _recorder(prepared).pictures(run, prepared.expectations, is_kept=is_kept)
+        return None if take is None else Background(take)
 
     def _begin_drawings(
         self, get_shown: Callable[[], Run], run: Run | None = None
     ) -> Background[Drawings]:
         draw = partial(_drawings, self._prepared, get_shown, run)
         return Background(partial(draw, are_steps_drawn=self._request.stills))
-
-
-def _captures(prepared: Prepared, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
-    return _recorder(prepared).pictures(run, looks, activity)
 
 
 def _recorder(prepared: Prepared) -> CameraRecorder:

@@ -10,13 +10,13 @@ from harness.core.camera import Camera
 from harness.core.geometry import Shape, Sphere
 from harness.core.spatial import SE3
 from harness.judging.judge import judge
-from harness.judging.pictures import looks_of_expectations
 from harness.judging.placed import PlacedExpectation
 from harness.language.cameras import looking_at
 from harness.language.markers import MarkerSpec
 from harness.language.scenario import RobotSpec
 from harness.plugins.cameras.captures import take_pictures
-from harness.recording.looks import Look, merged_looks
+from harness.plugins.cameras.looks import Look, merged_looks
+from harness.plugins.cameras.watched import looks_of_expectations
 from harness.robot.load import load_robot
 from harness.world.markers import plate, printed
 from tests.cameras.recorded_runs import GROUND, an_object

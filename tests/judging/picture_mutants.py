@@ -8,7 +8,7 @@ import numpy as np
 
 from harness.core.spatial import SE3
 from harness.plugins.cameras.expectations.sees import Sees
-from harness.recording.looks import Look
+from harness.plugins.cameras.looks import Look
 from tests.cameras.camera_runs import ball, card, eye, pictures, run_with
 from tests.judging.synthetic_run import step
 

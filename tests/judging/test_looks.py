@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from harness.judging.expectations.always import Always
-from harness.judging.pictures import looks_of_expectations, period
 from harness.judging.placed import PlacedExpectation
 from harness.judging.window import NotObservable, window_of
 from harness.plugins.cameras.expectations.sees import Sees
+from harness.plugins.cameras.watched import looks_of_expectations, period
 from harness.recording.signals import CaptureRecord
 from tests.cameras.camera_runs import eye
 from tests.judging.synthetic_run import DT, make_run, step

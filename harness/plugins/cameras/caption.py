@@ -15,6 +15,7 @@ RED, DARK = (200, 40, 50), (40, 45, 50)  # RGB
 SIZE = 13  # of letters [pixels]
 LINE = 1.25  # from one line to the next, in sizes
 ELLIPSIS = "…"
+Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
 PAPER = 246  # the strip's grey, from 0 to 255
 
 
@@ -70,7 +71,7 @@ def captioned(
     return np.array(image)
 
 
-def _wrapped(text: str, rooms: Sequence[float], font: ImageFont.FreeTypeFont) -> list[str]:
+def _wrapped(text: str, rooms: Sequence[float], font: Font) -> list[str]:
     """The lines of a text, each no longer than its room [pixels]; the last one may be cut."""
     *rooms, last = rooms
     lines: list[str] = []
@@ -86,6 +87,6 @@ def _wrapped(text: str, rooms: Sequence[float], font: ImageFont.FreeTypeFont) ->
     return [*lines, text]
 
 
-def _fitting(text: str, room: float, font: ImageFont.FreeTypeFont) -> int:
+def _fitting(text: str, room: float, font: Font) -> int:
     """How many characters of a text fit into a room [pixels]."""
     return bisect_right(range(1, len(text) + 1), room, key=lambda end: font.getlength(text[:end]))

@@ -20,12 +20,12 @@ from harness.core.picture_files import jpeg, png
 from harness.core.spatial import SE3
 from harness.core.world import WorldObject
 from harness.plugins.cameras.camera_scene import CameraScene
+from harness.plugins.cameras.looks import Look
 from harness.plugins.cameras.outlines import outline_pixels
 from harness.plugins.cameras.ray_renderer import RayRenderer
 from harness.plugins.cameras.sensor import as_delivered
 from harness.plugins.cameras.viewpoint import FLIP, View
 from harness.recording.arrays import write_npz
-from harness.recording.looks import Look
 from harness.recording.run import Run
 from harness.recording.signals import CaptureRecord
 from harness.robot.description import RobotDescription

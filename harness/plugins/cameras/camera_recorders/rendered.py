@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -16,11 +17,13 @@ from harness.cameras.camera_recorder import (
 )
 from harness.core.activity import Activity
 from harness.core.camera import Camera
+from harness.judging.placed import PlacedExpectation
 from harness.plugins.cameras.failure_pictures import draw_failure
 from harness.plugins.cameras.live import PosedCameras
+from harness.plugins.cameras.looks import looks_of_steps, merged_looks
 from harness.plugins.cameras.overview import draw_overview
 from harness.plugins.cameras.stills import StepRenderer
-from harness.recording.looks import Look
+from harness.plugins.cameras.watched import looks_of_expectations
 from harness.recording.run import Run
 from harness.recording.step_record import StepRecord
 
@@ -30,11 +33,19 @@ class RenderedCameras(CameraRecorder):
 
     name: ClassVar[str] = "rendered"
 
-    def pictures(self, run: Run, looks: Sequence[Look], activity: Activity) -> Captures:
+    def pictures(
+        self, run: Run, expectations: Sequence[PlacedExpectation], *, is_kept: bool
+    ) -> Callable[[Activity], Captures] | None:
         """Pictures of the ray renderer, which are the same on every machine."""
         from harness.plugins.cameras.captures import take_pictures
 
-        return take_pictures(self.description, self.objects, run, looks, activity)
+        looked = looks_of_expectations(run, expectations)
+        seen = {(look.camera, look.sample) for look in looked}
+        taken = looks_of_steps(run.steps)
+        if not is_kept:
+            taken = [look for look in taken if (look.camera, look.sample) in seen]
+        looks = merged_looks([*taken, *looked])
+        return partial(take_pictures, self.description, self.objects, run, looks) if looks else None
 
     def videos(self, run: Run, rates: Mapping[str, float], activity: Activity) -> Videos:
         """Videos of the fastest renderer of the machine."""

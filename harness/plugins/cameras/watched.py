@@ -10,7 +10,7 @@ from harness.core.camera import Camera
 from harness.judging.expectation import Expectation, Predicate
 from harness.judging.placed import PlacedExpectation
 from harness.judging.window import NotReached, Window, window_of
-from harness.recording.looks import Look
+from harness.plugins.cameras.looks import Look
 from harness.recording.run import Run
 
 WATCH_RATE = 5.0  # [Hz], pictures of a watched camera at most: each costs 0.2 s
