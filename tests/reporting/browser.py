@@ -11,7 +11,12 @@ import pytest
 from tests.waiting import HANG
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-SOFTWARE_GL = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+SOFTWARE_GL = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-watchdog",  # on a busy machine it takes the software renderer for a hang
+)
 WITHOUT_GRAPHICS_CARD = (
     "--disable-gpu-rasterization",
     "--disable-gpu-compositing",

@@ -1,5 +1,6 @@
 """Camera pictures, a ten-minute run and explained failures, in a real browser."""
 
+from contextlib import closing
 from dataclasses import replace
 
 import cv2
@@ -23,7 +24,15 @@ from tests.judging.synthetic_run import (
     make_run,
     step,
 )
-from tests.reporting.browser import go_to, wait_for, wait_for_frame
+from tests.reporting.browser import (
+    SOFTWARE_GL,
+    WITHOUT_GRAPHICS_CARD,
+    go_to,
+    installed,
+    visits,
+    wait_for,
+    wait_for_frame,
+)
 from tests.running import run_case
 
 RED, GREEN = (0, 0, 255), (0, 255, 0)  # BGR
@@ -63,9 +72,8 @@ def write(folder, run, drawings=NO_DRAWINGS):
     return file
 
 
-@pytest.mark.nightly(but=["pictures"])
-@pytest.mark.parametrize("cameras", [[1], [0, 1]], ids=["pictures", "videos"])
-def test_pictures_and_videos_follow_the_clock(visit, tmp_path, cameras):
+def page_with_cameras(folder):
+    """A page with a video, camera 0, and pictures, camera 1: both are red first, and then green."""
     captures = (
         CaptureRecord("wrist", 0.5, 50, "look", files={"color": "a.png"}),
         CaptureRecord("wrist", 1.5, 150, "look again", files={"color": "b.png"}),
@@ -79,14 +87,22 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path, cameras):
     )
     videos = (VideoRecord("room", "c.mp4", times, 10.0, 64, 48, "rays"),)
     drawings = Drawings(videos=videos, files={"c.mp4": video()})
-    page = visit(write(tmp_path, run, drawings)).page
+    return write(folder, run, drawings)
+
+
+def wait_for_colour(page, colour):
+    for number in (0, 1):
+        shown = f"({SHOWN})({number})"
+        wait_for(page, f"{shown}[{colour}] > 180 && {shown}[{1 - colour}] < 90")
+
+
+def test_pictures_and_videos_follow_the_clock(visit, tmp_path):
+    page = visit(page_with_cameras(tmp_path), has_scene=True).page
     captions = page.locator(".camera figcaption")
     assert captions.count() == 2
     for moment, colour, label in ((0.7, 0, "wrist · look"), (1.7, 1, "wrist · look again")):
         go_to(page, f"#t={moment}")
-        for number in cameras:
-            shown = f"({SHOWN})({number})"
-            wait_for(page, f"{shown}[{colour}] > 180 && {shown}[{1 - colour}] < 90")
+        wait_for_colour(page, colour)
         assert captions.nth(1).inner_text() == label
     page.keyboard.press("Home")
     assert captions.nth(1).inner_text() == "wrist · not before 0.50 s"
@@ -102,6 +118,29 @@ def test_pictures_and_videos_follow_the_clock(visit, tmp_path, cameras):
     page.click("#tool-cameras")
     assert not page.locator(".camera").first.is_visible()
     assert page.locator("#view").bounding_box()["height"] > view["height"]
+
+
+EMPTY = """() => [...document.querySelectorAll('.plot canvas')].map((canvas) => {
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  return data.every((value) => value === 0);
+})"""
+
+
+def test_pictures_and_plots_come_back_when_the_graphics_process_ended(browser, tmp_path):
+    """In a browser of its own, which keeps pages from a view after that."""
+    options = [*SOFTWARE_GL, *WITHOUT_GRAPHICS_CARD]
+    with (
+        closing(browser.browser_type.launch(executable_path=installed(), args=options)) as own,
+        visits(own) as visit,
+    ):
+        page = visit(page_with_cameras(tmp_path), "#t=0.7").page
+        wait_for_colour(page, 0)
+        page.evaluate("""window.restored = 0, document.addEventListener(
+          'contextrestored', () => window.restored++, true), null""")
+        own.new_browser_cdp_session().send("Browser.crashGpuProcess")
+        wait_for(page, "window.restored >= 2")
+        wait_for_colour(page, 0)
+        assert not any(page.evaluate(EMPTY))
 
 
 def test_a_ten_minute_run_opens_and_scrubs(visit, tmp_path):

@@ -163,6 +163,7 @@ async function start() {
 
   const again = () => clock.timeListeners.forEach((listener) => listener(clock.time));
   makeControls({ clock, scene, plots, drawFilm });
+  document.addEventListener("contextrestored", () => plots.redraw(), true); // as in pictures.js
   if (scene) {
     makeLegend(run, scene, hasPictures, again);
     makeSides(scene, () => clock.time, run.title);

@@ -1,11 +1,9 @@
-// Camera images and videos, shown at the moment they were taken.
+// Camera images and videos, shown at the moment they were taken. When the browser's graphics process
+// ended, canvases come back empty (`contextrestored`) and are drawn again.
 
 import { byId, element } from "./dom.js";
 import { indexAt } from "./payload.js";
 import { seconds } from "./units.js";
-
-/** When a video is drawn again after a seek [ms]: its picture may arrive after the event. */
-const LATE = [50, 250, 1000];
 
 /**
  * @typedef {object} CameraHead
@@ -46,7 +44,7 @@ function followVideo(payload, clock, { buffer, type, start }, canvas) {
   video.src = URL.createObjectURL(new Blob([payload.buffer(buffer)], { type }));
   const draw = () => fit(canvas, video, video.videoWidth, video.videoHeight);
   for (const event of ["loadeddata", "seeked", "timeupdate"]) video.addEventListener(event, draw);
-  video.addEventListener("seeked", () => LATE.forEach((delay) => setTimeout(draw, delay)));
+  canvas.addEventListener("contextrestored", draw);
   if (video.requestVideoFrameCallback) {
     const again = () => {
       draw();
@@ -89,6 +87,10 @@ function followImages(payload, clock, camera, canvas, caption) {
     const label = isTaken ? camera.images[index].label : `not before ${seconds(times[index])}`;
     caption.textContent = [camera.name, label].filter(Boolean).join(" · ");
   };
+  canvas.addEventListener("contextrestored", () => {
+    shown = -2;
+    show();
+  });
   clock.onTime(show);
 }
 
