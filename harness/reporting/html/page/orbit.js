@@ -3,7 +3,7 @@
 import { addScaled, cross, dot, lookAt, multiply, normalize, perspective } from "./vectors.js";
 
 const FIELD_OF_VIEW = 0.7; // [rad]
-const FRAMED = { left: 0.95, right: 0.95, top: 0.88, bottom: 0.86, narrow: 0.74 }; // shares of half the picture: words lie along its edges, in a narrow one above all of it
+const FRAMED = { left: 0.95, right: 0.95, top: 0.8, bottom: 0.86, narrow: 0.74 }; // shares of half the picture: words lie along its edges, in a narrow one above all of it
 const THICKNESS = { share: 0.09, least: 0.05 }; // of the arm's size, and [m]: how far links reach beyond their origins
 const FOLLOWED = 0.4; // of the arm's size: how much of it is seen around a TCP that is followed
 const TURN_PER_PIXEL = 0.008; // [rad]
