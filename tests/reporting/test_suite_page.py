@@ -98,6 +98,8 @@ def test_every_cell_stands_under_its_heading(history, tmp_path, visit):
         found = columns(page, row)
         assert found["Took"] == took
         assert ("Worst margin over runs" in found) == bool(history)
+    fits = "heads => heads.every((head) => head.scrollWidth <= head.clientWidth)"
+    assert page.locator("thead th").evaluate_all(fits), "a heading is longer than its column"
     page.select_option("#group select", "cause")
     assert page.locator("tr.group td").first.get_attribute("colspan") == str(len(found))
 
