@@ -259,9 +259,9 @@ def test_gradescopes_scripts_install_the_wheel_of_the_archive_and_grade(tmp_path
         (tmp_path / "trial" / name).mkdir()
     (tmp_path / "trial/submission/mine.scenario.yaml").write_text(SOLUTION)
     places = {"AUTOGRADER": str(tmp_path / "trial"), "INSTALLED": str(tmp_path / "opt")}
-    version = f"{sys.version_info.major}.{sys.version_info.minor}"
+    python = str(Path(sys.executable).resolve())  # no other one of this machine, and no download
     path = os.pathsep.join([str(uv.parent), os.environ["PATH"]])
-    environment = {**os.environ, **places, "UV_PYTHON": version, "PATH": path}
+    environment = {**os.environ, **places, "UV_PYTHON": python, "PATH": path}
     for script in ("setup.sh", "run_autograder"):
         subprocess.run(["bash", str(source / script)], env=environment, cwd=tmp_path, check=True)
     document = json.loads((tmp_path / "trial/results/results.json").read_text())

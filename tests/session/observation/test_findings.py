@@ -151,7 +151,7 @@ def findings_about(obj):
     both = []
     for world, later in (((obj,), {}), ((), {"thing": obj})):
         both.append(about_file(program_with(world, later), ()))
-    assert both[0] == both[1]
+    assert repr(both[0]) == repr(both[1])  # NaN times are unequal in records from Python 3.13 on
     return both[0]
 
 
