@@ -29,7 +29,7 @@ expect:
 EXPLAINED = """\
 what explain says
 
-robot open_manipulator_x, TCP end_effector_link, inverse kinematics: open_manipulator_x
+robot open_manipulator_x, TCP end_effector_link, inverse kinematics: auto
   group arm: joint1, joint2, joint3, joint4; named states: init, home
   group gripper: gripper_left_joint; named states: open, close
   starts at joint1 0 deg, joint2 0 deg, joint3 0 deg, joint4 0 deg
