@@ -16,7 +16,7 @@ from harness.core.types import FloatArray
 from harness.planning.collision import wording
 from harness.planning.collision.checker import touch_records
 from harness.planning.search.find_pipeline import is_built_in
-from harness.planning.search.path_search import Effort, FoundPath, verified_paths
+from harness.planning.search.path_search import Effort, verified_paths
 from harness.planning.search.shortening import shorten
 from harness.planning.task import PlanningTask
 from harness.planning.timing.timing import (
@@ -148,33 +148,22 @@ def _first_verified_motion(
         ValueError: A planner or a parameter is unknown.
     """
     defect: Defect | None = None
-    for found in verified_paths(task.checker, task.start, goals, options, effort):
-        short = shorten(found.waypoints, task.checker, VERIFIED_RESOLUTION, found.seed)
+    for found, path in verified_paths(task.checker, task.start, goals, options, effort):
+        short = shorten(path, task.checker, VERIFIED_RESOLUTION, found.seed)
         try:
             timed = task.overload(short) or _timed(task, short)
         except TimingError as problem:
             timed = Defect(str(problem), problem.details)
         if isinstance(timed, JointTrajectory):
             moved = sum(task.space.effort(*edge) for edge in pairwise(short))
-            planner_id = found.result.planner_id
-            statistics = task.statistics(planner_id, timed, short, found.waypoints)
-            search = _search_statistics(found, effort, short, timed)
+            statistics = task.statistics(found.planner_id, timed, short, path)
+            away = float(distances_to_path(timed.positions, short).max())
+            search = SearchStatistics(
+                effort.attempts, effort.checks, found.vertices, VERIFIED_RESOLUTION, away
+            )
             return _Motion(timed, short[-1], moved, statistics, search)
         defect = timed
     return defect
-
-
-def _search_statistics(
-    found: FoundPath, effort: Effort, short: FloatArray, timed: JointTrajectory
-) -> SearchStatistics:
-    away = distances_to_path(timed.positions, short)
-    return SearchStatistics(
-        found.attempt + 1,
-        effort.checks,
-        found.result.vertices,
-        VERIFIED_RESOLUTION,
-        float(away.max()),
-    )
 
 
 def _timed(task: PlanningTask, waypoints: FloatArray) -> JointTrajectory | Defect:

@@ -126,8 +126,7 @@ class VerifiedPlanner:
     def _goals(
         self, task: PlanningTask, request: MotionRequest, motion: FreeMotion
     ) -> GoalCandidates:
-        start = np.asarray(request.start)
-        return choose_goals(self.kinematics, task, start, motion.goal, task.held)
+        return choose_goals(self.kinematics, task, np.asarray(request.start), motion.goal)
 
     def _task(
         self, request: MotionRequest, constraints: PathConstraints | None = None

@@ -35,16 +35,14 @@ def choose_goals(
     task: PlanningTask,
     start: FloatArray,
     goal: Goal | AnyGoal,
-    held: HeldConstraints | None,
 ) -> GoalCandidates:
     """Find free joint positions that reach a goal, one of several goals, or a goal region.
 
     Args:
         kinematics: The kinematics of the robot.
-        task: The planning call with its options.
+        task: The planning call with its options; the goal satisfies its path constraints.
         start: The start positions in description order.
         goal: The goal that was requested.
-        held: Path constraints that the goal must satisfy, or None.
 
     Raises:
         PlanningFailed: The errors of `find_goals`, or GOAL_VIOLATES_PATH_CONSTRAINTS.
@@ -52,11 +50,11 @@ def choose_goals(
 
     def find(one: Goal) -> GoalCandidates:
         found = find_goals(kinematics, task.checker, start, one, task.options.seed)
-        return found if held is None else _holding(found, held, task, one)
+        return found if task.held is None else _holding(found, task.held, task, one)
 
     if isinstance(goal, AnyGoal):
         every = goal.goals
-        return _one_of(every, lambda one: choose_goals(kinematics, task, start, one, held), task)
+        return _one_of(every, lambda one: choose_goals(kinematics, task, start, one), task)
     if not isinstance(goal, PoseGoal) or not has_room(goal):
         return find(goal)
     middle: GoalCandidates | PlanningFailed

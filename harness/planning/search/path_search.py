@@ -29,6 +29,7 @@ class Search:
         gap: The remaining joint-space distance between its trees or to the goal [rad]; 0 if solved,
             None if unknown.
         planner_id: The planner's name; of a pipeline other than `ompl`, the pipeline's name first.
+        seed: The seed of the search, and of what is made of the path.
     """
 
     waypoints: FloatArray | None
@@ -36,6 +37,7 @@ class Search:
     vertices: int
     gap: float | None
     planner_id: str
+    seed: int
 
 
 def search(
@@ -86,7 +88,7 @@ def search(
     prefix = "" if pipeline == DEFAULT_PIPELINE else pipeline
     parts = (prefix, found.planner_id or request.planner_id)
     name = "/".join(part for part in parts if part)
-    return Search(found.waypoints, checker.checks - before, found.vertices, found.gap, name)
+    return Search(found.waypoints, checker.checks - before, found.vertices, found.gap, name, seed)
 
 
 @dataclass(eq=False)
@@ -97,28 +99,13 @@ class Effort:
         checks: The state checks of all searches.
         gaps: The remaining distances of the searches that failed, where they are known [rad].
         planner_id: The planner of the last search.
+        attempts: The attempts that were begun.
     """
 
     checks: int = 0
     gaps: list[float] = field(default_factory=list[float])
     planner_id: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class FoundPath:
-    """A path, and how it was found.
-
-    Attributes:
-        result: The result of the planner.
-        waypoints: The waypoints, not shortened, shape (N, dof).
-        attempt: The number of the attempt, from 0.
-        seed: The seed of that search, and of what is made of the path.
-    """
-
-    result: Search
-    waypoints: FloatArray
-    attempt: int
-    seed: int
+    attempts: int = 0
 
 
 def verified_paths(
@@ -127,32 +114,25 @@ def verified_paths(
     goals: Sequence[FloatArray],
     options: PlanningOptions,
     effort: Effort,
-) -> Iterator[FoundPath]:
-    """Paths, each from another seed, until budget and attempts end.
+) -> Iterator[tuple[Search, FloatArray]]:
+    """Searches with their unshortened paths, from other seeds, until budget and attempts end.
 
     Raises:
         ValueError: A pipeline, a planner or a parameter is unknown.
         PlanningFailed: A third-party pipeline goes wrong.
     """
     for attempt in range(options.attempts):
-        left = options.max_state_checks
+        left, effort.attempts = options.max_state_checks, attempt + 1
         for number in range(SEARCHES):
             seed = _derived_seed(options.seed, attempt, number)
-            result = search(
-                options,
-                checker,
-                start,
-                goals,
-                max_state_checks=left,
-                seed=seed,
-            )
+            result = search(options, checker, start, goals, max_state_checks=left, seed=seed)
             effort.checks += result.checks
             effort.planner_id = result.planner_id
             left -= result.checks
             if result.waypoints is None:
                 effort.gaps += [] if result.gap is None else [result.gap]
                 break
-            yield FoundPath(result, result.waypoints, attempt, seed)
+            yield result, result.waypoints
             if left <= 0:
                 break
 

@@ -59,9 +59,9 @@ def ours(problem: Problem, seed: int = 1) -> Outcome:
     begin = time.process_time()
     scene, planned = begin - before, None
     options = PlanningOptions(seed=seed)
-    for found in verified_paths(checker, problem.start, [problem.goal], options, effort):
+    for found, path in verified_paths(checker, problem.start, [problem.goal], options, effort):
         planned = planned or time.process_time()
-        short = shorten(found.waypoints, checker, VERIFIED_RESOLUTION, found.seed)
+        short = shorten(path, checker, VERIFIED_RESOLUTION, found.seed)
         if checker.path_free(short, VERIFIED_RESOLUTION):
             return Outcome(scene, planned - begin, time.process_time() - begin, short)
     spent = time.process_time() - begin

@@ -57,8 +57,8 @@ def _motion(cell: Cell, start: np.ndarray, end: np.ndarray) -> tuple[float, str]
     how = "straight"
     if not checker.edge_free(start, end, FINAL_RESOLUTION):
         how = "not solved"
-        for found in verified_paths(checker, start, [end], OPTIONS, Effort()):
-            shorten(found.waypoints, checker, FINAL_RESOLUTION, found.seed)
+        for found, path in verified_paths(checker, start, [end], OPTIONS, Effort()):
+            shorten(path, checker, FINAL_RESOLUTION, found.seed)
             how = "searched"
             break
     return time.process_time() - begin, how

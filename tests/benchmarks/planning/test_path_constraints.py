@@ -64,9 +64,7 @@ def rejecting(problem: CupProblem) -> tuple[float, bool]:
     assert held is not None
     task.checker.state_free(task.start)
     begin = time.process_time()
-    goals = choose_goals(
-        problem.ports.kinematics, task, problem.state, problem.goal, held
-    ).positions
+    goals = choose_goals(problem.ports.kinematics, task, problem.state, problem.goal).positions
     bounds = ob.RealVectorBounds(dof)
     for joint in range(dof):
         bounds.setLow(joint, float(task.space.lower[joint]))

@@ -49,8 +49,8 @@ def searched(problem: Problem) -> Outcome:
     """A verified and shortened path."""
     begin, checker = time.process_time(), problem.checker()
     ends = problem.start, [problem.goal]
-    for found in verified_paths(checker, *ends, OPTIONS, Effort()):
-        short = shorten(found.waypoints, checker, VERIFIED_RESOLUTION, found.seed)
+    for found, path in verified_paths(checker, *ends, OPTIONS, Effort()):
+        short = shorten(path, checker, VERIFIED_RESOLUTION, found.seed)
         if checker.path_free(short, VERIFIED_RESOLUTION):
             return time.process_time() - begin, True
     return time.process_time() - begin, False
