@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from harness.core.lazy import LazySequence
+from harness.core.memory import free_memory
 from harness.recording.run import Outcome
 from harness.reporting.progress_events import ProgressEvent
 from harness.reporting.result import CaseResult
@@ -26,6 +27,8 @@ from harness.suite.stream import Place, Stream
 from harness.suite.warm import WarmServer
 
 OnResult = Callable[[int, CaseResult], None]
+
+CASES_BETWEEN = 100  # cases after which memory is given back: it costs what a tenth of one does
 
 
 class SuiteRun:
@@ -88,9 +91,11 @@ class SuiteRun:
                 if self._repetitions is not None:
                     stack.enter_context(self._repetitions)
                 self._open_stream()
-                for index, result in self._arriving(server, watched):
+                for count, (index, result) in enumerate(self._arriving(server, watched), 1):
                     self.unfinished.pop(index, None)
                     on_result(index, self._keep(index, result))
+                    if count % CASES_BETWEEN == 0:
+                        free_memory()
         except KeyboardInterrupt:
             self.is_interrupted = True
         self.count()
