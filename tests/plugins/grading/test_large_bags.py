@@ -101,7 +101,7 @@ KINDS = {
 
 def scenario(folder):
     file = folder / "large.scenario.yaml"
-    file.write_text(SCENARIO + EXPECTED)
+    file.write_text(SCENARIO.replace("mass: 0.1", "static: true") + EXPECTED)
     return file
 
 
