@@ -427,7 +427,7 @@ def test_every_tab_and_every_label_of_the_timeline_is_shown_whole_enough(visit, 
 
 def test_a_failed_run_opens_near_what_failed_and_iso_shows_all_of_it(browser, failed_run):
     with visits(browser) as visit:
-        page = visit(failed_run / "report.html", width=1100, height=720).page
+        page = visit(failed_run / "report.html", width=1100, height=720, has_scene=True).page
         near = picture(page)
         page.click("#sides button:text('iso')")
         whole = picture(page)
