@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from harness.cell.program import Program, ProgramStep
+from harness.cell.step import Step
 from harness.core.errors import SpecError
 from harness.session.prepare import Prepared
-from harness.steps.add_object import AddObject
 from harness.steps.grasp import Grasp
 from harness.steps.gripper import Gripper
 from harness.steps.move_object import MoveObject
-from harness.steps.parallel import Parallel
 from harness.steps.pick import Pick
 from harness.steps.place import Place
-from harness.steps.remove_object import RemoveObject
 
 Reason = tuple[str, str]  # why it is impossible, and what the user does instead
 
@@ -80,21 +78,21 @@ def _reason(step: ProgramStep, physical: set[str]) -> Reason | None:
         physical: The names of the objects that are not of the planning scene alone.
     """
     spec = step.spec
-    match spec:
-        case AddObject():
-            changed = {each.name for each in spec.objects}
-        case RemoveObject():
-            changed = set(spec.objects)
-        case MoveObject():
-            changed = {spec.object}
-        case _:
-            changed = set[str]()
-    if changed & physical:
+    if _changed(spec) & physical:
         return _CELL
     if isinstance(spec, Pick | Place) and spec.track:
         return _BELT
     if isinstance(spec, Pick | Grasp) and spec.mode == "weld":
         return _WELD
-    if isinstance(spec, Parallel) and any(isinstance(c.spec, Gripper) for c in step.children):
+    if spec.verb == "parallel" and any(isinstance(c.spec, Gripper) for c in step.children):
         return _AT_ONCE
     return None
+
+
+def _changed(spec: Step) -> set[str]:
+    """Names of the objects that a step adds, removes or puts elsewhere."""
+    if isinstance(spec, MoveObject):
+        return {spec.object}
+    if spec.verb in ("add_object", "remove_object"):
+        return {getattr(each, "name", each) for each in dict(spec)["objects"]}
+    return set()
