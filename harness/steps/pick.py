@@ -32,6 +32,7 @@ from harness.cell.grasping import (
 from harness.cell.program import ProgramStep
 from harness.cell.scope import At
 from harness.cell.step import Step
+from harness.core.amounts import point_text
 from harness.core.details import Detail
 from harness.core.errors import PlanningFailed
 from harness.core.spatial import SE3
@@ -259,11 +260,10 @@ def pick_advice(step: Pick, failure: PlanningFailed, grasps: int, cell: Cell) ->
     nearest = nearest_state(failure)
     moved, away = "", (nearest.position_error if nearest else None) or 0.0
     if nearest is not None and nearest.pose is not None and away >= 1e-3:
-        x, y, z = nearest.pose[:3]
+        there = point_text(np.round(nearest.pose[:3], 3))
         moved = (
-            f"the nearest point that the gripper reaches is ({x:.3f}, {y:.3f}, {z:.3f}), "
-            f"{millimetres(away)} from the grasp: bring '{step.object}' or the"
-            " robot's `base` nearer by that much"
+            f"the nearest point that the gripper reaches is {there}, {millimetres(away)}"
+            f" from the grasp: bring '{step.object}' or the robot's `base` nearer by that much"
         )
     if step.grasp_pose is not None and step.grasp_pose.has_rotation:
         freer = "leave the rotation out of `grasp_pose`, so that every grasp from above is tried"
