@@ -110,7 +110,8 @@ of each promise. The [threat model](../../SECURITY.md) says what is trusted;
 
 ## Promises
 
-The tests run before each change; exhaustive ones each night (`.ci/nightly`)."""
+The tests run before each change; exhaustive ones each night (`.ci/nightly`). The counts are of
+a run before a change, without the exhaustive tests."""
 
 LIMITS = """## Limits of each reader
 
