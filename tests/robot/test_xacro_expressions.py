@@ -143,6 +143,7 @@ def test_any_text_has_a_value_or_a_located_error(pieces, separator):
     ("expression", "value"),
     [
         ("1 < 2 < 3 != 4", True),
+        ("[~True, ~(1 > 2), ~4]", [-2, -1, -5]),
         ("'%05.2f|%-4s|%d' % (1.5, 'a', 3)", "01.50|a   |3"),
         ("'%(k)s' % table", "1"),
         ("list(map(float, text.split()))", [0.1, 0.2, 0.3]),

@@ -34,11 +34,17 @@ from harness.plugins.formats.xacro.values import (
 
 LONGEST_EXPRESSION = 4000  # characters; Python's parser needs a stack for nested ones
 
+
+def inverted(operand: Any) -> Any:
+    """`~operand`; of a truth value as of 0 or 1, which Python from 3.12 on does with a warning."""
+    return operator.invert(int(operand) if isinstance(operand, bool) else operand)
+
+
 UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
     ast.Not: operator.not_,
-    ast.Invert: operator.invert,
+    ast.Invert: inverted,
 }
 BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
