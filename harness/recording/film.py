@@ -10,6 +10,7 @@ from typing import Any
 import av
 import numpy as np
 from av.error import FFmpegError
+from av.video.reformatter import VideoReformatter
 
 from harness.core.limits import PICTURE_PIXELS
 
@@ -17,6 +18,9 @@ SUFFIX, MEDIA_TYPE = ".mp4", "video/mp4"
 OPTIONS = {"preset": "veryfast", "crf": "23", "mbtree": "0"}
 """One thread and no macroblock tree, so that equal pictures give equal bytes: with the tree, films
 of 130 x 98 or 150 x 102 pixels differed from one encoding to the next (x264 of av 18)."""
+
+# Pictures are reformatted by an object that ends with its function. The one that `reformat` of
+# av 19 keeps for each thread has threads of its own: a fork from another thread waits for them.
 
 
 def film_size(width: int, height: int, widest: int | None = None) -> tuple[int, int]:
@@ -41,11 +45,12 @@ def encoded_film(frames: Iterable[np.ndarray], rate: float, size: tuple[int, int
         stream.width, stream.height = size
         stream.pix_fmt = "yuv420p"
         stream.codec_context.thread_count = 1
+        reformatter = VideoReformatter()
         for frame in frames:
             colours = np.ascontiguousarray(frame)
             kind = "rgb24" if colours.ndim == 3 else "gray"
             picture = av.VideoFrame.from_ndarray(colours, format=kind)
-            film.mux(stream.encode(picture.reformat(*size, "yuv420p")))
+            film.mux(stream.encode(reformatter.reformat(picture, *size, "yuv420p")))
         film.mux(stream.encode())
     return content.getvalue()
 
@@ -58,7 +63,8 @@ def decoded_film(content: bytes) -> Iterator[np.ndarray]:
             codec = film.streams.video[0].codec_context
             if codec.width * codec.height > PICTURE_PIXELS:
                 return
+            reformatter = VideoReformatter()
             for frame in film.decode(video=0):
-                yield frame.to_ndarray(format="rgb24")
+                yield reformatter.reformat(frame, format="rgb24").to_ndarray()
     except (FFmpegError, IndexError):
         return
