@@ -67,7 +67,6 @@ class LiveCameras(Protocol):
         """A picture, RGB or grey, uint8; None while the camera's carrier is not in the scene.
 
         Args:
-            camera: One of the scene's cameras.
             joint_positions: The joint positions in description order, shape (n,).
             objects: T_world_object of the simulated objects that are there.
             noise: The run's seed and the sample that the camera's noise follows from; None draws

@@ -33,8 +33,6 @@ def approach_axis(
     is elsewhere, as at the fingertips.
 
     Args:
-        description: The robot with its gripper.
-        kinematics: Where the links of the robot are.
         scene: What knows the shapes of its links.
         state: Positions of the whole robot in description order, with the hand open.
     """

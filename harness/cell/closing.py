@@ -22,9 +22,7 @@ def position_around(name: str, state: FloatArray, cell: Cell) -> float:
     Its width is that of the boxes around its shapes, along the closing axis of the hand.
 
     Args:
-        name: The name of the object.
         state: The whole robot, description order.
-        cell: The cell with the object in its planning scene.
     """
     if cell.gripper.cups:
         return cell.gripper.closed_position

@@ -108,7 +108,6 @@ def grasp_depth(cell: Cell, height: float, width: float) -> float:
     single jaw, touches the object anyway.
 
     Args:
-        cell: The cell with the gripper.
         height: The height of the object [m].
         width: Its width between the fingers [m].
     """
@@ -341,7 +340,6 @@ def _equal_turns(geometry: Geometry, vertical: int, fits: Sequence[bool]) -> lis
 
     Args:
         geometry: The shape to grasp.
-        vertical: The index of the axis that points up.
         fits: Whether its narrow level side fits between the pads, then its wide one.
     """
     upright = isinstance(geometry, Cylinder | Capsule) and vertical == 2

@@ -91,7 +91,6 @@ class Holding(SceneState):
         The planner carries it with the arm that grasped it last.
 
         Args:
-            name: The name of the object.
             weld: Whether the physics fixes it to the hand.
 
         Raises:

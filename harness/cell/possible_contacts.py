@@ -17,10 +17,7 @@ def check_contact(
     """Refuse two bodies of an expectation of which no pair can ever touch.
 
     Args:
-        scope: What exists at this point of the file.
         first: A link, an object, `robot`, `gripper` or `any`; unknown names are left to others.
-        second: The other body, named in the same way.
-        loc: Where the bodies are named.
         overlaps_count: Whether the overlap of links whose contact is excluded is judged as well.
     """
     reason = why_never_in_contact(scope, first, second, overlaps_count=overlaps_count)

@@ -40,8 +40,6 @@ class Problems:
         """Collect nothing yet.
 
         Args:
-            lines: The lines of the file.
-            missing: What could not be loaded; something stands in for it.
             doubtful: Names in what could not be read; problems with them may follow from that.
         """
         self._lines = lines
@@ -84,11 +82,6 @@ class Problems:
         """Note a name that nothing has, with the nearest that something has, then the rest.
 
         Args:
-            loc: Where the name stands.
-            what: It should be the name of.
-            name: A name that nothing else has.
-            known: Names that something has.
-            is_key: The name is a key, not a value.
             start: The name is a part of the text there and begins at this character, from 0.
             needs: What must be loaded to know the names.
         """
@@ -172,7 +165,6 @@ class Scope:
         """Select an arm of a robot with several, or none with an empty name.
 
         Args:
-            arm: The name of the arm.
             key: The key that names an arm in what is checked.
         """
         whole, before = self.description, self._arm_key
@@ -248,12 +240,6 @@ class Scope:
         """The arm that a step or an expectation is about: as stated, of its group, or the default.
 
         Reports a name of no arm, and a group of other joints than the arm's.
-
-        Args:
-            robot: The stated name of an arm.
-            group: The stated planning group.
-            loc: The place of the step or expectation.
-            key: Its key that states the arm.
         """
         description = self.description
         arms, of_group = description.of_arm, description.arm_of_group(group or "")

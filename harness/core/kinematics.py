@@ -62,7 +62,6 @@ class LinkPoses:
         """Compute the poses of some links, and of those that carry them.
 
         Args:
-            joints: The joints of the tree, parents before children.
             joint_positions: Positions of the movable ones, in their order, shape (N, n) or (n,).
             links: The links whose poses are needed; all by default.
         """

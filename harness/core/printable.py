@@ -81,8 +81,6 @@ def fitted(line: str, columns: int, end: str = "") -> list[str]:
     """The printable line in parts that fit a terminal, the later ones indented.
 
     Args:
-        line: The line, which may have colours and links.
-        columns: Width of the terminal.
         end: Suffix of each part except the last, such as a shell's continuation character.
 
     Returns:

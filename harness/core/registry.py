@@ -369,9 +369,6 @@ def plugin_hints(
     """Hints on a name that no loaded plug-in has: the nearest, all, and where others come from.
 
     Args:
-        name: A name that no plug-in has.
-        valid: The names that there are.
-        what: The noun of such a plug-in.
         listed: What stands in front of the valid names; by default the noun's plural.
         is_misspelt: Whether more than its letters says that the name is the nearest one, misspelt.
     """

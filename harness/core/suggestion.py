@@ -33,7 +33,6 @@ def nearest(word: str, valid: Iterable[str]) -> str | None:
     """The valid word most like the one written, if any is like it.
 
     Args:
-        word: A word that is not valid.
         valid: The valid words; in a mapping to classes, with the `synonyms` that these state.
     """
     words = _by_word(valid)

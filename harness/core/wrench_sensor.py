@@ -56,7 +56,6 @@ class Payload:
         """Force and torque of its weight, as the sensor reads them, shape (N, 6) [N, N m].
 
         Args:
-            sensor: The sensor that carries it.
             link_poses: T_world_link of the sensor's link (xyz, quat wxyz), shape (N, 7).
             gravity: The gravitational acceleration in the world, shape (3,).
         """

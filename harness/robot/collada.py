@@ -18,10 +18,6 @@ ROOT = b"<COLLADA"
 def metres_of_unit(content: bytes, name: str) -> float:
     """Metres of the unit of a COLLADA file.
 
-    Args:
-        content: The file, or its beginning.
-        name: Its name in messages.
-
     Raises:
         RobotError: It is not a COLLADA file.
     """

@@ -77,8 +77,6 @@ def with_collision_shapes(
     """The robot with the shapes with which planner and physics collide.
 
     Args:
-        description: The robot with whole meshes.
-        links: How the meshes of all links collide, or those of some.
         mode: How the others do; None for the default.
 
     Raises:

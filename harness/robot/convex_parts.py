@@ -72,7 +72,6 @@ def stored_decomposition(
     included, so that it makes no difference whether they were stored.
 
     Args:
-        content: The bytes of the mesh file.
         factors: The factors from its coordinates to metres, shape (3,).
         triangles: Reads the corners [m], shape (M, 3, 3).
         is_hull: Whether the hull is the only part in any case.

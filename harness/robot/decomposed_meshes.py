@@ -18,10 +18,6 @@ from harness.robot.urdf.urdf import MeshElements
 def decompose_meshes(links: Iterable[Link], elements: MeshElements) -> None:
     """Decompose the meshes with which links collide, for later use in this process.
 
-    Args:
-        links: All links of a robot, with whole meshes.
-        elements: Where the file of the robot names the meshes.
-
     Raises:
         SpecError: A mesh cannot be read, or is flat; at its element.
         RobotError: The same, without an element.

@@ -19,11 +19,6 @@ LEAST_ARM = 3
 def planning_groups(srdf: Srdf, joints: Sequence[Joint], source: str) -> dict[str, PlanningGroup]:
     """Every group with its active joints from base to tip.
 
-    Args:
-        srdf: The SRDF with the groups.
-        joints: Joints of the whole robot, parents before children.
-        source: Name of the file in messages.
-
     Raises:
         SpecError: A group names an unknown joint, link or group; located, for an SRDF from a file.
         RobotError: The same, for an SRDF without a file.

@@ -66,11 +66,7 @@ def _every_model() -> dict[str, tuple[Path, RobotYaml]]:
 
 
 def read_bundled(names: Collection[str]) -> None:
-    """Read bundled robots and grippers in advance, for this process and its forks.
-
-    Args:
-        names: Names of robots; those that are not bundled are skipped.
-    """
+    """Read bundled robots and grippers in advance, for this process and its forks."""
     for name in _catalogue():
         if name in names:
             _bundled(name, ())
@@ -223,11 +219,7 @@ def _part(
     """A bundled robot or gripper, or the one in a folder.
 
     Args:
-        name: The name of the robot or gripper, or its folder.
         key: The key of `robot` that states it, for messages.
-        args: The arguments of its xacro file.
-        base_dir: The folder to which its own is relative.
-        own: The groups of the arm, of which one may be its own gripper.
     """
     if name in _catalogue():
         return _bundled(name, tuple(sorted((k, str(v)) for k, v in args.items())))

@@ -77,7 +77,6 @@ class PackagePath:
         of descriptions has the robot's file.
 
         Args:
-            name: The name of the package in the file.
             inside: The required path in it; empty for any.
 
         Raises:
@@ -103,7 +102,6 @@ class PackagePath:
 
         Args:
             name: `package://name/path`, `file:///path`, or a path.
-            folder: The folder to which paths are relative.
 
         Raises:
             NotFoundError: It does not exist, or is not in a folder that may be read.

@@ -34,7 +34,6 @@ class RobotFormat(Plugin, ABC):
 
         Args:
             spec: The `robot:` of the scenario.
-            base_dir: The scenario's folder, to which paths are relative.
             collision: How meshes collide whose link the robot's `collision` does not have.
 
         Raises:
@@ -48,9 +47,7 @@ class RobotFormat(Plugin, ABC):
         """Apply the options of `robot:`; a format may first assume limits that its file lacks.
 
         Args:
-            robot: The robot with its gripper, fixed in the world.
             spec: The `robot:` of the scenario.
-            known: Joints whose acceleration another file states.
 
         Raises:
             RobotError: An option refers to an unknown name, or exceeds the robot's limits.
@@ -76,8 +73,6 @@ def render_xacro(path: Path, args: Mapping[str, Any], packages: PackagePath) -> 
     """The URDF or SRDF that a xacro file computes, each element with its place in the file.
 
     Args:
-        path: The path of the file.
-        args: The values of its arguments.
         packages: Search path for `$(find ...)`, and the folders that may be read.
 
     Raises:

@@ -27,7 +27,6 @@ class RobotOption(Plugin):
         Args:
             main: The arm; None for a gripper alone.
             spec: The `robot:` of the scenario.
-            base_dir: The scenario's folder, to which paths are relative.
 
         Raises:
             SpecError: A file has mistakes; each at its place.

@@ -35,7 +35,6 @@ class TaskSpace:
         """What a group of joints can hold.
 
         Args:
-            count: The number of joints.
             rank: The number of ways in which they move the link, 6 at most; by default `count`.
         """
         held = FREEDOMS[: max(3, count if rank is None else rank)]
@@ -85,8 +84,6 @@ def mechanism_rank(
     Args:
         poses_at: The poses of links at joint positions, shape (N, n).
         limits: Lower and upper position limits of all joints, shape (2, n).
-        moving: The columns of those that move.
-        link: The link that they move.
     """
     lower, upper = np.maximum(limits[0], -np.pi), np.minimum(limits[1], np.pi)
     samples = lower + np.random.default_rng(0).random((SAMPLES, len(lower))) * (upper - lower)

@@ -20,12 +20,6 @@ def in_tree_order(
 ) -> tuple[tuple[Link, ...], tuple[Joint, ...]]:
     """Links from the root outwards, joints in the order of their child links.
 
-    Args:
-        links: The links, all of them.
-        joints: The joints, all of them.
-        source: Name of the robot in messages.
-        elements: Elements of links and joints.
-
     Raises:
         SpecError: They are not one tree; at the element of the joint or link.
         RobotError: The same, without an element.
@@ -99,12 +93,7 @@ def joints_to(link: str, joints: Iterable[Joint], base: str = "") -> list[Joint]
 
 
 def carriers(joints: Iterable[Joint], root: str) -> dict[str, str]:
-    """For each link, the first link of its rigid group.
-
-    Args:
-        joints: The joints, parents before children.
-        root: The link without a parent joint.
-    """
+    """For each link, the first link of its rigid group."""
     carrier = {root: root}
     for joint in joints:
         carrier[joint.child] = joint.child if joint.is_movable else carrier[joint.parent]

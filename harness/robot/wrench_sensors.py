@@ -38,13 +38,7 @@ def _carried(link: str, joints: Collection[Joint]) -> set[str]:
 
 
 def flaw(sensor: WrenchSensor, links: Collection[Link], joints: Collection[Joint]) -> str:
-    """Why a sensor cannot measure anything; empty where it can.
-
-    Args:
-        sensor: The sensor that is checked.
-        links: The links of the robot.
-        joints: The joints of the robot, parents before children.
-    """
+    """Why a sensor cannot measure anything; empty where it can."""
     names = [link.name for link in links if link.name != WORLD]
     if sensor.link not in names:
         return f"there is no link '{sensor.link}'; {did_you_mean(sensor.link, names, 'links')}"

@@ -40,8 +40,6 @@ class MujocoFaults:
         """Begin without faults.
 
         Args:
-            physics: The model of MuJoCo with its names.
-            data: The state of that model now.
             hold: Keeps the last commands for a duration [s].
             weaken: Leaves the gripper with a joint a share of its effort; returns that before.
         """
@@ -121,7 +119,6 @@ class MujocoFaults:
         Noise on a measured position acts on a servo like noise subtracted from its control.
 
         Args:
-            controls: The controls that were sent.
             position_share: 1 for a motor whose servo has a stiffness, else 0, shape (m,).
         """
         if not len(self._waiting) and not self._deviation:

@@ -79,7 +79,6 @@ class JointDrive:
         """Inputs of the motors at set points, shape (N + 1, m).
 
         Args:
-            points: Set points from now on.
             noise: The noise of the measured positions now, shape (m,).
 
         Raises:

@@ -106,9 +106,7 @@ def build_model(
     """Compile the physics of a scenario.
 
     Args:
-        description: The description of the robot.
         objects: All objects that are ever in the world; planning-only objects are left out.
-        present: The names of the objects that are present at the start.
         gravity: The gravitational acceleration [m/s^2].
         timestep: The physics step [s].
         frames: Links whose poses are recorded in addition to the TCP's.

@@ -52,13 +52,8 @@ class Motors:
         """Build the model and record its start state as sample 0.
 
         Args:
-            description: The robot, at its start state.
-            world_objects: All objects that are ever in the world.
-            present: The names of the objects that are present at the start.
             gravity: The gravitational acceleration [m/s^2].
             timestep: The physics step [s].
-            frames: Links whose poses are recorded in addition to the TCP's.
-            seed: Source of the noise of sensors of force and torque.
             moving: Makes a context in which the physics advances, which measures its wall time.
 
         Raises:

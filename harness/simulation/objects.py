@@ -138,12 +138,7 @@ class Objects:
 
 
 def overlaps(physics: PhysicsModel, data: mujoco.MjData) -> tuple[Touch, ...]:
-    """Find pairs of an object and another body that overlap, deepest first.
-
-    Args:
-        physics: The model of the physics.
-        data: The current state, with updated contacts.
-    """
+    """Find pairs of an object and another body that overlap, deepest first."""
     names, robot = physics.body_names, physics.robot_bodies
     deepest: dict[tuple[str, str], float] = {}
     bodies = physics.model.geom_bodyid[data.contact.geom].tolist()

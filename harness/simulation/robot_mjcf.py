@@ -50,7 +50,6 @@ def add_robot(spec: mujoco.MjSpec, description: RobotDescription) -> None:
 
     Args:
         spec: A specification in radians; `world` is its world body.
-        description: The description of the composed robot.
     """
     bodies = {"world": spec.worldbody}
     links = {link.name: link for link in description.links}

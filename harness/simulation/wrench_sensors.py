@@ -76,10 +76,8 @@ class WrenchSensors:
         """What a sensor reads from a sample on, as wrenches in its axes, shape (count, 6).
 
         Args:
-            name: The name of the sensor.
             measured: MuJoCo's numbers of all sensors at every sample, shape (N, 6 * sensors).
             first: The first sample that is read.
-            count: The number of samples that are read.
             tared: Whether tares are subtracted.
         """
         sensor = self.sensors[name]

@@ -18,10 +18,6 @@ def bored(whole: Shape, spec: HoleSpec) -> tuple[tuple[Shape, ...], Hole]:
 
     Four boxes surround a rectangle; around a circle turned boxes, whose faces touch it, cut the
     corners of its square to a regular polygon. A floor closes a hole that does not go through.
-
-    Args:
-        whole: The box without its hole; its z axis is the hole's.
-        spec: The hole that is cut, which leaves walls around it.
     """
     assert isinstance(whole.geometry, Box)
     width, length, height = whole.geometry.size

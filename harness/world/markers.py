@@ -33,9 +33,7 @@ def printed(marker: MarkerSpec, pose: SE3, name: str = "") -> tuple[Shape, ...]:
     """What the marker looks like: the plate, then its black parts.
 
     Args:
-        marker: Which, and how big.
         pose: The pose T_object_marker of the marker.
-        name: The name of the plate.
     """
     cells = _cells(marker)
     side = marker.size / len(cells)

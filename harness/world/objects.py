@@ -57,10 +57,7 @@ def resolve_object(
     """The object with every number known.
 
     Args:
-        spec: What the file says; its own pose is not read.
         pose: The pose T_world_object of the object.
-        base_dir: Folder that mesh files are relative to.
-        collision: How meshes collide that do not state it.
 
     Raises:
         ObjectUnusableError: A dynamic object of planes, one without shapes, mass and inertia, or
@@ -114,12 +111,6 @@ def resolve_parts(
     spec: ObjectSpec, fixture: WorldObject, base_dir: Path, collision: CollisionMode | None = None
 ) -> tuple[WorldObject, ...]:
     """The parts of a fixture that turn or slide, each an object of its own.
-
-    Args:
-        spec: What the file says of the fixture.
-        fixture: The fixture itself, resolved.
-        base_dir: Folder that mesh files are relative to.
-        collision: How meshes collide that do not state it.
 
     Raises:
         ObjectUnusableError: As of `resolve_object`.

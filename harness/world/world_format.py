@@ -33,7 +33,6 @@ class WorldFormat(Plugin, ABC):
         """Read a world.
 
         Args:
-            path: The path of the file.
             folders: The folders of the scenario's `model_path`.
 
         Raises:

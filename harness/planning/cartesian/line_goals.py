@@ -22,12 +22,6 @@ def end_pose(
     Joint positions stand for the TCP pose that they produce, as in Pilz's LIN. A position goal
     keeps the link's orientation except for a requested pitch; what the group cannot hold
     follows from the position.
-
-    Args:
-        kinematics: The kinematics of the robot.
-        task: The planning call with its options.
-        start: Group positions at the start.
-        goal: The goal that was requested.
     """
     if isinstance(goal, PoseGoal):
         return goal

@@ -83,13 +83,6 @@ def time_on_path(
 ) -> JointTrajectory:
     """Time a whole trace.
 
-    Args:
-        path: What was traced, to its end.
-        traced: The joint positions along the path.
-        joint_names: The joint names of the columns.
-        limits: The limits of the joints, scaled.
-        rates: The rates of the link.
-
     Raises:
         TimingError: The limits cannot be kept.
     """

@@ -95,11 +95,7 @@ def trace(
     the poses are taken nearer to each other; the trace ends where that does not help.
 
     Args:
-        path: Where the link goes.
-        checker: The checker of the states on it.
-        start: Group positions at the way's start.
         step_length: Between the poses that are solved [m].
-        jump: What no joint may exceed from one pose to the next.
     """
     if path.is_point:
         parameters = np.linspace(0.0, 1.0, _FEWEST_STEPS + 1)

@@ -50,7 +50,6 @@ class MotionArrays:
         Args:
             rest: The positions of the moving joints where the group's are zero, shape (M,).
             drive: What the group's positions add to them, shape (M, dof).
-            arrays: The arrays that are the same for each motion.
         """
         self._rest, self._drive = rest, np.ascontiguousarray(drive.T)
         self._line = np.empty((2, len(rest))), np.empty(2)  # of most motions
@@ -71,7 +70,6 @@ class MotionArrays:
 
         Args:
             check: The compiled function `certify`.
-            motion: The motion of the group.
             low: The number of the first state to classify.
             high: The number of the last state to classify.
 

@@ -106,8 +106,6 @@ class MotionChecker:
         """Whether the straight line between two positions is free; its start is not checked.
 
         Args:
-            first: Group positions at the start, known to be free.
-            second: Group positions at the end.
             resolution: The largest joint-space distance between checked states [rad].
         """
         length = self.space.distance(first, second)

@@ -163,7 +163,6 @@ class CollisionModel:
         """Pairs that are not farther apart than their margins, with their index, nearest first.
 
         Args:
-            configuration: The whole robot's, as Pinocchio has it.
             margins: The margin of each pair of bodies [m], shape (K,).
         """
         robot, of_row = self.robot, self.pair_of_row

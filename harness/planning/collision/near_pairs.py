@@ -39,7 +39,6 @@ class PlacedShapes:
         Only shapes whose boxes are that near are checked.
 
         Args:
-            poses: The pose of each joint in the world.
             rows: Pairs of shapes, shape (R, 2).
             margins: The margin of each of them [m], shape (R,).
         """

@@ -39,10 +39,8 @@ def choose_goals(
     """Find free joint positions that reach a goal, one of several goals, or a goal region.
 
     Args:
-        kinematics: The kinematics of the robot.
         task: The planning call with its options; the goal satisfies its path constraints.
         start: The start positions in description order.
-        goal: The goal that was requested.
 
     Raises:
         PlanningFailed: The errors of `find_goals`, or GOAL_VIOLATES_PATH_CONSTRAINTS.

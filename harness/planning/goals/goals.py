@@ -52,10 +52,7 @@ def find_goals(
     """Find free joint positions that reach a goal.
 
     Args:
-        kinematics: The kinematics of the robot.
-        checker: The checker of the planned motion.
         start: The start positions in description order.
-        goal: The goal that was requested.
         seed: The seed of solvers that draw joint positions.
 
     Raises:

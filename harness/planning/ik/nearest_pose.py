@@ -76,8 +76,6 @@ def nearest_pose(
     reached; that nothing is nearer is not proved.
 
     Args:
-        space: The group, the rest of the robot at rest.
-        goal: What the link should do.
         seed_positions: Where the first search starts, shape (dof,).
         metres_per_radian: What a turn counts: `EVEN`, `KEEP_TURN` or `KEEP_POINT`.
     """
@@ -98,7 +96,6 @@ def nearest_free_shift(
 
     Args:
         goal: The goal, in collision in each of its solutions.
-        solve: Inverse kinematics of a goal.
         is_free: Whether group positions are free.
 
     Returns:

@@ -235,8 +235,6 @@ def solve_numeric(
     """Find joint positions that bring a link to its goal: from the seed, then from near the goal.
 
     Args:
-        space: The group, the rest of the robot at rest.
-        goal: The goal of the link.
         seed_positions: The start of the first search, shape (dof,).
         most_restarts: The largest number of searches after the first, if none finds a solution.
         enough: The number of solutions that ends the search; None for a spread.

@@ -52,7 +52,6 @@ def search_connect(request: PathRequest, extend: Extend | None = None) -> PathRe
     Distances are measured in the group's metric.
 
     Args:
-        request: The start, the goals and the budget of the search.
         extend: How trees are extended; along free straight lines by default.
 
     Raises:

@@ -54,11 +54,6 @@ def search(
     The same arguments give the same path to the bit.
 
     Args:
-        options: The pipeline, the planner and its parameters.
-        checker: The checker of states and edges.
-        start: The start positions of the group, free of collisions.
-        goals: Group positions, each free.
-        max_state_checks: Budget of this search.
         seed: The seed of samples.
 
     Raises:

@@ -47,8 +47,6 @@ def set_parameters(planner: ob.Planner, kind: str, parameters: Mapping[str, floa
     """Give a planner its parameters through its setters; the wheel does not bind OMPL's ParamSet.
 
     Args:
-        planner: The planner before its setup.
-        kind: Its name in messages.
         parameters: The parameters by OMPL's names: `range`, `goal_bias` ...; 0 and 1 are no and
             yes.
 

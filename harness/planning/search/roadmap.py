@@ -74,9 +74,6 @@ def find_in_roadmap(
     two to one as in OMPL, and the way is looked for between rounds.
 
     Args:
-        planner: Set up, nothing grown yet.
-        ends: The start, then the goals; free.
-        used: Returns the number of state checks used.
         enough: A way that is found before is improved until then [state checks].
         end: When to stop without one [state checks].
 

@@ -67,9 +67,6 @@ def find_shortcut(
 
     Args:
         path: The waypoints, shape (N, dof).
-        knots: The length of the path up to each waypoint.
-        places: The two points, as shares of the whole length.
-        worth: The share of the path that the line must save.
 
     Returns:
         The number of waypoints before the first point, both points, and the first waypoint after

@@ -116,10 +116,8 @@ def sampled_within_limits(
     window; then it is slowed by what remains.
 
     Args:
-        joint_names: The joint names of the columns.
         smoothed_over: The motion, at rest at both ends.
         duration: Its duration without smoothing [s].
-        limits: The limits of the joints.
         link_excess: How many times slower the set points must be for other limits.
 
     Raises:

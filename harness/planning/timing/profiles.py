@@ -202,7 +202,6 @@ def smoothed(curve: Curve, duration: float, window: float) -> Curve:
     velocities and accelerations stay within what the curve's keep to.
 
     Args:
-        curve: The curve, at rest on both ends.
         duration: The duration of the curve [s].
         window: The window of the mean [s].
 

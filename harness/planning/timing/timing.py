@@ -158,8 +158,6 @@ def time_blended(
     """Move along a polyline with rounded corners as fast as the limits allow, timed by TOPP-RA.
 
     Args:
-        joint_names: The joint names of the columns.
-        path: The polyline with its rounded corners.
         limits: Kept on every set point: the times are stretched where TOPP-RA exceeds them.
 
     Raises:

@@ -79,7 +79,6 @@ def _timed(path: JointCurve, grid: FloatArray, rates: FloatArray) -> tuple[Curve
     """The path with constant acceleration of its parameter between grid points, and its duration.
 
     Args:
-        path: The curve that gets its times.
         grid: The parameter at each grid point, shape (N + 1,).
         rates: Its rate at each grid point [1/s], shape (N + 1,).
     """

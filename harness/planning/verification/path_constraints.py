@@ -54,9 +54,6 @@ class HeldConstraints(Protocol):
         """Free group positions that reach a goal and satisfy the constraints.
 
         Args:
-            found: The free positions that reach the goal.
-            goal: The goal that the positions reach.
-            checker: The checker of the planning call.
             start: The start positions of the group, shape (dof,).
             seed: The seed of random positions.
         """

@@ -79,7 +79,6 @@ def find_departure(
     """Where a trajectory leaves its path farther than it may, or None.
 
     Args:
-        trajectory: The trajectory with its times.
         waypoints: The waypoints of the path that was checked, shape (N, dof).
         deviation: Largest joint-space distance from its lines [rad].
     """
@@ -103,7 +102,6 @@ def path_collision(
 
     Args:
         waypoints: Group positions, shape (N, dof); the first one is free.
-        checker: The checker of the path.
         resolution: The joint-space distance between checked states [rad].
     """
     blocked = checker.first_block(waypoints, resolution)

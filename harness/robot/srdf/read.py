@@ -20,8 +20,6 @@ def read_srdf(
     """The SRDF of a file; xacro is rendered with the arguments that the file declares.
 
     Args:
-        path: The path of the SRDF file.
-        text: The content of the file.
         args: Arguments of the scenario's `robot:` for xacro.
         packages: Search path for `$(find ...)`, and the folders that may be read.
 

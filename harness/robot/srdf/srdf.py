@@ -85,10 +85,6 @@ def link_pair(first: str, second: str) -> tuple[str, str]:
 def parse_srdf(document: str | bytes | XmlElement, source: str) -> Srdf:
     """Read an SRDF.
 
-    Args:
-        document: The text of the document, or its root element.
-        source: Name of the document in messages.
-
     Raises:
         SpecError: It is not an SRDF, an element lacks an attribute, or a position is not a
             number; at line and column.

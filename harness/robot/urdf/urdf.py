@@ -91,9 +91,6 @@ def parse_urdf(
     In addition to URDF, `<capsule radius length>` is supported.
 
     Args:
-        document: The text of the document, or its root element.
-        folder: The folder to which mesh file names are relative.
-        source: Name of the document in messages.
         packages: Search path for other mesh file names; by default around `folder`.
 
     Raises:

@@ -25,9 +25,6 @@ def write_urdf(
     """A URDF of the links and joints, every number with all its digits.
 
     Args:
-        name: Name of the robot.
-        links: The links of the robot.
-        joints: The joints of the robot.
         folder: The folder to which mesh files outside Python packages are relative; None for
             absolute paths.
     """
